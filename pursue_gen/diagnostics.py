@@ -1,0 +1,101 @@
+"""What every stage reports through: a severity, a code, a message, a place and a way out.
+
+Nothing here knows a terminal or a stage; `render` makes the text that a person reads, `as_json` the one for machines.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Any, Dict, Iterable, Optional, Tuple
+
+
+class Severity(enum.Enum):
+    """How bad it is: an error stops the stage, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of a text: file as the user named it; lines and columns count from 1, the end column is exclusive."""
+
+    file: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One finding. `code` is stable (PML001 …), `message` says what is wrong and what was expected, `hint` what to do."""
+
+    severity: Severity
+    code: str
+    message: str
+    span: Optional[Span] = None
+    hint: str = ""
+
+
+class PursueError(Exception):
+    """The one exception that reaches the command line: diagnostics, and the exit status to leave with.
+
+    Exit statuses: 2 usage, 3 the scenario has errors, 4 the objective cannot be met, 5 a limit was hit, 6 an external
+    tool is missing.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], exit_status: int = 3) -> None:
+        self.diagnostics: Tuple[Diagnostic, ...] = tuple(diagnostics)
+        self.exit_status = exit_status
+        super().__init__("; ".join(d.message for d in self.diagnostics))
+
+
+def error(code: str, message: str, span: Optional[Span] = None, hint: str = "") -> Diagnostic:
+    """A diagnostic of severity error."""
+    return Diagnostic(Severity.ERROR, code, message, span, hint)
+
+
+def warning(code: str, message: str, span: Optional[Span] = None, hint: str = "") -> Diagnostic:
+    """A diagnostic of severity warning."""
+    return Diagnostic(Severity.WARNING, code, message, span, hint)
+
+
+def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
+    """The diagnostics by file, line and column; those without a place last."""
+
+    def key(diagnostic: Diagnostic) -> Tuple[bool, str, int, int]:
+        span = diagnostic.span
+        return (True, "", 0, 0) if span is None else (False, span.file, span.line, span.column)
+
+    return tuple(sorted(diagnostics, key=key))
+
+
+def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:
+    """The diagnostic as `file:line:column: severity CODE: message`, the source line with a caret, and the hint."""
+    span = diagnostic.span
+    place = f"{span.file}:{span.line}:{span.column}: " if span else ""
+    lines = [f"{place}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
+    source_lines = source.splitlines() if source is not None else []
+    if span and 1 <= span.line <= len(source_lines):
+        text = source_lines[span.line - 1]
+        width = span.end_column - span.column if span.end_line == span.line else len(text) - span.column + 1
+        margin = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1])
+        lines += [f"    {text}", f"    {margin}{'^' * max(1, width)}"]
+    if diagnostic.hint:
+        lines.append(f"    help: {diagnostic.hint}")
+    return "\n".join(lines)
+
+
+def as_json(diagnostic: Diagnostic) -> Dict[str, Any]:
+    """The diagnostic as a JSON object: severity, code, message, hint, and file, line, column, end_line, end_column."""
+    result: Dict[str, Any] = {
+        "severity": diagnostic.severity.value,
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+    if diagnostic.span:
+        result.update(vars(diagnostic.span))
+    return result

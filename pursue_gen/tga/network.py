@@ -1,0 +1,129 @@
+"""The value of the translation stage: a network of timed game automata over broadcast channels, and an objective.
+
+Clocks start at 0 and count time units. Integer variables carry what guards read. See the design of the game: one
+sending (or channel-less) edge moves, and with it every automaton that has an enabled receiving edge on that channel.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, replace
+from typing import Optional, Tuple
+
+
+@dataclass(frozen=True)
+class ClockBound:
+    """`clock op bound`, op one of < <= > >= ==, bound in time units."""
+
+    clock: str
+    op: str
+    bound: int
+
+
+@dataclass(frozen=True)
+class Test:
+    """`variable == value`."""
+
+    variable: str
+    value: int
+
+    __test__ = False  # not a test case, whatever pytest thinks of the name
+
+
+Clause = Tuple[Test, ...]
+"""Any of these tests."""
+
+
+@dataclass(frozen=True)
+class Guard:
+    """All of the clock bounds, and of each clause at least one test. The empty guard is true."""
+
+    clocks: Tuple[ClockBound, ...] = ()
+    integers: Tuple[Clause, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sync:
+    """`channel!` (sends) or `channel?`."""
+
+    channel: str
+    sends: bool
+
+
+@dataclass(frozen=True)
+class Edge:
+    """An edge of an automaton; `assign` sets integer variables, `resets` sets clocks to 0.
+
+    `sync` None is a step of its own (tau).
+    """
+
+    source: str
+    target: str
+    guard: Guard = Guard()
+    sync: Optional[Sync] = None
+    assign: Tuple[Tuple[str, int], ...] = ()
+    resets: Tuple[str, ...] = ()
+    controllable: bool = True
+
+
+@dataclass(frozen=True)
+class Location:
+    """A location; `invariant` holds upper bounds. `named` False: UPPAAL gets an id but no name (and prints `_id`)."""
+
+    name: str
+    invariant: Tuple[ClockBound, ...] = ()
+    named: bool = True
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """One automaton (an agent, a rule, the states or an objective)."""
+
+    name: str
+    locations: Tuple[Location, ...]
+    initial: str
+    edges: Tuple[Edge, ...]
+
+
+@dataclass(frozen=True)
+class Network:
+    """Automata in system order; clocks, variables (with initial values) and broadcast channels in order of declaration."""
+
+    clocks: Tuple[str, ...]
+    variables: Tuple[Tuple[str, int], ...]
+    channels: Tuple[str, ...]
+    automata: Tuple[Automaton, ...]
+
+    def automaton(self, name: str) -> Automaton:
+        """The automaton of that name. Raises KeyError."""
+        for automaton in self.automata:
+            if automaton.name == name:
+                return automaton
+        raise KeyError(name)
+
+
+class Kind(enum.Enum):
+    """What the controller wants."""
+
+    REACH = "reach"
+    SAFETY = "safety"
+    REACH_WHILE_SAFE = "reach-while-safe"
+
+
+@dataclass(frozen=True)
+class Objective:
+    """`A<> goal`, `A[] not bad` or `A[ not bad U goal ]`; goal and bad are (automaton, location) or None."""
+
+    kind: Kind
+    goal: Optional[Tuple[str, str]] = None
+    bad: Optional[Tuple[str, str]] = None
+
+
+def is_end(edge: Edge) -> bool:
+    """True for the end of a movement or an action: the edge leaves a `going_…` or `doing_…` location."""
+    return edge.source != edge.target and edge.source.startswith(("going_", "doing_"))
+
+
+def with_controllability(edge: Edge, controllable: bool) -> Edge:
+    """The edge with another owner."""
+    return edge if edge.controllable == controllable else replace(edge, controllable=controllable)
