@@ -1,0 +1,56 @@
+"""The game in which the ends of movements and actions are reported by the robots, not chosen by the plan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Mapping
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
+
+_BUSY = ("going_", "doing_")
+
+
+def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
+    """The network with every end of a movement or an action in the environment's hands.
+
+    `slack` is how many time units later than the invariant of its `going_…` and `doing_…` locations an agent may be.
+    Raises PursueError for a slack that is negative or names no agent of the network.
+    """
+    agents = [automaton.name for automaton in network.automata if is_agent(automaton)]
+    problems = [
+        error("TGA020", f"a slack is given for {name}, which is no agent", hint=f"the agents are {', '.join(agents)}")
+        for name in slack
+        if name not in agents
+    ]
+    problems += [
+        error("TGA021", f"the slack of {name} is {slack[name]}", hint="a slack is a natural number of time units")
+        for name in slack
+        if slack[name] < 0
+    ]
+    if problems:
+        raise PursueError(problems)
+    automata = tuple(
+        _reported(automaton, slack.get(automaton.name, 0)) if automaton.name in agents else automaton
+        for automaton in network.automata
+    )
+    return replace(network, automata=automata)
+
+
+def is_agent(automaton: Automaton) -> bool:
+    """True for the automaton of an agent: it sends, or it can be on its way or at work."""
+    return any(edge.sync is not None and edge.sync.sends for edge in automaton.edges) or any(
+        location.name.startswith(_BUSY) for location in automaton.locations
+    )
+
+
+def _reported(automaton: Automaton, slack: int) -> Automaton:
+    edges = tuple(with_controllability(edge, edge.controllable and not is_end(edge)) for edge in automaton.edges)
+    return replace(automaton, locations=tuple(_late(location, slack) for location in automaton.locations), edges=edges)
+
+
+def _late(location: Location, slack: int) -> Location:
+    if not location.name.startswith(_BUSY):
+        return location
+    bounds = tuple(ClockBound(bound.clock, bound.op, bound.bound + slack) for bound in location.invariant)
+    return replace(location, invariant=bounds)
