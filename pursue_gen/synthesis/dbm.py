@@ -1,0 +1,294 @@
+"""Zones: convex sets of clock valuations as difference bound matrices (Dill 1989; Bengtsson and Yi 2004).
+
+A bound `x_i - x_j < c` or `<= c` is one integer, its *raw* form: `2*c + 1` for `<=`, `2*c` for `<`. So a smaller raw
+bound is a tighter one, and the bound that says the opposite, seen from the other side, is `1 - raw`. Index 0 is the
+constant 0, indices from 1 are clocks. Every zone lies in the valuations with all clocks >= 0, is canonical (all bounds as
+tight as they can be) and holds at least one point: operations that may leave nothing return None.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Iterable, List, Optional, Sequence, Tuple, Union
+
+INF = 1 << 30
+"""The raw bound of "no bound". Finite raw bounds are far smaller."""
+
+LE_ZERO = 1
+"""The raw bound `<= 0`."""
+
+Number = Union[int, Fraction]
+
+
+def raw(c: int, strict: bool) -> int:
+    """The raw form of `< c` (strict) or `<= c`."""
+    return 2 * c + (0 if strict else 1)
+
+
+def constant(bound: int) -> int:
+    """The c of a finite raw bound."""
+    return bound >> 1
+
+
+def is_strict(bound: int) -> bool:
+    """True for `<`, false for `<=`."""
+    return not bound & 1
+
+
+def add(a: int, b: int) -> int:
+    """The bound of a sum from the bounds of its terms."""
+    if a >= INF or b >= INF:
+        return INF
+    return a + b - ((a | b) & 1)
+
+
+def complement(bound: int) -> int:
+    """The raw bound of `x_j - x_i` that holds exactly where `x_i - x_j` is not within the (finite) bound."""
+    return 1 - bound
+
+
+def _close(m: List[int], dim: int) -> bool:
+    """Make the matrix canonical in place (Floyd and Warshall); false if it holds no point."""
+    for k in range(dim):
+        row_k = m[k * dim : k * dim + dim]
+        for i in range(dim):
+            m_ik = m[i * dim + k]
+            if m_ik >= INF or i == k:
+                continue
+            at = i * dim
+            for m_kj in row_k:
+                if m_kj < INF:
+                    through = m_ik + m_kj - ((m_ik | m_kj) & 1)
+                    if through < m[at]:
+                        m[at] = through
+                at += 1
+        if any(m[i * dim + i] < LE_ZERO for i in range(dim)):
+            return False
+    return True
+
+
+@dataclass(frozen=True)
+class Dbm:
+    """A zone: `m[i * dim + j]` is the raw bound of `x_i - x_j`, row by row. `dim` is the number of clocks plus one.
+
+    Make one from `universe` or `zero` and the operations; the matrix must be canonical and not empty.
+    """
+
+    dim: int
+    m: Tuple[int, ...]
+
+    @staticmethod
+    def universe(dim: int) -> Dbm:
+        """All valuations: every clock >= 0."""
+        m = [INF] * (dim * dim)
+        for i in range(dim):
+            m[i] = m[i * dim + i] = LE_ZERO
+        return Dbm(dim, tuple(m))
+
+    @staticmethod
+    def zero(dim: int) -> Dbm:
+        """The one valuation with all clocks 0."""
+        return Dbm(dim, (LE_ZERO,) * (dim * dim))
+
+    @staticmethod
+    def of(dim: int, constraints: Iterable[Tuple[int, int, int]]) -> Optional[Dbm]:
+        """The valuations that satisfy all `(i, j, raw)`; None if there are none."""
+        return Dbm.universe(dim).constrained_all(constraints)
+
+    def constrained(self, i: int, j: int, bound: int) -> Optional[Dbm]:
+        """The points with `x_i - x_j` within the raw bound; None if there are none."""
+        dim, old = self.dim, self.m
+        if bound >= old[i * dim + j]:
+            return self
+        if add(old[j * dim + i], bound) < LE_ZERO:
+            return None
+        m = list(old)
+        row_j = old[j * dim : j * dim + dim]
+        for p in range(dim):
+            to_j = add(old[p * dim + i], bound)
+            if to_j >= INF:
+                continue
+            at = p * dim
+            for m_jq in row_j:
+                if m_jq < INF:
+                    through = to_j + m_jq - ((to_j | m_jq) & 1)
+                    if through < m[at]:
+                        m[at] = through
+                at += 1
+        return Dbm(dim, tuple(m))
+
+    def constrained_all(self, constraints: Iterable[Tuple[int, int, int]]) -> Optional[Dbm]:
+        """The points that satisfy all `(i, j, raw)`; None if there are none."""
+        zone: Optional[Dbm] = self
+        for i, j, bound in constraints:
+            if zone is None:
+                return None
+            zone = zone.constrained(i, j, bound)
+        return zone
+
+    def is_disjoint(self, other: Dbm) -> bool:
+        """True if the two have no point in common, as one pair of opposite bounds shows (may miss; never wrong)."""
+        dim, a, b = self.dim, self.m, other.m
+        for i in range(dim):
+            for j in range(dim):
+                x, y = a[i * dim + j], b[j * dim + i]
+                if x < INF and y < INF and x + y - ((x | y) & 1) < LE_ZERO:
+                    return True
+        return False
+
+    def has_gap(self, other: Dbm) -> bool:
+        """True if points not in either lie between the two, as one pair of opposite bounds shows."""
+        dim, a, b = self.dim, self.m, other.m
+        for i in range(dim):
+            for j in range(dim):
+                # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
+                if a[i * dim + j] + b[j * dim + i] < 1:
+                    return True
+        return False
+
+    def intersect(self, other: Dbm) -> Optional[Dbm]:
+        """The points in both; None if there are none."""
+        if self.is_disjoint(other):
+            return None
+        tighter = tuple(map(min, self.m, other.m))
+        if tighter == self.m:
+            return self
+        if tighter == other.m:
+            return other
+        m = list(tighter)
+        return Dbm(self.dim, tuple(m)) if _close(m, self.dim) else None
+
+    def hull(self, other: Dbm) -> Dbm:
+        """The smallest zone that includes both."""
+        return Dbm(self.dim, tuple(map(max, self.m, other.m)))
+
+    def includes(self, other: Dbm) -> bool:
+        """True if every point of the other is in this one."""
+        for mine, its in zip(self.m, other.m):
+            if its > mine:
+                return False
+        return True
+
+    def contains(self, point: Sequence[Number]) -> bool:
+        """True if the valuation is in the zone; `point[k]` is the value of clock k + 1."""
+        dim = self.dim
+        values = (Fraction(0), *point)
+        for i in range(dim):
+            for j in range(dim):
+                bound = self.m[i * dim + j]
+                if bound < INF:
+                    difference = values[i] - values[j]
+                    if not (difference < bound >> 1 or (bound & 1 and difference == bound >> 1)):
+                        return False
+        return True
+
+    def minus(self, other: Dbm) -> Tuple[Dbm, ...]:
+        """The points that are not in the other, as disjoint zones."""
+        if self.is_disjoint(other):
+            return (self,)
+        dim = self.dim
+        rest: Optional[Dbm] = self
+        pieces: List[Dbm] = []
+        for i in range(dim):
+            for j in range(dim):
+                bound = other.m[i * dim + j]
+                if rest is None or bound >= rest.m[i * dim + j]:
+                    continue
+                outside = rest.constrained(j, i, complement(bound))
+                if outside is not None:
+                    pieces.append(outside)
+                rest = rest.constrained(i, j, bound)
+        # No common point after all: then it is the whole, in one piece.
+        return tuple(pieces) if rest is not None else (self,)
+
+    def up(self) -> Dbm:
+        """The future: what is reached by letting time pass."""
+        m = list(self.m)
+        for i in range(1, self.dim):
+            m[i * self.dim] = INF
+        return Dbm(self.dim, tuple(m))
+
+    def up_within(self, delay: int) -> Dbm:
+        """What is reached after a time in [0, delay]."""
+        m = list(self.m)
+        for at in range(self.dim, self.dim * self.dim, self.dim):
+            if m[at] < INF:
+                m[at] += 2 * delay
+        return Dbm(self.dim, tuple(m))
+
+    def up_after(self, delay: int) -> Dbm:
+        """What is reached after a time strictly longer than delay."""
+        m = list(self.m)
+        for i in range(1, self.dim):
+            m[i * self.dim] = INF
+            m[i] = raw(constant(m[i]) - delay, strict=True)
+        return Dbm(self.dim, tuple(m))
+
+    def down(self) -> Dbm:
+        """The past: the valuations from which letting time pass reaches the zone."""
+        dim, m = self.dim, list(self.m)
+        for i in range(1, dim):
+            # Nothing bounds a clock from below but 0 and the other clocks' being >= 0.
+            m[i] = min(LE_ZERO, *(m[j * dim + i] for j in range(1, dim)))
+        return Dbm(dim, tuple(m))
+
+    def down_within(self, delay: int) -> Dbm:
+        """The valuations from which a time in [0, delay] reaches the zone."""
+        dim, m = self.dim, list(self.m)
+        for i in range(1, dim):
+            m[i] = min(LE_ZERO, self.m[i] + 2 * delay, *(m[j * dim + i] for j in range(1, dim)))
+        return Dbm(dim, tuple(m))
+
+    def lasting(self, delay: int) -> Optional[Dbm]:
+        """The points that are still in the zone at every time in [0, delay]; None if there are none."""
+        zone: Optional[Dbm] = self
+        for i in range(1, self.dim):
+            bound = self.m[i * self.dim]
+            if zone is not None and bound < INF:
+                zone = zone.constrained(i, 0, bound - 2 * delay)
+        return zone
+
+    def reset(self, indices: Iterable[int]) -> Dbm:
+        """The zone after these clocks are set to 0."""
+        dim, m = self.dim, list(self.m)
+        for i in indices:
+            for j in range(dim):
+                m[i * dim + j] = m[j]
+                m[j * dim + i] = m[j * dim]
+            m[i * dim + i] = LE_ZERO
+        return Dbm(dim, tuple(m))
+
+    def before_reset(self, indices: Iterable[int]) -> Optional[Dbm]:
+        """The valuations that setting these clocks to 0 takes into the zone; None if there are none."""
+        dim, clocks = self.dim, tuple(indices)
+        zone = self.constrained_all((i, 0, LE_ZERO) for i in clocks)
+        if zone is None:
+            return None
+        m = list(zone.m)
+        for i in clocks:
+            for j in range(dim):
+                m[i * dim + j] = INF
+                m[j * dim + i] = m[j * dim]
+            m[i] = m[i * dim + i] = LE_ZERO
+        return Dbm(dim, tuple(m))
+
+    def extrapolated(self, max_constants: Sequence[int]) -> Dbm:
+        """A zone that includes this one and forgets what no guard can see (ExtraM, Behrmann et al. 2006).
+
+        `max_constants[i]` is the largest constant that clock i is compared with; entry 0 is 0.
+        """
+        dim, m = self.dim, list(self.m)
+        for i in range(dim):
+            for j in range(dim):
+                at = i * dim + j
+                if i == j:
+                    continue
+                if m[at] > raw(max_constants[i], strict=False):
+                    m[at] = INF
+                elif m[at] < raw(-max_constants[j], strict=True):
+                    m[at] = raw(-max_constants[j], strict=True)
+        if tuple(m) == self.m:
+            return self
+        _close(m, dim)
+        return Dbm(dim, tuple(m))
