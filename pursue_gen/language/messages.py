@@ -1,0 +1,140 @@
+"""What a syntax error is called: what stands there, what was expected, and what to do."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Dict, FrozenSet, List
+
+from lark import Token
+
+from pursue_gen.diagnostics import Diagnostic, Span, error
+
+FORMS: Dict[str, str] = {
+    "POI": 'poi "a"',
+    "CONNECT": "connect a and b distance 3",
+    "EVENT": 'event "work" collaborative location a duration 6 (the last three are optional)',
+    "RULE": 'rule "order": first before second (or: first or second; use brackets to nest)',
+    "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
+    "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
+    "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
+    "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e · objective: bot1 never_with bot2",
+    "REACH_OBJECTIVE": "reach_objective: do e after 0 (after is optional)",
+}
+"""What each statement looks like, by the token that begins it."""
+
+STATEMENTS = frozenset(FORMS) | {"TAIL"}
+
+KEYWORDS: Dict[str, str] = {
+    "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
+    "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
+    "REACH_OBJECTIVE": "reach_objective", "AND": "and", "DISTANCE": "distance", "LOCATION": "location",
+    "DURATION": "duration", "COLLABORATIVE": "collaborative", "BEFORE": "before", "OR": "or",
+    "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
+    "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
+    "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
+    "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
+}  # fmt: skip
+"""The words of the language, by token."""
+
+_SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
+_OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
+_QUOTES = "“”„‟«»‘’‚'`´"
+
+
+def unknown_statement(token: Token, span: Span) -> Diagnostic:
+    """A statement that begins with no word that begins one."""
+    words = [KEYWORDS[kind] for kind in FORMS]
+    if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
+        return _unclosed(token, span)
+    close = _near(str(token), words)
+    hint = f"did you mean {close}?" if close else "a statement begins with " + _list(words)
+    return error("PML011", f"expected a statement, found {_shown(token)}", span, hint)
+
+
+def explain(chunk: List[Token], index: int, expected: FrozenSet[str], span: Span) -> Diagnostic:
+    """The token at `index` of the statement is none of the expected ones."""
+    token = chunk[index]
+    if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
+        return _unclosed(token, span)
+    message = f"expected {_in_words(expected)} after {_shown(chunk[index - 1])}, found {_shown(token)}"
+    return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk))
+
+
+def unfinished(chunk: List[Token], expected: FrozenSet[str], span: Span) -> Diagnostic:
+    """The statement ends too early; the span is that of its last token."""
+    end = Span(span.file, span.end_line, span.end_column, span.end_line, span.end_column + 1)
+    message = f"expected {_in_words(expected)} after {_shown(chunk[-1])}, but the statement ends here"
+    hint = "put a `)` for each `(`" if "RPAR" in expected else _form(chunk)
+    return error("PML010", message, end, hint)
+
+
+def _unclosed(token: Token, span: Span) -> Diagnostic:
+    if token.type == "UNCLOSED_NAME":
+        return error("PML012", "this name has no closing quote on its line", span, 'write it as "name"')
+    span = Span(span.file, span.line, span.column, span.line, span.column + 2)
+    return error("PML013", "this comment is never closed: expected `*/`", span, "close it with */ or use // for one line")
+
+
+def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
+    """What to do about the most frequent slips; empty where the form of the statement says it best."""
+    token, statement = chunk[index], chunk[0].type
+    text = str(token)
+    if token.type == "STRAY" and text in _QUOTES:
+        return 'use straight double quotes: "name"'
+    if token.type == "WORD" and "NAME" in expected:
+        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{text}"'
+    if token.type == "NAME" and "WORD" in expected:
+        return f"quotes stand only where a name is declared: write {text.strip(chr(34))} without them"
+    if token.type in KEYWORDS and "WORD" in expected:
+        return f"{text} is a word of the language and cannot be a name; choose another name"
+    if token.type == "NUMBER" and "WORD" in expected:
+        return "a name begins with a letter"
+    if token.type in ("BEFORE", "OR") and statement == "RULE":
+        return "put brackets around what belongs together: (first before second) before third"
+    if token.type == "RPAR":
+        return "this `)` has no `(`"
+    if token.type == "TRUE_IF" or token.type == "FALSE_IF" and "COMMA" in expected:
+        return "put a comma behind true or false: " + FORMS["STATE"]
+    close = _near(text, [KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS] + _starters(expected))
+    if close and token.type == "WORD":
+        return f"did you mean {close}?"
+    if token.type == "WORD" and "COMMA" in expected and chunk[index - 1].line == token.line:
+        return "put a comma between two names"
+    if statement == "OBJECTIVE" and token.type == "DO":
+        return "to have something done write reach_objective: do …"
+    if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID", "WORD"):
+        return "what must always hold is an objective: if … then … within … or avoid …"
+    return ""
+
+
+def _starters(expected: FrozenSet[str]) -> List[str]:
+    return [KEYWORDS[kind] for kind in FORMS] if "$END" in expected else []
+
+
+def _form(chunk: List[Token]) -> str:
+    return "the form is: " + FORMS[chunk[0].type] if chunk[0].type in FORMS else "delete it"
+
+
+def _near(word: str, words: List[str]) -> str:
+    lower = {w.lower(): w for w in words}
+    close = difflib.get_close_matches(word.lower(), list(lower), n=1, cutoff=0.7)
+    return lower[close[0]] if close else ""
+
+
+def _in_words(expected: FrozenSet[str]) -> str:
+    """The expected tokens as a person names them, in a fixed order, the end of the statement last."""
+    kinds = [kind for kind in (*_OTHERS, *_SIGNS, *KEYWORDS) if kind in expected]
+    if "WORD" in expected:
+        kinds = [kind for kind in kinds if kind != "HUMAN"]
+    words = [_OTHERS.get(kind) or _SIGNS.get(kind) or f"`{KEYWORDS[kind]}`" for kind in kinds if kind != "POSE"]
+    return _list(words + (["the end of the statement"] if "$END" in expected else []))
+
+
+def _list(words: List[str]) -> str:
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
+
+
+def _shown(token: Token) -> str:
+    text = str(token)
+    text = text if len(text) <= 30 else text[:29] + "…"
+    return {"NAME": f"the name {text}", "WORD": f"`{text}`", "POSE": "the pose"}.get(token.type, f"`{text}`")

@@ -1,0 +1,211 @@
+"""From a PuRSUE-ML text to a Scenario."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, List, Optional, Tuple, Union
+
+from lark import Token, Tree
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
+from pursue_gen.language import scenario as pml
+from pursue_gen.language.poses import read_pose
+from pursue_gen.language.syntax import read_statements, span_of
+
+Node = Union[Tree, Token, None]  # type: ignore[type-arg]
+MOST = 1_000_000
+"""The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A text as far as it could be read: the scenario (None after a syntax error) and what was found on the way."""
+
+    scenario: Optional[pml.Scenario]
+    diagnostics: Tuple[Diagnostic, ...]
+
+
+def load(path: Union[str, "os.PathLike[str]"]) -> pml.Scenario:
+    """The scenario in a file, checked. Raises PursueError with every error; warnings are left to `check`."""
+    from pursue_gen.language.checks import check_reading
+
+    file = os.fspath(path)
+    reading = read(read_text(file), file)
+    return _without_errors(reading.scenario, check_reading(reading))
+
+
+def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
+    """The scenario in a text, not checked: `file` is what messages call it, `name` is its stem unless given.
+
+    Raises PursueError with every syntax error, and with what a Scenario cannot hold (two objectives of a kind).
+    """
+    reading = read(text, file, name)
+    return _without_errors(reading.scenario, reading.diagnostics)
+
+
+def read_text(file: str) -> str:
+    """The text of a scenario file. Raises PursueError where it cannot be read or is not text."""
+    try:
+        return Path(file).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as problem:
+        hint = "save the scenario as plain text in UTF-8; a word processor's file is not plain text"
+        message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
+        raise PursueError([error("PML002", message, hint=hint)]) from None
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or str(problem)
+        hint = "name a scenario file, by convention *.pur"
+        raise PursueError([error("PML001", f"cannot read {file}: {reason}", hint=hint)], exit_status=2) from None
+
+
+def read(text: str, file: str, name: Optional[str] = None) -> Reading:
+    """The scenario in a text and every finding about its syntax, in file order; never raises."""
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    statements, findings = read_statements(text, file)
+    builder = _Builder(file)
+    parts: List[Any] = [part for part in (builder.part(statement) for statement in statements) if part is not None]
+    findings += builder.findings
+    fatal = any(finding.severity is Severity.ERROR for finding in findings)
+    safety = [part for part in parts if isinstance(part, (pml.Respond, pml.Avoid, pml.NeverWith))]
+    reach = [part for part in parts if isinstance(part, pml.Reach)]
+    for extra in safety[1:] + reach[1:]:
+        findings.append(_second_objective(extra, (reach if isinstance(extra, pml.Reach) else safety)[0]))
+
+    def only(kind: type) -> Tuple[Any, ...]:
+        return tuple(part for part in parts if isinstance(part, kind))
+
+    value = pml.Scenario(
+        name=Path(file).stem if name is None else name,
+        file=file,
+        text=text,
+        pois=only(pml.Poi),
+        connections=only(pml.Connection),
+        events=only(pml.Event),
+        rules=only(pml.Rule),
+        states=only(pml.State),
+        dependencies=only(pml.Dependency),
+        agents=only(pml.Agent),
+        safety=safety[0] if safety else None,
+        reach=reach[0] if reach else None,
+    )
+    return Reading(None if fatal else value, in_order(findings))
+
+
+def _without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
+    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
+    if errors or scenario is None:
+        raise PursueError(errors)
+    return scenario
+
+
+def _second_objective(extra: Union[pml.Safety, pml.Reach], first: Union[pml.Safety, pml.Reach]) -> Diagnostic:
+    kind = "reach_objective" if isinstance(extra, pml.Reach) else "objective"
+    message = f"a second {kind}: a scenario has one at most, and line {first.span.line} has it already"
+    return error("PML170", message, extra.span, "keep one; one objective and one reach_objective together are allowed")
+
+
+class _Builder:
+    """Makes the scenario's parts from the trees of statements, and notes what is wrong with their numbers and poses."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.findings: List[Diagnostic] = []
+
+    def part(self, tree: Node) -> Any:
+        """The part that a statement declares; None for the tail that the original's tools leave."""
+        return None if isinstance(tree, Token) else getattr(self, "_" + tree.data)(*tree.children, span=self._span(tree))
+
+    def _span(self, tree: Tree) -> Span:  # type: ignore[type-arg]
+        meta = tree.meta
+        return Span(self.file, meta.line, meta.column, meta.end_line, meta.end_column)
+
+    def _ref(self, tree: Tree) -> pml.Ref:  # type: ignore[type-arg]
+        token = tree.children[0]
+        return pml.Ref(str(token), span_of(token, self.file))
+
+    def _refs(self, tree: Optional[Tree]) -> Tuple[pml.Ref, ...]:  # type: ignore[type-arg]
+        return tuple(self._ref(child) for child in tree.children) if tree is not None else ()
+
+    def _number(self, token: Token) -> int:
+        """The token's value; 1 after a complaint."""
+        if token.isdigit() and token.isascii():
+            if len(token.lstrip("0")) <= len(str(MOST)) and int(token) <= MOST:
+                return int(token)
+            message, hint = f"{str(token)[:20]} is too large: {MOST} is the largest number", "choose a larger unit"
+        else:
+            message = f"expected a whole number, found {str(token)[:40]}"
+            hint = "write digits only; for halves or tenths choose a smaller unit and multiply every number of that kind"
+        self.findings.append(error("PML014", message, span_of(token, self.file), hint))
+        return 1
+
+    def _poi(self, name: Token, pose: Optional[Token], span: Span) -> pml.Poi:
+        value = None
+        if pose is not None:
+            value, findings = read_pose(str(pose), span_of(pose, self.file))
+            self.findings += findings
+        return pml.Poi(_bare(name), value, span_of(name, self.file))
+
+    def _connection(self, a: Any, b: Any, distance: Token, span: Span) -> pml.Connection:
+        return pml.Connection(self._ref(a).name, self._ref(b).name, self._number(distance), span)
+
+    def _event(self, name: Token, together: Optional[Token], location: Any, duration: Any, span: Span) -> pml.Event:
+        return pml.Event(
+            _bare(name),
+            together is not None,
+            None if location is None else self._ref(location),
+            None if duration is None else self._number(duration),
+            span_of(name, self.file),
+        )
+
+    def _rule(self, name: Token, body: Any, span: Span) -> pml.Rule:
+        return pml.Rule(_bare(name), self._body(body), span_of(name, self.file))
+
+    def _body(self, tree: Tree) -> pml.RuleBody:  # type: ignore[type-arg]
+        if tree.data == "ref":
+            return self._ref(tree)
+        first, second = (self._body(child) for child in tree.children)
+        kind = pml.Sequence if tree.data == "sequence" else pml.Choice
+        return kind(first, second, self._span(tree))
+
+    def _state(self, name: Token, initially: Token, sets: Any, span: Span) -> pml.State:
+        true_if = false_if = None
+        if sets is not None and sets.data == "sets":
+            true_if, false_if = sets.children
+        elif sets is not None:
+            (false_if,) = sets.children
+        place = span_of(name, self.file)
+        return pml.State(_bare(name), initially.type == "TRUE", self._refs(true_if), self._refs(false_if), place)
+
+    def _dependency(self, event: Any, state: Any, value: Token, span: Span) -> pml.Dependency:
+        return pml.Dependency(self._ref(event), self._ref(state), value.type == "IS_TRUE", span)
+
+    def _agent(
+        self, name: Token, human: Any, controllable: Any, mobile: Any, location: Any, can: Any, reacts: Any, span: Span
+    ) -> pml.Agent:
+        return pml.Agent(
+            name=_bare(name),
+            human=human is not None,
+            controllable=controllable is not None,
+            mobile=None if mobile is None else self._number(mobile),
+            location=self._ref(location),
+            can_do=self._refs(can),
+            reacts_to=self._refs(reacts),
+            span=span_of(name, self.file),
+        )
+
+    def _safety(self, objective: Tree, span: Span) -> pml.Safety:  # type: ignore[type-arg]
+        children = objective.children
+        if objective.data == "respond":
+            return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)
+        if objective.data == "avoid":
+            return pml.Avoid(self._ref(children[0]), span)
+        return pml.NeverWith(self._ref(children[0]), self._ref(children[1]), span)
+
+    def _reach(self, event: Any, after: Optional[Token], span: Span) -> pml.Reach:
+        return pml.Reach(self._ref(event), 0 if after is None else self._number(after), span)
+
+
+def _bare(name: Token) -> str:
+    """The name without its quotes."""
+    return str(name)[1:-1]
