@@ -1,0 +1,136 @@
+"""The small texts of a plan, both ways: numbers, clock constraints, zones, guards and assignments.
+
+A constraint stands as UPPAAL-TIGA prints it: `1<C`, `C<=5`, `A-B<-2`, `A<=B`, `C==3`. Bounds of our own plans need not
+be whole: they stand as decimals where that is exact (`1.1`), else as fractions (`4/3`).
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import FrozenSet, Iterator, List, Optional, Tuple
+
+from pursue_gen.synthesis.strategy import Constraint, Zone
+from pursue_gen.tga.network import Edge, Guard
+
+ALWAYS = "true"
+"""How the zone without constraints is written."""
+
+# Eighteen digits are more than any model has, and bound the work on a damaged file.
+_NUMBER = r"-?\d{1,18}(?:\.\d{1,18}|/0{0,17}[1-9]\d{0,17})?"
+_CLOCKS = r"([A-Za-z_]\w*)(?:-([A-Za-z_]\w*))?"
+_CONSTRAINT = re.compile(rf"(?:({_NUMBER})|{_CLOCKS})(<=|<|==|>=|>)(?:({_NUMBER})|{_CLOCKS})")
+
+
+def number_text(number: Fraction) -> str:
+    """The number as an integer, as a decimal where that is exact, else as a fraction `n/d`."""
+    rest, twos, fives = number.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    if rest != 1:
+        return f"{number.numerator}/{number.denominator}"
+    places = max(twos, fives)
+    if places == 0:
+        return str(number.numerator)
+    digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")
+    return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def constraint_text(constraint: Constraint, space: str = "") -> str:
+    """The constraint as TIGA prints it; `space` stands around the operators."""
+    left, right, bound = constraint.left, constraint.right, constraint.bound
+    op = f"{space}{'<' if constraint.strict else '<='}{space}"
+    if left is None:
+        return f"{number_text(-bound)}{op}{right}"
+    if right is None:
+        return f"{left}{op}{number_text(bound)}"
+    if bound == 0:
+        return f"{left}{op}{right}"
+    return f"{left}{space}-{space}{right}{op}{number_text(bound)}"
+
+
+def _equality_text(constraint: Constraint, space: str) -> str:
+    """The constraint with its `<=` made `==`."""
+    return constraint_text(constraint, space).replace("<=", "==")
+
+
+def _is_equality(one: Constraint, other: Constraint) -> bool:
+    """True where `one` and then `other` is what the reader makes of an equality."""
+    return (
+        one.left is not None
+        and not (one.strict or other.strict)
+        and (other.left, other.right, other.bound) == (one.right, one.left, -one.bound)
+    )
+
+
+def constraint_texts(zone: Zone, space: str = "") -> Iterator[str]:
+    """The zone's constraints as texts, in order; a pair that fixes a value becomes one equality."""
+    index = 0
+    while index < len(zone):
+        if index + 1 < len(zone) and _is_equality(zone[index], zone[index + 1]):
+            yield _equality_text(zone[index], space)
+            index += 2
+        else:
+            yield constraint_text(zone[index], space)
+            index += 1
+
+
+def zones_text(zones: Tuple[Zone, ...]) -> str:
+    """The zones as TIGA prints a federation: `(a && b) || (c)`, or `true`."""
+    if zones == ((),):
+        return ALWAYS
+    return " || ".join(f"({' && '.join(constraint_texts(zone)) or ALWAYS})" for zone in zones)
+
+
+def read_constraint(text: str) -> Optional[Tuple[Constraint, ...]]:
+    """The constraint in a text without blanks; an equality makes two. None where the text is no constraint on clocks."""
+    match = _CONSTRAINT.fullmatch(text)
+    if not match:
+        return None
+    low, a, b, op, high, c, d = match.groups()
+    plus: List[str] = [clock for clock in (a, d) if clock]
+    minus: List[str] = [clock for clock in (b, c) if clock]
+    if len(plus) > 1 or len(minus) > 1 or not plus + minus or plus == minus:
+        return None
+    left, right = (plus[0] if plus else None), (minus[0] if minus else None)
+    bound = Fraction(high or 0) - Fraction(low or 0)
+    upper = Constraint(left, right, bound, op == "<")
+    lower = Constraint(right, left, -bound, op == ">")
+    if op == "==":
+        # `3 == C` means `C == 3`: one order, so that what was read is written the same.
+        return (upper, lower) if left is not None else (lower, upper)
+    return (upper,) if op in ("<", "<=") else (lower,)
+
+
+def guard_text(guard: Guard) -> str:
+    """The guard as TIGA prints it (`C > 1 && P == 2`), `1` where there is none."""
+    parts = [f"{bound.clock} {bound.op} {bound.bound}" for bound in guard.clocks]
+    for clause in guard.integers:
+        tests = " || ".join(f"{test.variable} == {test.value}" for test in clause)
+        parts.append(f"({tests})" if len(clause) > 1 else tests)
+    return " && ".join(parts) or "1"
+
+
+def assign_text(edge: Edge) -> str:
+    """The edge's assignments and resets as TIGA prints them (`P := 2, C := 0`), `1` where there are none."""
+    parts = [f"{variable} := {value}" for variable, value in edge.assign]
+    return ", ".join(parts + [f"{clock} := 0" for clock in edge.resets]) or "1"
+
+
+def sync_text(edge: Edge) -> str:
+    """`channel!`, `channel?` or `tau`."""
+    return "tau" if edge.sync is None else f"{edge.sync.channel}{'!' if edge.sync.sends else '?'}"
+
+
+def guard_meaning(text: str) -> FrozenSet[FrozenSet[str]]:
+    """What a guard's text says, whatever its order, blanks and parentheses: the set of its clauses."""
+    bare = re.sub(r"[\s()]", "", text)
+    clauses = (frozenset(part.split("||")) for part in bare.split("&&"))
+    return frozenset(clauses) - {frozenset(("1",)), frozenset((ALWAYS,)), frozenset(("",))}
+
+
+def assign_meaning(text: str) -> FrozenSet[str]:
+    """What an assignment's text says, whatever its order and blanks."""
+    return frozenset(re.sub(r"\s", "", text).replace(":=", "=").split(",")) - {"1", ""}
