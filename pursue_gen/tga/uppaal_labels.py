@@ -30,7 +30,7 @@ class _Junction:
     """All of the parts (op `&&`) or any of them (op `||`)."""
 
     op: str
-    parts: Tuple["_Expression", ...]
+    parts: Tuple[_Expression, ...]
 
 
 _Expression = Union[_Comparison, _Junction]

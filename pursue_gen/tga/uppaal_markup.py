@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import Dict, List, Match, NoReturn, Optional
+from typing import Dict, List, Match, NoReturn, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 
@@ -37,7 +37,7 @@ class Source:
         """Raises a PursueError at these characters."""
         raise PursueError([error(code, message, self.span(start, end), hint)])
 
-    def _place(self, offset: int) -> "tuple[int, int]":
+    def _place(self, offset: int) -> Tuple[int, int]:
         before = self.text[:offset]
         return before.count("\n") + 1, offset - (before.rfind("\n") + 1) + 1
 
@@ -52,13 +52,13 @@ class Element:
     start: int
     end: int
     text: str = ""
-    children: List["Element"] = field(default_factory=list)
+    children: List[Element] = field(default_factory=list)
 
-    def all(self, name: str) -> List["Element"]:
+    def all(self, name: str) -> List[Element]:
         """The children of that name."""
         return [child for child in self.children if child.name == name]
 
-    def one(self, name: str) -> Optional["Element"]:
+    def one(self, name: str) -> Optional[Element]:
         """The first child of that name, or None."""
         return next(iter(self.all(name)), None)
 

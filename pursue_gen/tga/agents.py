@@ -1,0 +1,155 @@
+"""Agents: where they can be, how they move, what they do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterator, Optional, Sequence, Tuple
+
+from pursue_gen.language.scenario import Agent, Event, Scenario
+from pursue_gen.tga import names
+from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
+from pursue_gen.tga.positions import Positions, directions
+from pursue_gen.tga.rules import Turns
+
+_PAUSE = 1
+"""Time units that an agent rests after an action or a movement, before it can begin the next."""
+
+_WINDOW = 1
+"""Time units within which an action or a movement that may end does end."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What an agent's guards read: the scenario, its position numbers, and each rule's variable with its turns."""
+
+    scenario: Scenario
+    positions: Positions
+    rules: Tuple[Tuple[str, Turns], ...]
+
+    def event(self, name: str) -> Event:
+        """The event of that name. Raises KeyError."""
+        for event in self.scenario.events:
+            if event.name == name:
+                return event
+        raise KeyError(name)
+
+    def turn(self, channel: str) -> Tuple[Clause, ...]:
+        """It is the channel's turn in every rule that names it."""
+        return tuple(
+            tuple(Test(variable, number) for number in turns[channel]) for variable, turns in self.rules if channel in turns
+        )
+
+    def dependencies(self, event: str) -> Tuple[Clause, ...]:
+        """Every state that the event depends on has the value it needs."""
+        return tuple(
+            (Test(names.state_value(dependency.state.name), int(dependency.value)),)
+            for dependency in self.scenario.dependencies
+            if dependency.event.name == event
+        )
+
+    def company(self, event: Event, doer: str, position: int) -> Tuple[Clause, ...]:
+        """Someone else who reacts to a collaborative event is at that position; no condition for other events."""
+        if not event.collaborative:
+            return ()
+        others = (agent.name for agent in self.scenario.agents if _reacts(agent, event.name) and agent.name != doer)
+        return (tuple(Test(names.agent_position(other), position) for other in others),)
+
+
+def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
+    """The automaton of an agent. Edges of an agent that is not controllable are the environment's."""
+    shape = _Shape(agent, around)
+    ways = shape.ways()
+    locations = [Location(poi) for poi in shape.pois()]
+    locations += [Location(names.going(a, b), (shape.within(cost),)) for a, b, cost in ways]
+    edges = [edge for a, b, cost in ways for edge in shape.movement(a, b, cost)]
+    for name in dict.fromkeys(ref.name for ref in agent.can_do):
+        event = around.event(name)
+        if event.duration is None:
+            edges += shape.instantaneous(event, ways)
+        else:
+            locations += [Location(names.doing(name, poi), (shape.within(event.duration),)) for poi in shape.places(event)]
+            edges += [edge for poi in shape.places(event) for edge in shape.lasting(event, event.duration, poi)]
+    return Automaton(agent.name, tuple(locations), agent.location.name, tuple(edges))
+
+
+def _reacts(agent: Agent, event: str) -> bool:
+    return any(ref.name == event for ref in agent.reacts_to)
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """One agent's parts."""
+
+    agent: Agent
+    around: Surroundings
+
+    @property
+    def clock(self) -> str:
+        return names.agent_clock(self.agent.name)
+
+    def pois(self) -> Tuple[str, ...]:
+        """The POIs at which the agent can ever be, as far as being mobile goes."""
+        if self.agent.mobile is None:
+            return (self.agent.location.name,)
+        return tuple(poi.name for poi in self.around.scenario.pois)
+
+    def ways(self) -> Tuple[Tuple[str, str, int], ...]:
+        """From, to, and the time units that it takes: both directions of each connection."""
+        if self.agent.mobile is None:
+            return ()
+        return tuple(
+            (a, b, connection.distance * self.agent.mobile)
+            for connection in self.around.scenario.connections
+            for a, b in directions(connection)
+        )
+
+    def places(self, event: Event) -> Tuple[str, ...]:
+        """The POIs at which the agent can do an event."""
+        return tuple(poi for poi in self.pois() if event.location is None or event.location.name == poi)
+
+    def within(self, time: int) -> ClockBound:
+        """The invariant of something that takes that long."""
+        return ClockBound(self.clock, "<=", time + _WINDOW)
+
+    def movement(self, a: str, b: str, time: int) -> Tuple[Edge, Edge]:
+        """Setting off from a and arriving at b."""
+        codes, on_the_way = self.around.positions, names.going(a, b)
+        start = self._edge(a, on_the_way, names.movement(self.agent.name, a, b), _PAUSE, (), codes.going(a, b))
+        return start, self._edge(on_the_way, b, None, time, (), codes.at(b))
+
+    def lasting(self, event: Event, duration: int, poi: str) -> Tuple[Edge, Edge]:
+        """Beginning and ending an event at a POI."""
+        codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
+        conditions = self._conditions(event, codes.at(poi))
+        start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
+        return start, self._edge(at_work, poi, end, duration, self.around.turn(end), codes.at(poi))
+
+    def instantaneous(self, event: Event, ways: Sequence[Tuple[str, str, int]]) -> Iterator[Edge]:
+        """Doing an event at POIs, and on the way where it has no location (company is then met head-on)."""
+        codes = self.around.positions
+        for poi in self.places(event):
+            yield self._edge(poi, poi, event.name, _PAUSE, self._conditions(event, codes.at(poi)), None)
+        if event.location is None:
+            for a, b, _ in ways:
+                here = names.going(a, b)
+                guard = Guard((ClockBound(self.clock, ">", 0),), self._conditions(event, codes.going(b, a)))
+                yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)
+
+    def _conditions(self, event: Event, company_at: int) -> Tuple[Clause, ...]:
+        around = self.around
+        company = around.company(event, self.agent.name, company_at)
+        return company + around.turn(event.name) + around.dependencies(event.name)
+
+    def _edge(
+        self, source: str, target: str, channel: Optional[str], after: int, conditions: Tuple[Clause, ...], position: Optional[int]
+    ) -> Edge:
+        """An edge that needs the clock to be past `after`, resets it and, with a position, says where the agent is."""
+        return Edge(
+            source,
+            target,
+            Guard((ClockBound(self.clock, ">", after),), conditions),
+            None if channel is None else Sync(channel, sends=True),
+            () if position is None else ((names.agent_position(self.agent.name), position),),
+            (self.clock,),
+            self.agent.controllable,
+        )

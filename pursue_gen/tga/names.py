@@ -1,0 +1,56 @@
+"""The names of the network: one place, because plans, the observer and the controllers all meet them."""
+
+from __future__ import annotations
+
+from pursue_gen.language.scenario import Event
+
+CLOCK_OBJECTIVE = "Cobj"
+CLOCK_REACH = "Creach"
+OBJECTIVE = "obj"
+REACH = "reachObj"
+STATES = "states"
+
+
+def agent_clock(agent: str) -> str:
+    """The clock of an agent: how long since its last action or movement began or ended."""
+    return f"C{agent}"
+
+
+def agent_position(agent: str) -> str:
+    """The variable that holds where an agent is."""
+    return f"P{agent}"
+
+
+def rule_turn(rule: str) -> str:
+    """The variable that holds the number of a rule's location."""
+    return f"P{rule}"
+
+
+def state_value(state: str) -> str:
+    """The variable that holds a state, 0 or 1."""
+    return f"S{state}"
+
+
+def movement(agent: str, a: str, b: str) -> str:
+    """The channel on which an agent sets off from a to b."""
+    return f"{agent}_{a}2{b}"
+
+
+def going(a: str, b: str) -> str:
+    """The location on the way from a to b."""
+    return f"going_{a}_to_{b}"
+
+
+def doing(event: str, poi: str) -> str:
+    """The location at work at a POI."""
+    return f"doing_{event}_in_{poi}"
+
+
+def done(event: str) -> str:
+    """The channel on which an event with a duration ends."""
+    return f"{event}DONE"
+
+
+def has_happened(event: Event) -> str:
+    """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
+    return event.name if event.duration is None else done(event.name)

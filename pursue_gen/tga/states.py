@@ -1,0 +1,22 @@
+"""States: one automaton that keeps every state's variable."""
+
+from __future__ import annotations
+
+from typing import Optional, Sequence
+
+from pursue_gen.language.scenario import State
+from pursue_gen.tga.names import STATES, state_value
+from pursue_gen.tga.network import Automaton, Edge, Location, Sync
+
+_BASE = "base"
+
+
+def states_automaton(states: Sequence[State]) -> Optional[Automaton]:
+    """The automaton of all states; None where no event sets one."""
+    edges = tuple(
+        Edge(_BASE, _BASE, sync=Sync(event.name, sends=False), assign=((state_value(state.name), value),))
+        for state in states
+        for value, events in ((1, state.true_if), (0, state.false_if))
+        for event in events
+    )
+    return Automaton(STATES, (Location(_BASE),), _BASE, edges) if edges else None

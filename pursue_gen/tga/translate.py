@@ -1,0 +1,89 @@
+"""From a scenario to a network of timed game automata (what the original calls DSL2UP)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Mapping, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.tga import names
+from pursue_gen.tga.agents import Surroundings, agent_automaton
+from pursue_gen.tga.network import Network
+from pursue_gen.tga.objectives import reach_automaton, safety_automaton
+from pursue_gen.tga.positions import directions, positions
+from pursue_gen.tga.rules import rule_automaton
+from pursue_gen.tga.states import states_automaton
+
+
+def translate(scenario: Scenario) -> Network:
+    """The network of a scenario that has passed the checks of the language.
+
+    It is the original's game: the ends of a controllable agent's movements and actions are controllable. Raises
+    PursueError where two names of the scenario lead to one name of the network.
+    """
+    codes = positions(scenario.pois, scenario.connections)
+    lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
+    rules = [rule_automaton(rule, lasting) for rule in scenario.rules]
+    turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
+    around = Surroundings(scenario, codes, turns)
+    happened = {event.name: names.has_happened(event) for event in scenario.events}
+    states = states_automaton(scenario.states)
+    automata = [states] if states else []
+    automata += [agent_automaton(agent, around) for agent in scenario.agents]
+    automata += [safety_automaton(scenario.safety, happened, codes)] if scenario.safety else []
+    automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
+    automata += [automaton for automaton, _ in rules]
+    network = Network(_clocks(scenario), _variables(scenario, codes.pois), _channels(scenario), tuple(automata))
+    _check_names(network)
+    return network
+
+
+def translation_notes(scenario: Scenario) -> Tuple[Diagnostic, ...]:
+    """Warnings about a scenario's network: where it departs from the numbers that the original would use."""
+    note = positions(scenario.pois, scenario.connections).note
+    return (note,) if note else ()
+
+
+def _clocks(scenario: Scenario) -> Tuple[str, ...]:
+    clocks = [names.agent_clock(agent.name) for agent in scenario.agents]
+    clocks += [names.CLOCK_OBJECTIVE] if scenario.safety else []
+    clocks += [names.CLOCK_REACH] if scenario.reach else []
+    return tuple(clocks)
+
+
+def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:
+    variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules]
+    variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
+    variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
+    return tuple(variables)
+
+
+def _channels(scenario: Scenario) -> Tuple[str, ...]:
+    channels = [
+        names.movement(agent.name, a, b)
+        for agent in scenario.agents
+        if agent.mobile is not None
+        for connection in scenario.connections
+        for a, b in directions(connection)
+    ]
+    for event in scenario.events:
+        channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]
+    return tuple(channels)
+
+
+def _check_names(network: Network) -> None:
+    """UPPAAL has one space of names for clocks, variables, channels and automata; locations have one per automaton."""
+    shared = [*network.clocks, *(variable for variable, _ in network.variables), *network.channels]
+    shared += [automaton.name for automaton in network.automata]
+    spaces = [("the network", shared)]
+    spaces += [(a.name, [location.name for location in a.locations]) for a in network.automata]
+    hint = "rename one of the agents, POIs, events, rules or states that it is made of"
+    problems = [
+        error("TGA010", f"the name {name} would stand for {count} things in {space}", hint=hint)
+        for space, used in spaces
+        for name, count in Counter(used).items()
+        if count > 1
+    ]
+    if problems:
+        raise PursueError(problems)
