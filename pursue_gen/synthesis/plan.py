@@ -197,15 +197,15 @@ class _Reader:
 
 
 class _Open:
-    """The block, and in it the command, that is being read."""
+    """The block, and in it the command, that is being read; `place` is the last line of that command."""
 
-    def __init__(self, state: DiscreteState, line: int) -> None:
+    def __init__(self, state: DiscreteState) -> None:
         self.state = state
-        self.line = line
         self.wait: Tuple[Zone, ...] = ()
         self.commands: List[Command] = []
         self.zones: Tuple[Zone, ...] = ()
         self.moves: Tuple[Move, ...] = ()
+        self.place = (0, "")
 
 
 def read_plan(text: str, network: Network, file: str) -> Strategy:
@@ -252,7 +252,7 @@ def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:
     if state in seen:
         reader.fail("PLN006", "the plan has this state twice", _RUN_AGAIN)
     seen.add(state)
-    return _Open(state, reader.line)
+    return _Open(state)
 
 
 def _continue(reader: _Reader, opened: _Open, line: str) -> None:
@@ -261,6 +261,7 @@ def _continue(reader: _Reader, opened: _Open, line: str) -> None:
     if command:
         _finish_command(reader, opened)
         opened.zones, opened.moves = reader.zones(command.group(1)), (reader.move(command.group(2)),)
+        opened.place = (reader.line, reader.text)
         return
     wait = _WAIT.fullmatch(line)
     if wait:
@@ -268,6 +269,7 @@ def _continue(reader: _Reader, opened: _Open, line: str) -> None:
         opened.wait += reader.zones(wait.group(1))
     elif opened.moves and "->" in line and not line.startswith(("When", "While")):
         opened.moves += (reader.move(line),)
+        opened.place = (reader.line, reader.text)
     else:
         reader.fail("PLN004", "this line is cut or damaged; expected `While you are in …, wait.`, "
                     "`When you are in …, take transition …` or a transition", _RUN_AGAIN)
@@ -276,7 +278,10 @@ def _continue(reader: _Reader, opened: _Open, line: str) -> None:
 def _finish_command(reader: _Reader, opened: _Open) -> None:
     """Adds the command whose last line has been read."""
     if opened.moves:
+        here = (reader.line, reader.text)
+        reader.line, reader.text = opened.place
         reader.check_joint(opened.state, opened.moves)
+        reader.line, reader.text = here
         opened.commands.append(Command(opened.zones, opened.moves))
         opened.moves = ()
 
