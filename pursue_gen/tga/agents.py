@@ -51,8 +51,15 @@ class Surroundings:
         """Someone else who reacts to a collaborative event is at that position; no condition for other events."""
         if not event.collaborative:
             return ()
-        others = (agent.name for agent in self.scenario.agents if _reacts(agent, event.name) and agent.name != doer)
-        return (tuple(Test(names.agent_position(other), position) for other in others),)
+        return (tuple(Test(names.agent_position(other), position) for other in self.others(event, doer)),)
+
+    def can_ever_do(self, agent: Agent, event: Event) -> bool:
+        """False for a collaborative event that nobody but the agent reacts to: its guard could never be true."""
+        return not event.collaborative or bool(self.others(event, agent.name))
+
+    def others(self, event: Event, doer: str) -> Tuple[str, ...]:
+        """The agents but the doer who react to an event."""
+        return tuple(agent.name for agent in self.scenario.agents if _reacts(agent, event.name) and agent.name != doer)
 
 
 def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
@@ -64,6 +71,8 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
     edges = [edge for a, b, cost in ways for edge in shape.movement(a, b, cost)]
     for name in dict.fromkeys(ref.name for ref in agent.can_do):
         event = around.event(name)
+        if not around.can_ever_do(agent, event):
+            continue
         if event.duration is None:
             edges += shape.instantaneous(event, ways)
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Mapping, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
@@ -40,9 +40,16 @@ def translate(scenario: Scenario) -> Network:
 
 
 def translation_notes(scenario: Scenario) -> Tuple[Diagnostic, ...]:
-    """Warnings about a scenario's network: where it departs from the numbers that the original would use."""
-    note = positions(scenario.pois, scenario.connections).note
-    return (note,) if note else ()
+    """Warnings: position numbers that are not the original's, and actions that the network leaves out."""
+    codes = positions(scenario.pois, scenario.connections)
+    around = Surroundings(scenario, codes, ())
+    notes = [codes.note] if codes.note else []
+    for agent in scenario.agents:
+        for ref in agent.can_do:
+            if not around.can_ever_do(agent, around.event(ref.name)):
+                message = f"{agent.name} can never do {ref.name}: it is collaborative and no other agent reacts to it"
+                notes.append(warning("TGA013", message, ref.span, f"let another agent react to {ref.name}"))
+    return tuple(notes)
 
 
 def _clocks(scenario: Scenario) -> Tuple[str, ...]:

@@ -35,6 +35,8 @@ class _Junction:
 
 _Expression = Union[_Comparison, _Junction]
 
+_CONSTANTS = {"true": _Junction("&&", ()), "false": _Junction("||", ())}
+
 Update = Tuple[Tuple[Tuple[str, int], ...], Tuple[str, ...]]
 """Assignments of variables, and clocks that are reset."""
 
@@ -141,7 +143,7 @@ def _split(words: Sequence[str], separator: str) -> List[List[str]]:
 
 def _conjuncts(text: str) -> Tuple[_Expression, ...]:
     words = [_WORDS.get(word, word) for word in tokens(text)]
-    if not words or words == ["true"]:
+    if not words:
         return ()
     expression, rest = _junction(words, "||")
     if rest:
@@ -173,6 +175,8 @@ def _operand(words: List[str]) -> Tuple[_Expression, List[str]]:
         if rest[:1] != [")"]:
             raise ValueError("a parenthesis is not closed")
         return expression, rest[1:]
+    if words and words[0] in _CONSTANTS:
+        return _CONSTANTS[words[0]], words[1:]
     if len(words) < 3 or not _NAME.match(words[0]):
         raise ValueError(f"'{' '.join(words[:3])}' stands where 'name operator number' was expected")
     length = 4 if words[2] == "-" else 3
@@ -182,12 +186,11 @@ def _operand(words: List[str]) -> Tuple[_Expression, List[str]]:
 
 
 def _alternatives(expression: _Expression) -> Tuple[_Comparison, ...]:
-    comparisons = []
-    for part in _parts(expression, "||"):
-        if not isinstance(part, _Comparison):
-            raise ValueError("a conjunction inside an || is not supported: only tests 'variable == number' may stand there")
-        comparisons.append(part)
-    return tuple(comparisons)
+    parts = _parts(expression, "||")
+    comparisons = tuple(part for part in parts if isinstance(part, _Comparison))
+    if len(comparisons) < len(parts):
+        raise ValueError("an && inside an || is not supported: only tests 'variable == number' may stand there")
+    return comparisons
 
 
 def _test(comparison: _Comparison, names: Names) -> Test:
