@@ -2,18 +2,157 @@
 
 from __future__ import annotations
 
-from typing import Tuple
+import os
+from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Tuple, Union
 
-from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.parser import Reading, read
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
+from pursue_gen.language.behaviour import check_events, check_rules, component
+from pursue_gen.language.names import check_names, check_references
+from pursue_gen.language.parser import Reading, read, read_text, without_errors
+from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
+
+_LONGEST = 10_000_000
+"""The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
+
+
+def load(path: Union[str, os.PathLike[str]]) -> Scenario:
+    """The scenario in a file, checked. Raises PursueError with every error; warnings are left to `check`."""
+    file = os.fspath(path)
+    reading = read(read_text(file), file)
+    return without_errors(reading.scenario, check_reading(reading))
 
 
 def check(scenario: Scenario) -> Tuple[Diagnostic, ...]:
     """Every error and warning about a scenario, in file order; those about its text (poses, objectives) too."""
-    return check_reading(read(scenario.text, scenario.file, scenario.name))
+    findings = read(scenario.text, scenario.file, scenario.name).diagnostics if scenario.text else ()
+    return check_reading(Reading(scenario, findings))
 
 
 def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     """Every finding about a text that was read; only those about its syntax where there are errors in that."""
-    return reading.diagnostics
+    scenario = reading.scenario
+    if scenario is None:
+        return reading.diagnostics
+    findings: List[Diagnostic] = list(reading.diagnostics)
+    for part in (check_names, check_references, _numbers, _connections, _agents, _objectives, _order):
+        findings += part(scenario)
+    if not any(f.code in ("PML103", "PML104", "PML110") for f in findings):  # the rest stands on names that are known
+        findings += check_events(scenario)
+        findings += check_rules(scenario)
+        if not any(f.severity is Severity.ERROR for f in findings):
+            findings += _islands(scenario)
+    return in_order(findings)
+
+
+def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
+    for way in scenario.connections:
+        if way.distance < 1:
+            message = f"the way from {way.a} to {way.b} has no length"
+            yield error("PML140", message, way.span, "write distance 1 or more")
+    for event in scenario.events:
+        if event.duration is not None and event.duration < 1:
+            hint = "write duration 1 or more, or delete duration: then it takes no time"
+            yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
+    for agent in scenario.agents:
+        if agent.mobile is None:
+            continue
+        if agent.mobile < 1:
+            hint = "mobile is the time per unit of distance: write 1 or more, or delete mobile if the agent never moves"
+            yield error("PML142", f"{agent.name} would take no time for any way", agent.span, hint)
+        elif max((way.distance for way in scenario.connections), default=0) * agent.mobile > _LONGEST:
+            message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
+            yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
+    if isinstance(scenario.safety, Respond) and scenario.safety.deadline < 1:
+        message = "within 0 leaves no time to answer: expected 1 or more"
+        yield error("PML143", message, scenario.safety.span, "write the time units that the answer may take")
+
+
+def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
+    seen: Dict[FrozenSet[str], Span] = {}
+    for way in scenario.connections:
+        ends = frozenset((way.a, way.b))
+        if len(ends) == 1:
+            yield error("PML145", f"this connects {way.a} with itself", way.span, "name two different places")
+        elif ends in seen:
+            message = f"{way.a} and {way.b} are connected twice; line {seen[ends].line} does it already"
+            yield error("PML146", message, way.span, "delete one: a connection goes both ways")
+        seen.setdefault(ends, way.span)
+
+
+def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
+    if not scenario.pois:
+        yield error("PML132", "the scenario has no POI", _end(scenario), 'add a place: poi "room"')
+    if not scenario.agents:
+        hint = 'add one: agent "bot" controllable mobile 1 location a can_do …'
+        yield error("PML130", "the scenario has no agent", _end(scenario), hint)
+    elif not any(agent.controllable for agent in scenario.agents):
+        message = "nobody in this scenario can be controlled: there is nothing to plan"
+        yield error("PML131", message, scenario.agents[0].span, "write controllable behind the name of each robot")
+    for agent in scenario.agents:
+        if agent.human and not agent.controllable:
+            message = f"{agent.name} is human but not controllable: human changes nothing here"
+            hint = "write human controllable for an ally who follows instructions, or delete human"
+            yield warning("PML180", message, agent.span, hint)
+        yield from _twice(agent)
+
+
+def _twice(agent: Agent) -> Iterator[Diagnostic]:
+    for words, refs in (("can_do", agent.can_do), ("reacts_to", agent.reacts_to)):
+        names = [ref.name for ref in refs]
+        for index, ref in enumerate(refs):
+            if ref.name in names[:index]:
+                yield error("PML156", f"{agent.name} has {ref.name} twice behind {words}", ref.span, "delete one")
+
+
+def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
+    safety = scenario.safety
+    if safety is None and scenario.reach is None:
+        hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
+        yield error("PML171", "the scenario has no objective", _end(scenario), hint)
+    if isinstance(safety, Respond) and safety.trigger.name == safety.response.name:
+        message = f"{safety.trigger.name} cannot be its own answer"
+        yield error("PML172", message, safety.response.span, "name the event that has to follow")
+    if isinstance(safety, NeverWith):
+        start = {agent.name: agent.location.name for agent in scenario.agents}
+        first, second = safety.first.name, safety.second.name
+        if first == second:
+            yield error("PML173", f"{first} is always with itself", safety.span, "name two different agents")
+        elif first in start and start[first] == start.get(second):
+            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
+            yield error("PML174", message, safety.span, "let one of them start somewhere else")
+
+
+def _order(scenario: Scenario) -> Iterator[Diagnostic]:
+    """The original's tools read a scenario in one order only."""
+    order = ("poi", "connect", "event", "rule", "state", "stateDependency", "agent", "objective")
+    objectives = [objective for objective in (scenario.safety, scenario.reach) if objective is not None]
+    parts: Tuple[Tuple[Any, ...], ...] = (
+        scenario.pois, scenario.connections, scenario.events, scenario.rules, scenario.states, scenario.dependencies,
+        scenario.agents, tuple(objectives),
+    )  # fmt: skip
+    places = [(part.span.line, part.span.column, rank, part.span) for rank, kind in enumerate(parts) for part in kind]
+    latest = 0
+    for _, _, rank, span in sorted(places, key=lambda place: place[:3]):
+        if rank < latest:
+            message = f"the original PuRSUE reads {order[rank]} statements only before {order[latest]} statements"
+            yield warning("PML190", message, span, "if that matters to you, move it up; here the order is free")
+            return
+        latest = rank
+
+
+def _islands(scenario: Scenario) -> Iterator[Diagnostic]:
+    """POIs that are not connected with the first one, where somebody moves."""
+    if not any(agent.mobile is not None for agent in scenario.agents):
+        return
+    reached = component(scenario, scenario.pois[0].name)
+    for poi in scenario.pois:
+        if poi.name not in reached:
+            message = f"no way leads from {scenario.pois[0].name} to {poi.name}"
+            yield warning("PML147", message, poi.span, f"connect it: connect {poi.name} and … distance …")
+            reached |= component(scenario, poi.name)
+
+
+def _end(scenario: Scenario) -> Optional[Span]:
+    """Where something that is missing would be added: the end of the text."""
+    lines = scenario.text.split("\n")
+    return Span(scenario.file, len(lines), len(lines[-1]) + 1, len(lines), len(lines[-1]) + 2)

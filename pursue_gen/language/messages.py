@@ -38,7 +38,7 @@ KEYWORDS: Dict[str, str] = {
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
-_QUOTES = "“”„‟«»‘’‚'`´"
+_QUOTES = "“”„‟«»‘’‚'`´"  # noqa: RUF001
 
 
 def unknown_statement(token: Token, span: Span) -> Diagnostic:
@@ -72,7 +72,8 @@ def _unclosed(token: Token, span: Span) -> Diagnostic:
     if token.type == "UNCLOSED_NAME":
         return error("PML012", "this name has no closing quote on its line", span, 'write it as "name"')
     span = Span(span.file, span.line, span.column, span.line, span.column + 2)
-    return error("PML013", "this comment is never closed: expected `*/`", span, "close it with */ or use // for one line")
+    hint = "close it with */, or use // for one line"
+    return error("PML013", "this comment is never closed: expected `*/`", span, hint)
 
 
 def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
@@ -93,7 +94,7 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return "put brackets around what belongs together: (first before second) before third"
     if token.type == "RPAR":
         return "this `)` has no `(`"
-    if token.type == "TRUE_IF" or token.type == "FALSE_IF" and "COMMA" in expected:
+    if token.type == "TRUE_IF" or (token.type == "FALSE_IF" and "COMMA" in expected):
         return "put a comma behind true or false: " + FORMS["STATE"]
     close = _near(text, [KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS] + _starters(expected))
     if close and token.type == "WORD":

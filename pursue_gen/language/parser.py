@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, List, Optional, Tuple, Union
 
-from lark import Token, Tree
+from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.poses import read_pose
 from pursue_gen.language.syntax import read_statements, span_of
 
-Node = Union[Tree, Token, None]  # type: ignore[type-arg]
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
 
@@ -27,22 +25,13 @@ class Reading:
     diagnostics: Tuple[Diagnostic, ...]
 
 
-def load(path: Union[str, "os.PathLike[str]"]) -> pml.Scenario:
-    """The scenario in a file, checked. Raises PursueError with every error; warnings are left to `check`."""
-    from pursue_gen.language.checks import check_reading
-
-    file = os.fspath(path)
-    reading = read(read_text(file), file)
-    return _without_errors(reading.scenario, check_reading(reading))
-
-
 def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
     """The scenario in a text, not checked: `file` is what messages call it, `name` is its stem unless given.
 
     Raises PursueError with every syntax error, and with what a Scenario cannot hold (two objectives of a kind).
     """
     reading = read(text, file, name)
-    return _without_errors(reading.scenario, reading.diagnostics)
+    return without_errors(reading.scenario, reading.diagnostics)
 
 
 def read_text(file: str) -> str:
@@ -92,7 +81,8 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     return Reading(None if fatal else value, in_order(findings))
 
 
-def _without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
+def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
+    """The scenario. Raises PursueError with the errors among the findings, if there are any."""
     errors = [finding for finding in findings if finding.severity is Severity.ERROR]
     if errors or scenario is None:
         raise PursueError(errors)
@@ -112,19 +102,21 @@ class _Builder:
         self.file = file
         self.findings: List[Diagnostic] = []
 
-    def part(self, tree: Node) -> Any:
+    def part(self, tree: Any) -> Any:
         """The part that a statement declares; None for the tail that the original's tools leave."""
-        return None if isinstance(tree, Token) else getattr(self, "_" + tree.data)(*tree.children, span=self._span(tree))
+        if isinstance(tree, Token):
+            return None
+        return getattr(self, "_" + tree.data)(*tree.children, span=self._span(tree))
 
-    def _span(self, tree: Tree) -> Span:  # type: ignore[type-arg]
+    def _span(self, tree: Any) -> Span:
         meta = tree.meta
         return Span(self.file, meta.line, meta.column, meta.end_line, meta.end_column)
 
-    def _ref(self, tree: Tree) -> pml.Ref:  # type: ignore[type-arg]
+    def _ref(self, tree: Any) -> pml.Ref:
         token = tree.children[0]
         return pml.Ref(str(token), span_of(token, self.file))
 
-    def _refs(self, tree: Optional[Tree]) -> Tuple[pml.Ref, ...]:  # type: ignore[type-arg]
+    def _refs(self, tree: Any) -> Tuple[pml.Ref, ...]:
         return tuple(self._ref(child) for child in tree.children) if tree is not None else ()
 
     def _number(self, token: Token) -> int:
@@ -135,7 +127,7 @@ class _Builder:
             message, hint = f"{str(token)[:20]} is too large: {MOST} is the largest number", "choose a larger unit"
         else:
             message = f"expected a whole number, found {str(token)[:40]}"
-            hint = "write digits only; for halves or tenths choose a smaller unit and multiply every number of that kind"
+            hint = "write digits only; where halves or tenths matter, choose a smaller unit"
         self.findings.append(error("PML014", message, span_of(token, self.file), hint))
         return 1
 
@@ -161,7 +153,7 @@ class _Builder:
     def _rule(self, name: Token, body: Any, span: Span) -> pml.Rule:
         return pml.Rule(_bare(name), self._body(body), span_of(name, self.file))
 
-    def _body(self, tree: Tree) -> pml.RuleBody:  # type: ignore[type-arg]
+    def _body(self, tree: Any) -> pml.RuleBody:
         if tree.data == "ref":
             return self._ref(tree)
         first, second = (self._body(child) for child in tree.children)
@@ -194,7 +186,7 @@ class _Builder:
             span=span_of(name, self.file),
         )
 
-    def _safety(self, objective: Tree, span: Span) -> pml.Safety:  # type: ignore[type-arg]
+    def _safety(self, objective: Any, span: Span) -> pml.Safety:
         children = objective.children
         if objective.data == "respond":
             return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)

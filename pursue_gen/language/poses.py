@@ -29,7 +29,7 @@ def read_pose(comment: str, span: Span) -> Tuple[Optional[Pose], Tuple[Diagnosti
         return None, (error("PML020", "this pose is not closed: expected `]` behind its seven numbers", span, _FORM),)
     for number, item in enumerate(items, 1):
         if not _NUMBER.fullmatch(item):
-            message = f"a pose holds numbers, but its item {number} is {item!r}" if item else f"its item {number} is empty"
+            message = f"a pose holds numbers only, but its item {number} is " + (repr(item) if item else "empty")
             return None, (error("PML020", message, span, _FORM),)
     if len(items) != 7:
         return None, (error("PML020", f"a pose has seven numbers, here are {len(items)}", span, _FORM),)

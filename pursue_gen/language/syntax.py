@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
-from typing import Iterable, List, Tuple
+from typing import Any, FrozenSet, Iterable, List, Tuple
 
 from lark import Lark, Token, Tree, UnexpectedToken
 
@@ -74,7 +74,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
 
 def _parse(chunk: List[Token], file: str, trees: List[Tree]) -> List[Diagnostic]:  # type: ignore[type-arg]
     """Parses one statement onto `trees`; the error in it, if there is one."""
-    parser = _grammar().parse_interactive(start="statement")
+    parser: Any = _grammar().parse_interactive(start="statement")
     depth = 0
     for index, token in enumerate(chunk):
         depth += {"LPAR": 1, "RPAR": -1}.get(token.type, 0)
@@ -84,9 +84,13 @@ def _parse(chunk: List[Token], file: str, trees: List[Tree]) -> List[Diagnostic]
         try:
             parser.feed_token(token)
         except UnexpectedToken:
-            return [explain(chunk, index, frozenset(parser.accepts()), span_of(token, file))]
-    expected = frozenset(parser.accepts())
+            return [explain(chunk, index, _expected(parser), span_of(token, file))]
+    expected = _expected(parser)
     if "$END" not in expected:
         return [unfinished(chunk, expected, span_of(chunk[-1], file))]
     trees.append(parser.feed_eof(chunk[-1]))
     return []
+
+
+def _expected(parser: Any) -> FrozenSet[str]:
+    return frozenset(parser.accepts())
