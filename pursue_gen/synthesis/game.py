@@ -1,0 +1,329 @@
+"""A network and an objective as integer tables: what both engines play on.
+
+Everything is an index: clocks count from 1 (0 is the constant 0), all else from 0. All bounds are scaled so that the
+reaction delay is an integer: a time t of the network is `t * scale` here. A bound is (i, j, raw), see `dbm`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.synthesis.dbm import constant, raw
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
+
+Bound = Tuple[int, int, int]
+"""`x_i - x_j` within a raw bound: (i, j, raw)."""
+
+Clause = Tuple[Tuple[int, int], ...]
+"""At least one of the variables has the value beside it: ((variable, value), …)."""
+
+NO_CHANNEL = -1
+
+
+@dataclass(frozen=True)
+class GameEdge:
+    """An edge of an automaton.
+
+    `bounds` are the clock guard, `clauses` the integer guard (all of them hold), `channel` is NO_CHANNEL for a step of its
+    own (then `sends` is true as well: the edge moves by itself), `assignments` are (variable, value), `resets` clocks.
+    `duration` is the largest lower bound of the guard: how long the edge makes one wait.
+    """
+
+    automaton: int
+    source: int
+    target: int
+    bounds: Tuple[Bound, ...]
+    clauses: Tuple[Clause, ...]
+    channel: int
+    sends: bool
+    assignments: Tuple[Tuple[int, int], ...]
+    resets: Tuple[int, ...]
+    controllable: bool
+    duration: int
+
+
+@dataclass(frozen=True)
+class GameAutomaton:
+    """An automaton: `invariants[location]` are upper bounds on clocks, (clock, raw); `edges` are indices into the game's."""
+
+    name: str
+    locations: Tuple[str, ...]
+    initial: int
+    invariants: Tuple[Tuple[Tuple[int, int], ...], ...]
+    edges: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Game:
+    """The game. `delta` is the scaled reaction delay; `max_constants[i]` the largest scaled constant of clock i.
+
+    `goal` and `bad` are (automaton, location) or None. `edges[k]` is made from `origins[k]`, an edge of the network.
+    """
+
+    kind: Kind
+    goal: Optional[Tuple[int, int]]
+    bad: Optional[Tuple[int, int]]
+    scale: int
+    delta: int
+    clocks: Tuple[str, ...]
+    max_constants: Tuple[int, ...]
+    variables: Tuple[str, ...]
+    initial_values: Tuple[int, ...]
+    channels: Tuple[str, ...]
+    automata: Tuple[GameAutomaton, ...]
+    edges: Tuple[GameEdge, ...]
+    origins: Tuple[Edge, ...]
+
+    @property
+    def dim(self) -> int:
+        """The dimension of the zones: the clocks and the constant 0."""
+        return len(self.clocks) + 1
+
+
+@dataclass(frozen=True)
+class State:
+    """A discrete state: the location of every automaton and the value of every variable."""
+
+    locations: Tuple[int, ...]
+    values: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class JointMove:
+    """A joint move from a discrete state: the edges (sender or tau first), and all that happens.
+
+    `bounds` is the clock guard of all the edges; it says nothing of the target's invariant.
+    """
+
+    edges: Tuple[int, ...]
+    target: State
+    bounds: Tuple[Bound, ...]
+    resets: Tuple[int, ...]
+    controllable: bool
+    owner: int
+
+
+def compile_game(network: Network, objective: Objective, reaction: Fraction = Fraction(0)) -> Game:
+    """The tables of a network and an objective, with a reaction delay in time units.
+
+    Raises PursueError with everything that the game does not support: clock guards on receiving edges, invariants that
+    are not upper bounds with <=, unknown names.
+    """
+    problems: List[Diagnostic] = []
+    if reaction < 0:
+        problems.append(error("SYN001", f"the reaction delay is {reaction}, expected 0 or more time units"))
+    tables = _Tables(network, reaction.denominator, problems)
+    goal, bad = tables.position(objective.goal), tables.position(objective.bad)
+    if objective.kind is not Kind.SAFETY and objective.goal is None:
+        problems.append(error("SYN002", "the objective names no location to reach"))
+    if objective.kind is not Kind.REACH and objective.bad is None:
+        problems.append(error("SYN003", "the objective names no location to avoid"))
+    automata: List[GameAutomaton] = []
+    edges: List[GameEdge] = []
+    for number, automaton in enumerate(network.automata):
+        first = len(edges)
+        edges += [tables.edge(number, automaton, edge) for edge in automaton.edges]
+        automata.append(tables.automaton(automaton, range(first, len(edges))))
+    if problems:
+        raise PursueError(problems)
+    return Game(
+        kind=objective.kind,
+        goal=goal if objective.kind is not Kind.SAFETY else None,
+        bad=bad if objective.kind is not Kind.REACH else None,
+        scale=tables.scale,
+        delta=int(reaction * tables.scale),
+        clocks=network.clocks,
+        max_constants=_max_constants(len(network.clocks) + 1, automata, edges),
+        variables=tuple(name for name, _ in network.variables),
+        initial_values=tuple(value for _, value in network.variables),
+        channels=network.channels,
+        automata=tuple(automata),
+        edges=tuple(edges),
+        origins=tuple(edge for automaton in network.automata for edge in automaton.edges),
+    )
+
+
+class _Tables:
+    """Names to indices, with the problems met on the way; an unknown name becomes index 0 and a problem."""
+
+    def __init__(self, network: Network, scale: int, problems: List[Diagnostic]) -> None:
+        self.scale = scale
+        self._problems = problems
+        self._clocks = {name: k + 1 for k, name in enumerate(network.clocks)}
+        self._variables = {name: k for k, (name, _) in enumerate(network.variables)}
+        self._channels = {name: k for k, name in enumerate(network.channels)}
+        self._automata = {automaton.name: k for k, automaton in enumerate(network.automata)}
+        self._locations = [_numbers(automaton) for automaton in network.automata]
+
+    def _index(self, names: Mapping[str, int], kind: str, name: str) -> int:
+        if name not in names:
+            known = ", ".join(names) or "none"
+            self._problems.append(error("SYN004", f"unknown {kind} {name!r}; the network has: {known}"))
+        return names.get(name, 0)
+
+    def position(self, place: Optional[Tuple[str, str]]) -> Optional[Tuple[int, int]]:
+        """(automaton, location) by their names."""
+        if place is None:
+            return None
+        automaton = self._index(self._automata, "automaton", place[0])
+        if not self._locations:
+            return None
+        return automaton, self._index(self._locations[automaton], f"location of {place[0]}", place[1])
+
+    def automaton(self, automaton: Automaton, edges: Sequence[int]) -> GameAutomaton:
+        """The table of one automaton whose edges have these indices."""
+        number = self._automata[automaton.name]
+        invariants: List[Tuple[Tuple[int, int], ...]] = []
+        for location in automaton.locations:
+            for bound in location.invariant:
+                if bound.op != "<=":
+                    text = f"{bound.clock} {bound.op} {bound.bound}"
+                    place = f"{automaton.name}.{location.name}"
+                    hint = "write the invariant as an upper bound, clock <= constant"
+                    self._problems.append(error("SYN005", f"invariant {text} of {place} is not supported", hint=hint))
+            bounds = [self._bounds(bound)[0] for bound in location.invariant]
+            invariants.append(tuple((i, bound) for i, _, bound in bounds))
+        return GameAutomaton(
+            name=automaton.name,
+            locations=tuple(location.name for location in automaton.locations),
+            initial=self._index(self._locations[number], f"location of {automaton.name}", automaton.initial),
+            invariants=tuple(invariants),
+            edges=tuple(edges),
+        )
+
+    def edge(self, number: int, automaton: Automaton, edge: Edge) -> GameEdge:
+        """The table of one edge."""
+        locations = self._locations[number]
+        receives = edge.sync is not None and not edge.sync.sends
+        if receives and edge.guard.clocks:
+            place = f"{automaton.name}: {edge.source} -> {edge.target}"
+            hint = "put the clock guard on the sending edge"
+            self._problems.append(error("SYN006", f"a receiving edge has a clock guard ({place})", hint=hint))
+        bounds = tuple(bound for clock in edge.guard.clocks for bound in self._bounds(clock))
+        return GameEdge(
+            automaton=number,
+            source=self._index(locations, f"location of {automaton.name}", edge.source),
+            target=self._index(locations, f"location of {automaton.name}", edge.target),
+            bounds=bounds,
+            clauses=self._clauses(edge.guard),
+            channel=NO_CHANNEL if edge.sync is None else self._index(self._channels, "channel", edge.sync.channel),
+            sends=not receives,
+            assignments=tuple((self._index(self._variables, "variable", name), value) for name, value in edge.assign),
+            resets=tuple(self._index(self._clocks, "clock", name) for name in edge.resets),
+            controllable=edge.controllable,
+            duration=max((-constant(bound) for i, _, bound in bounds if i == 0), default=0),
+        )
+
+    def _clauses(self, guard: Guard) -> Tuple[Clause, ...]:
+        return tuple(
+            tuple((self._index(self._variables, "variable", test.variable), test.value) for test in clause)
+            for clause in guard.integers
+        )
+
+    def _bounds(self, bound: ClockBound) -> Tuple[Bound, ...]:
+        clock, scaled = self._index(self._clocks, "clock", bound.clock), bound.bound * self.scale
+        above, below = (clock, 0), (0, clock)
+        table: Dict[str, Tuple[Bound, ...]] = {
+            "<": ((*above, raw(scaled, True)),),
+            "<=": ((*above, raw(scaled, False)),),
+            ">": ((*below, raw(-scaled, True)),),
+            ">=": ((*below, raw(-scaled, False)),),
+            "==": ((*above, raw(scaled, False)), (*below, raw(-scaled, False))),
+        }
+        if bound.op not in table:
+            self._problems.append(
+                error("SYN007", f"unknown comparison {bound.op!r}, expected one of {' '.join(table)}")
+            )
+        return table.get(bound.op, table["<="])
+
+
+def _numbers(automaton: Automaton) -> Dict[str, int]:
+    return {location.name: k for k, location in enumerate(automaton.locations)}
+
+
+def _max_constants(dim: int, automata: Sequence[GameAutomaton], edges: Sequence[GameEdge]) -> Tuple[int, ...]:
+    largest = [0] * dim
+    compared = [(i or j, bound) for edge in edges for i, j, bound in edge.bounds]
+    compared += [pair for automaton in automata for invariant in automaton.invariants for pair in invariant]
+    for clock, bound in compared:
+        largest[clock] = max(largest[clock], abs(constant(bound)))
+    return tuple(largest)
+
+
+def initial_state(game: Game) -> State:
+    """Where the game starts; all clocks are 0 there."""
+    return State(tuple(automaton.initial for automaton in game.automata), game.initial_values)
+
+
+def invariant(game: Game, state: State) -> Tuple[Bound, ...]:
+    """The upper bounds that hold as long as the game is in the state."""
+    return tuple(
+        (clock, 0, bound)
+        for automaton, location in zip(game.automata, state.locations)
+        for clock, bound in automaton.invariants[location]
+    )
+
+
+def is_goal(game: Game, state: State) -> bool:
+    """True if the state is one to reach."""
+    return game.goal is not None and state.locations[game.goal[0]] == game.goal[1]
+
+
+def is_bad(game: Game, state: State) -> bool:
+    """True if the state is one to avoid."""
+    return game.bad is not None and state.locations[game.bad[0]] == game.bad[1]
+
+
+def joint_moves(game: Game, state: State) -> Iterator[JointMove]:
+    """The joint moves from a discrete state whose integer guards hold, in the order of system and edges.
+
+    One sending (or tau) edge, and of every other automaton with an enabled receiving edge exactly one of those.
+    """
+    for number, automaton in enumerate(game.automata):
+        for k in automaton.edges:
+            edge = game.edges[k]
+            if edge.sends and _enabled(edge, state):
+                for receivers in product(*_receivers(game, state, edge)):
+                    yield _joint_move(game, state, number, (k, *receivers))
+
+
+def _receivers(game: Game, state: State, sender: GameEdge) -> List[List[int]]:
+    if sender.channel == NO_CHANNEL:
+        return []
+    choices = (
+        [
+            k
+            for k in automaton.edges
+            if game.edges[k].channel == sender.channel and not game.edges[k].sends and _enabled(game.edges[k], state)
+        ]
+        for number, automaton in enumerate(game.automata)
+        if number != sender.automaton
+    )
+    return [edges for edges in choices if edges]
+
+
+def _enabled(edge: GameEdge, state: State) -> bool:
+    return state.locations[edge.automaton] == edge.source and all(
+        any(state.values[variable] == value for variable, value in clause) for clause in edge.clauses
+    )
+
+
+def _joint_move(game: Game, state: State, owner: int, numbers: Tuple[int, ...]) -> JointMove:
+    locations, values = list(state.locations), list(state.values)
+    edges = [game.edges[k] for k in numbers]
+    for edge in edges:
+        locations[edge.automaton] = edge.target
+        for variable, value in edge.assignments:
+            values[variable] = value
+    return JointMove(
+        edges=numbers,
+        target=State(tuple(locations), tuple(values)),
+        bounds=tuple(bound for edge in edges for bound in edge.bounds),
+        resets=tuple(sorted({clock for edge in edges for clock in edge.resets})),
+        controllable=all(edge.controllable for edge in edges),
+        owner=owner,
+    )
