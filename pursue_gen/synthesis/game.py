@@ -23,6 +23,12 @@ Clause = Tuple[Tuple[int, int], ...]
 
 NO_CHANNEL = -1
 
+Action = Optional[Tuple[int, ...]]
+"""What to do: a joint move by its edges, the sender's (or tau) first, or None: wait."""
+
+RawBlock = Tuple[Tuple[int, ...], Tuple[int, ...], Sequence[Tuple[Tuple[int, ...], Action]]]
+"""A discrete state's part of a strategy as engines hand it over: locations, values, (matrix of a zone, action) …."""
+
 
 @dataclass(frozen=True)
 class GameEdge:
