@@ -1,1 +1,5 @@
-"""partition"""
+"""From a strategy to one sub-strategy per controller (what the thesis calls UP2SUBCO)."""
+
+from pursue_gen.partition.split import CENTRALIZED, DISTRIBUTED, GENERAL, SubStrategy, partition
+
+__all__ = ["CENTRALIZED", "DISTRIBUTED", "GENERAL", "SubStrategy", "partition"]

@@ -1,0 +1,137 @@
+"""Who gets which command of a strategy.
+
+A command belongs to the automaton that makes its first move. A priori ends (a timer that decides when a robot has
+arrived) are for the `general` controller only: elsewhere the robot tells, see the thesis's section 4.2.2. The commands
+of the objectives' automata (`reachObj`, `obj`) are no robot's: the policies for them are the thesis's three.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.scenario import Agent
+from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
+from pursue_gen.tga.names import OBJECTIVE, REACH
+from pursue_gen.tga.network import Network, is_end
+
+DISTRIBUTED, CENTRALIZED, GENERAL = "distributed", "centralized", "general"
+"""One controller per robot; one for all; one for all that also decides the ends, as the original's does."""
+
+DEDICATED, ALL = "dedicated", "all"
+"""Objectives' commands in a controller of their own; in every robot's. (Or a robot's name: in that robot's.)"""
+
+CONTROLLER, CONTROLLER_OBJ, UI = "controller", "controllerObj", "UI"
+
+
+@dataclass(frozen=True)
+class SubStrategy:
+    """What one controller does: in each discrete state, in the strategy's order, its commands and no others.
+
+    `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
+    no program: its commands are instructions to people.
+    """
+
+    controller: str
+    agents: Tuple[str, ...]
+    blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
+
+    @property
+    def commands(self) -> int:
+        """How many commands there are, over all states."""
+        return sum(len(commands) for _, commands in self.blocks)
+
+
+def partition(
+    strategy: Strategy,
+    network: Network,
+    agents: Sequence[Agent],
+    controllers: str = DISTRIBUTED,
+    reach_obj: str = DEDICATED,
+) -> Tuple[SubStrategy, ...]:
+    """The sub-strategies: the robots' in order of declaration (or the one `controller`), `controllerObj`, `UI`.
+
+    A robot without commands still gets its (empty) controller. `controllerObj` is there under the policy `dedicated`
+    when the network has a reachObj or an objective has commands; `UI` when there are human allies. Without ends, but for
+    `general`; every other command is in exactly one sub-strategy, or with `all` those of the objectives in every robot's.
+
+    Raises PursueError for an unknown shape or policy (exit status 2), for a counter-strategy, and for a command of an
+    automaton that nobody controls.
+    """
+    robots = tuple(agent.name for agent in agents if agent.is_robot)
+    humans = tuple(agent.name for agent in agents if agent.controllable and agent.human)
+    _check_options(controllers, reach_obj, robots)
+    if strategy.counter:
+        message = "a counter-strategy cannot be given to controllers: its moves are the opponent's"
+        raise PursueError([error("PAR003", message, hint="use a plan whose property is satisfied")], exit_status=4)
+    _check_senders(strategy, network, (*robots, *humans))
+    senders = {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
+    names = tuple(automaton.name for automaton in network.automata)
+    objectives = tuple(n for n in names if n == REACH or (n == OBJECTIVE and n in senders))
+    owners = _owners(robots, objectives, controllers, reach_obj)
+    if humans:
+        owners[UI] = humans
+    return tuple(
+        SubStrategy(name, commanded, _select(strategy, commanded, controllers == GENERAL))
+        for name, commanded in owners.items()
+    )
+
+
+def _owners(
+    robots: Tuple[str, ...], objectives: Tuple[str, ...], controllers: str, reach_obj: str
+) -> Dict[str, Tuple[str, ...]]:
+    """From each controller (but UI) to the automata that it commands."""
+    if controllers != DISTRIBUTED:
+        return {CONTROLLER: (*robots, *objectives)}
+    owners = {
+        f"controller_{robot}": (robot, *objectives) if reach_obj in (ALL, robot) else (robot,) for robot in robots
+    }
+    if reach_obj == DEDICATED and objectives:
+        owners[CONTROLLER_OBJ] = objectives
+    return owners
+
+
+def _select(
+    strategy: Strategy, automata: Tuple[str, ...], with_ends: bool
+) -> Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]:
+    """The blocks with the commands of these automata only, without the blocks where they have none."""
+    blocks: List[Tuple[DiscreteState, Tuple[Command, ...]]] = []
+    for block in strategy.blocks:
+        commands = tuple(
+            command
+            for command in block.commands
+            if command.moves[0].automaton in automata and (with_ends or not is_end(command.moves[0].edge))
+        )
+        if commands:
+            blocks.append((block.state, commands))
+    return tuple(blocks)
+
+
+def _check_options(controllers: str, reach_obj: str, robots: Tuple[str, ...]) -> None:
+    """Raises PursueError for a shape or a policy that does not exist here."""
+    shapes = (DISTRIBUTED, CENTRALIZED, GENERAL)
+    if controllers not in shapes:
+        message = f"there are no '{controllers}' controllers; expected {', '.join(shapes)}"
+        raise PursueError([error("PAR001", message, hint=f"choose {DISTRIBUTED} for one controller per robot")], 2)
+    if reach_obj not in (DEDICATED, ALL, *robots):
+        message = f"'{reach_obj}' cannot have reachObj's commands; expected {', '.join((DEDICATED, ALL, *robots))}"
+        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")], 2)
+    if reach_obj == ALL and not robots:
+        message = "no robot can have reachObj's commands: the scenario has no controllable robot"
+        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")], 2)
+
+
+def _check_senders(strategy: Strategy, network: Network, controlled: Tuple[str, ...]) -> None:
+    """Raises PursueError where a command's automaton is neither an agent that is controlled nor an objective."""
+    known = {automaton.name for automaton in network.automata}
+    for block in strategy.blocks:
+        for command in block.commands:
+            name = command.moves[0].automaton
+            if name in controlled or (name in (REACH, OBJECTIVE) and name in known):
+                continue
+            edge = command.moves[0].edge
+            what = "an agent or rule that nobody controls" if name in known else "no automaton of the network"
+            message = f"the strategy commands {name}.{edge.source}->{name}.{edge.target}, but '{name}' is {what}"
+            hint = f"use the plan with its own scenario, or make the agent '{name}' controllable"
+            raise PursueError([error("PAR004", message, hint=hint)])

@@ -1,0 +1,180 @@
+"""Strategy files: any YAML reader finds the states, commands and zones in them, word for word."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import List, Tuple
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_gen.partition import SubStrategy, partition
+from pursue_gen.partition.strategy_file import render, render_cover, zone_text
+from pursue_gen.synthesis.plan_text import read_constraint
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
+from pursue_gen.tga.network import Edge, Sync
+from pursue_gen.tga.words import event_word
+from tests.partition.games import AGENTS, game, random_strategies, zones
+
+TENTH = Fraction(1, 10)
+
+STATE = DiscreteState(
+    (("bot1", "c"), ("bot2", "c"), ("rule1", "rule1_initial_location"), ("reachObj", "unlocked")),
+    (("Prule1", 0), ("Pbot1", 3), ("Pbot2", 3)),
+)
+ZONE = (
+    Constraint(None, "Cbot1", Fraction(-1), True),
+    Constraint("Cbot1", None, Fraction(5), False),
+    Constraint("Cbot1", "Cbot2", Fraction(3), False),
+)
+MOVE = Move("bot1", Edge("c", "going_c_to_b", sync=Sync("bot1_c2b", True)))
+
+FILE = """\
+# Strategy of controller_bot1 in scenario_1, written by pursue-gen 0.1.0.
+# In a state below, the command is due as soon as one of its zones (clocks in time units) holds.
+format: 1
+controller: controller_bot1
+commands_agents: [bot1]
+reaction: 0.1
+strategy:
+- state: {bot1: c, bot2: c, rule1: rule1_initial_location, reachObj: unlocked}
+  commands:
+  - do: bot1_c2b
+    agent: bot1
+    from: c
+    to: going_c_to_b
+    when:
+    - 1 < Cbot1 && Cbot1 <= 5 && Cbot1 - Cbot2 <= 3
+"""
+
+
+def read_zone(text: str) -> Zone:
+    """The zone in a text of the file."""
+    if text == "always":
+        return ()
+    zone: Zone = ()
+    for part in text.split(" && "):
+        constraints = read_constraint(part.replace(" ", ""))
+        assert constraints
+        zone += constraints
+    return zone
+
+
+def visible(state: DiscreteState) -> "dict[str, str]":
+    """What a file says of a state."""
+    names = {f"P{name}" for name, _ in state.locations}
+    values = {name: str(value) for name, value in state.values if name not in names}
+    return {**dict(state.locations), **values}
+
+
+def as_text(state: "dict[str, object]") -> "dict[str, str]":
+    """A state as the nodes compare it."""
+    return {name: str(value) for name, value in state.items()}
+
+
+def once(zones: Tuple[Zone, ...]) -> List[Zone]:
+    """The zones, each once."""
+    return list(dict.fromkeys(zones))
+
+
+def test_the_file_is_for_people() -> None:
+    sub = SubStrategy("controller_bot1", ("bot1",), ((STATE, (Command((ZONE,), (MOVE,)),)),))
+    assert render(sub, "scenario_1", "0.1.0", TENTH) == FILE
+
+
+@given(random_strategies(), st.sampled_from(("distributed", "centralized", "general")))
+def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
+    for sub in partition(strategy, game(), AGENTS, shape):
+        data = yaml.safe_load(render(sub, "game", "0.1.0", TENTH))
+        assert (data["format"], data["controller"], data["reaction"]) == (1, sub.controller, 0.1)
+        assert data["commands_agents"] == list(sub.agents)
+        assert len(data["strategy"]) == len(sub.blocks)
+        for entry, (state, commands) in zip(data["strategy"], sub.blocks):
+            assert as_text(entry["state"]) == visible(state)
+            assert len(entry["commands"]) == len(commands)
+            for found, command in zip(entry["commands"], commands):
+                first = command.moves[0]
+                assert (found["agent"], found["from"], found["to"]) == (
+                    first.automaton,
+                    first.edge.source,
+                    first.edge.target,
+                )
+                assert found["do"] == event_word(first.automaton, first.edge)
+                assert [read_zone(text) for text in found["when"]] == once(command.zones)
+
+
+@given(random_strategies())
+def test_the_cover_has_every_zone_of_every_state(strategy: Strategy) -> None:
+    data = yaml.safe_load(render_cover(strategy, "game", "0.1.0"))
+    assert data["format"] == 1
+    assert len(data["cover"]) == len(strategy.blocks)
+    for entry, block in zip(data["cover"], strategy.blocks):
+        assert as_text(entry["state"]) == visible(block.state)
+        every = block.wait + tuple(zone for command in block.commands for zone in command.zones)
+        assert [read_zone(text) for text in entry["zones"]] == once(every)
+
+
+def test_nothing_to_do_is_an_empty_list() -> None:
+    assert yaml.safe_load(render(SubStrategy("controller_bot3", ("bot3",), ()), "s", "1", TENTH))["strategy"] == []
+    assert yaml.safe_load(render_cover(Strategy(()), "s", "1"))["cover"] == []
+    silent = yaml.safe_load(render_cover(Strategy((Block(STATE, (), ()),)), "s", "1"))
+    assert silent["cover"][0]["zones"] == []
+
+
+@pytest.mark.parametrize("name", ["on", "y", "No", "null", "true", "12", "1e3", "0x1", "12:30", "_", "a-b", "a: b"])
+def test_names_that_yaml_would_misread(name: str) -> None:
+    edge = replace(MOVE.edge, source=name)
+    state = replace(STATE, locations=((name, name), *STATE.locations[1:]))
+    sub = SubStrategy(name, (name,), ((state, (Command(((),), (Move(name, edge),)),)),))
+    data = yaml.safe_load(render(sub, "s", "1", TENTH))
+    assert data["controller"] == name
+    assert data["commands_agents"] == [name]
+    (entry,) = data["strategy"]
+    assert entry["state"][name] == name
+    assert entry["commands"][0]["from"] == name
+
+
+def test_values_that_no_location_tells_are_in_the_state() -> None:
+    state = replace(STATE, values=(*STATE.values, ("Sopen", 1)))
+    sub = SubStrategy("controller_bot1", ("bot1",), ((state, (Command(((),), (MOVE,)),)),))
+    (entry,) = yaml.safe_load(render(sub, "s", "1", TENTH))["strategy"]
+    assert entry["state"]["Sopen"] == 1
+    assert not any(name.startswith("P") for name in entry["state"])
+    assert entry["commands"][0]["when"] == ["always"]
+
+
+@pytest.mark.parametrize(
+    ("zone", "text"),
+    [
+        ((), "always"),
+        ((Constraint("C", None, Fraction(4, 3), True),), "C < 4/3"),
+        ((Constraint(None, "C", Fraction(-11, 10), False),), "1.1 <= C"),
+        ((Constraint("C", "D", Fraction(-2), True),), "C - D < -2"),
+        ((Constraint("C", "D", Fraction(0), False),), "C <= D"),
+        ((Constraint("C", None, Fraction(3), False), Constraint(None, "C", Fraction(-3), False)), "C == 3"),
+        ((Constraint("C", "D", Fraction(0), False), Constraint("D", "C", Fraction(0), False)), "C == D"),
+    ],
+)
+def test_zones_read_like_arithmetic(zone: Zone, text: str) -> None:
+    assert zone_text(zone) == text
+
+
+@given(zones(("Ca", "Cb", "Cc")))
+def test_zones_keep_their_meaning(zone: Zone) -> None:
+    assert read_zone(zone_text(zone)) == zone
+
+
+@pytest.mark.parametrize(
+    ("automaton", "edge", "word"),
+    [
+        ("bot1", Edge("a", "going_a_to_c", sync=Sync("bot1_a2c", True)), "bot1_a2c"),
+        ("bot1", Edge("going_a_to_c", "c"), "bot1_going_a_to_c2c"),
+        ("bot1", Edge("doing_e_in_a", "a", sync=Sync("eDONE", True)), "eDONE"),
+        ("reachObj", Edge("initial_location", "unlocked"), "reachObj_going_initial_location2unlocked"),
+    ],
+)
+def test_words_of_events(automaton: str, edge: Edge, word: str) -> None:
+    assert event_word(automaton, edge) == word
