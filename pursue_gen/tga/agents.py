@@ -36,7 +36,9 @@ class Surroundings:
     def turn(self, channel: str) -> Tuple[Clause, ...]:
         """It is the channel's turn in every rule that names it."""
         return tuple(
-            tuple(Test(variable, number) for number in turns[channel]) for variable, turns in self.rules if channel in turns
+            tuple(Test(variable, number) for number in turns[channel])
+            for variable, turns in self.rules
+            if channel in turns
         )
 
     def dependencies(self, event: str) -> Tuple[Clause, ...]:
@@ -76,7 +78,9 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         if event.duration is None:
             edges += shape.instantaneous(event, ways)
         else:
-            locations += [Location(names.doing(name, poi), (shape.within(event.duration),)) for poi in shape.places(event)]
+            locations += [
+                Location(names.doing(name, poi), (shape.within(event.duration),)) for poi in shape.places(event)
+            ]
             edges += [edge for poi in shape.places(event) for edge in shape.lasting(event, event.duration, poi)]
     return Automaton(agent.name, tuple(locations), agent.location.name, tuple(edges))
 
@@ -150,7 +154,13 @@ class _Shape:
         return company + around.turn(event.name) + around.dependencies(event.name)
 
     def _edge(
-        self, source: str, target: str, channel: Optional[str], after: int, conditions: Tuple[Clause, ...], position: Optional[int]
+        self,
+        source: str,
+        target: str,
+        channel: Optional[str],
+        after: int,
+        conditions: Tuple[Clause, ...],
+        position: Optional[int],
     ) -> Edge:
         """An edge that needs the clock to be past `after`, resets it and, with a position, says where the agent is."""
         return Edge(

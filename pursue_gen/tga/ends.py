@@ -14,26 +14,24 @@ _BUSY = ("going_", "doing_")
 def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
     """The network with every end of a movement or an action in the environment's hands.
 
-    `slack` is how many time units later than the invariant of its `going_…` and `doing_…` locations an agent may be.
-    Raises PursueError for a slack that is negative or names no agent of the network.
+    `slack` is how many time units later than the invariant of its `going_…` and `doing_…` locations an agent may be;
+    an agent that it does not name is never late. Raises PursueError for a slack that is negative or names no
+    automaton of the network.
     """
-    agents = [automaton.name for automaton in network.automata if is_agent(automaton)]
+    known = [automaton.name for automaton in network.automata]
+    hint = f"one of {', '.join(known)}"
     problems = [
-        error("TGA020", f"a slack is given for {name}, which is no agent", hint=f"the agents are {', '.join(agents)}")
+        error("TGA020", f"a slack is given for {name}, which is not here", hint=hint)
         for name in slack
-        if name not in agents
+        if name not in known
     ]
+    hint = "a slack is a natural number of time units"
     problems += [
-        error("TGA021", f"the slack of {name} is {slack[name]}", hint="a slack is a natural number of time units")
-        for name in slack
-        if slack[name] < 0
+        error("TGA021", f"the slack of {name} is {late}", hint=hint) for name, late in slack.items() if late < 0
     ]
     if problems:
         raise PursueError(problems)
-    automata = tuple(
-        _reported(automaton, slack.get(automaton.name, 0)) if automaton.name in agents else automaton
-        for automaton in network.automata
-    )
+    automata = tuple(_reported(automaton, slack.get(automaton.name, 0)) for automaton in network.automata)
     return replace(network, automata=automata)
 
 
@@ -45,6 +43,8 @@ def is_agent(automaton: Automaton) -> bool:
 
 
 def _reported(automaton: Automaton, slack: int) -> Automaton:
+    if not is_agent(automaton):
+        return automaton
     edges = tuple(with_controllability(edge, edge.controllable and not is_end(edge)) for edge in automaton.edges)
     return replace(automaton, locations=tuple(_late(location, slack) for location in automaton.locations), edges=edges)
 

@@ -61,9 +61,13 @@ def _respond(safety: Respond, happened: Happened) -> Tuple[Edge, ...]:
 
 
 def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
-    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, however they go."""
+    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way."""
     shared: List[Tuple[int, int]] = [(positions.at(poi), positions.doing(poi)) for poi in positions.pois]
-    shared += [(code, positions.going(b, a)) for (a, b), code in positions.ways.items() if positions.pois[a] < positions.pois[b]]
+    shared += [
+        (code, positions.going(b, a))
+        for (a, b), code in positions.ways.items()
+        if positions.pois[a] < positions.pois[b]
+    ]
 
     def among(agent: str, codes: Tuple[int, int]) -> Clause:
         return tuple(Test(agent_position(agent), code) for code in codes)

@@ -65,7 +65,9 @@ def _note(digits: Mapping[Way, int], connections: Sequence[Connection]) -> Optio
     seen: Dict[int, Way] = {}
     for way, code in digits.items():
         if code < _SMALLEST:
-            return warning("TGA011", f"{_shown(way)} would be number {code}, too small for UPPAAL: {end}", spans.get(way), hint)
+            return warning(
+                "TGA011", f"{_shown(way)} would be number {code}, too small for UPPAAL: {end}", spans.get(way), hint
+            )
         if code in seen:
             both = f"{_shown(seen[code])} and {_shown(way)} would both be number {code}"
             return warning("TGA011", f"{both}: {end}", spans.get(way, spans.get(seen[code])), hint)

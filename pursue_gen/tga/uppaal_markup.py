@@ -13,7 +13,9 @@ from typing import Dict, List, Match, NoReturn, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 
-_TAG = re.compile(r"<(?P<close>/?)(?P<name>[A-Za-z][\w.-]*)(?P<attributes>(?:\"[^\"]*\"|'[^']*'|[^<>\"'])*?)(?P<empty>/?)>")
+_TAG = re.compile(
+    r"<(?P<close>/?)(?P<name>[A-Za-z][\w.-]*)(?P<attributes>(?:\"[^\"]*\"|'[^']*'|[^<>\"'])*?)(?P<empty>/?)>"
+)
 _ATTRIBUTE = re.compile(r"([A-Za-z_][\w.:-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _ENTITY = re.compile(r"&(?:(lt|gt|amp|quot|apos)|#([0-9]{1,7})|#x([0-9A-Fa-f]{1,6}));")
@@ -87,7 +89,9 @@ def read_markup(text: str, file: str) -> Element:
         if match.group("close"):
             _close(open_elements, match)
             continue
-        element = Element(match.group("name"), _attributes(match.group("attributes")), source, match.start(), match.end())
+        element = Element(
+            match.group("name"), _attributes(match.group("attributes")), source, match.start(), match.end()
+        )
         parent.children.append(element)
         if not match.group("empty"):
             open_elements.append(element)

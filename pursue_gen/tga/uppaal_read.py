@@ -231,7 +231,9 @@ def _system(nta: Element, templates: Dict[str, Automaton]) -> List[str]:
         nta.fail("TGA001", "there is no <system>")
     match = re.fullmatch(r"\s*system\b([\w\s,]*);\s*", _COMMENTS.sub(" ", system.text))
     if match is None:
-        system.fail("TGA002", "the system is not one line 'system a, b, c;' of templates", "instantiations are not supported")
+        system.fail(
+            "TGA002", "the system is not one line 'system a, b, c;' of templates", "instantiations are not supported"
+        )
     order = match.group(1).replace(",", " ").split()
     for name in order:
         if name not in templates:

@@ -1,4 +1,4 @@
-"""Writes networks (`TGA.xml`) and queries (`TCTL.q`) for UPPAAL: well-formed, valid against its flat DTD, always the same.
+"""Writes networks (`TGA.xml`) and queries (`TCTL.q`) for UPPAAL: well-formed, valid against its flat DTD, repeatable.
 
 Ids are unique over the file. A named location has the id `automaton.location`. A location without a name has its own
 name as its id, so that UPPAAL prints `_<name>` in plans as for the original's networks; only where several automata
