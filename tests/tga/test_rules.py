@@ -74,7 +74,9 @@ def test_parts_are_named_by_their_depth_and_way() -> None:
 
 
 def test_choices_of_instantaneous_events_need_no_location() -> None:
-    automaton, turns = rule_automaton(rule(before(either(either(e("a"), e("b")), e("c")), either(e("d"), e("a")))), LASTING)
+    automaton, turns = rule_automaton(
+        rule(before(either(either(e("a"), e("b")), e("c")), either(e("d"), e("a")))), LASTING
+    )
     assert names(automaton) == ["rule1_initial_location", "rule10"]
     assert turns == {"a": (0, 1), "b": (0,), "c": (0,), "d": (1,)}
 

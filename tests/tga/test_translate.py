@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Set
 
 import pytest
 
@@ -58,7 +59,7 @@ def test_networks_are_closed(path: Path) -> None:
         assert_closed(automaton, network, variables)
 
 
-def assert_closed(automaton: Automaton, network: Network, variables: "set[str]") -> None:
+def assert_closed(automaton: Automaton, network: Network, variables: Set[str]) -> None:
     locations = [location.name for location in automaton.locations]
     assert len(set(locations)) == len(locations)
     assert automaton.initial in locations
