@@ -57,7 +57,7 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if agent.mobile is None:
             continue
         if agent.mobile < 1:
-            hint = "mobile is the time per unit of distance: write 1 or more, or delete mobile if the agent never moves"
+            hint = "mobile is the time per unit of distance: write mobile 1 or more, or delete it where nothing moves"
             yield error("PML142", f"{agent.name} would take no time for any way", agent.span, hint)
         elif max((way.distance for way in scenario.connections), default=0) * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"

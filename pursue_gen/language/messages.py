@@ -86,6 +86,8 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{text}"'
     if token.type == "NAME" and "WORD" in expected:
         return f"quotes stand only where a name is declared: write {text.strip(chr(34))} without them"
+    if statement == "OBJECTIVE" and token.type == "DO":
+        return "to have something done write reach_objective: do …"
     if token.type in KEYWORDS and "WORD" in expected:
         return f"{text} is a word of the language and cannot be a name; choose another name"
     if token.type == "NUMBER" and "WORD" in expected:
@@ -94,15 +96,13 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return "put brackets around what belongs together: (first before second) before third"
     if token.type == "RPAR":
         return "this `)` has no `(`"
-    if token.type == "TRUE_IF" or (token.type == "FALSE_IF" and "COMMA" in expected):
+    if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
         return "put a comma behind true or false: " + FORMS["STATE"]
     close = _near(text, [KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS] + _starters(expected))
     if close and token.type == "WORD":
         return f"did you mean {close}?"
     if token.type == "WORD" and "COMMA" in expected and chunk[index - 1].line == token.line:
         return "put a comma between two names"
-    if statement == "OBJECTIVE" and token.type == "DO":
-        return "to have something done write reach_objective: do …"
     if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID", "WORD"):
         return "what must always hold is an objective: if … then … within … or avoid …"
     return ""
@@ -118,7 +118,7 @@ def _form(chunk: List[Token]) -> str:
 
 def _near(word: str, words: List[str]) -> str:
     lower = {w.lower(): w for w in words}
-    close = difflib.get_close_matches(word.lower(), list(lower), n=1, cutoff=0.7)
+    close = difflib.get_close_matches(word.lower(), list(lower), n=1, cutoff=0.65)
     return lower[close[0]] if close else ""
 
 
@@ -136,6 +136,6 @@ def _list(words: List[str]) -> str:
 
 
 def _shown(token: Token) -> str:
-    text = str(token)
+    text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in str(token))
     text = text if len(text) <= 30 else text[:29] + "…"
     return {"NAME": f"the name {text}", "WORD": f"`{text}`", "POSE": "the pose"}.get(token.type, f"`{text}`")

@@ -65,8 +65,12 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
     for index, token in enumerate(tokens):
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
-        looks_new = opens_line and token.type == "WORD" and following in ("NAME", "COLON")
-        if not chunks or token.type in STATEMENTS or looks_new:
+        goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
+        if token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
+            begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
+        else:
+            begins = opens_line and goes_on and token.type == "WORD"
+        if begins or not chunks:
             chunks.append([])
         chunks[-1].append(token)
     return chunks

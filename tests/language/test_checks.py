@@ -1,0 +1,157 @@
+"""What is wrong with a well-formed scenario is told at once, with its place, its reason and a way out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Tuple
+
+import pytest
+
+from pursue_gen.diagnostics import Severity
+from pursue_gen.language import check, parse
+
+from .texts import findings, text
+
+BOT = 'agent "bot" controllable mobile 2 location a can_do work, hand'
+MAN = 'agent "man" location b can_do rest reacts_to hand'
+
+# what is changed in the sample; then the findings: code, line, a part of the message, a part of the hint
+FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
+    # names that are used
+    ({"connect": "connect a and x distance 3"}, [("PML110", 3, "there is no POI x", 'declare it: poi "x"')]),
+    ({"event_work": 'event "work" location bb'}, [("PML110", 4, "there is no POI bb", "did you mean b?")]),
+    ({"rule": 'rule "order": wrk before hand'}, [("PML110", 7, "there is no event wrk", "did you mean work?")]),
+    ({"state": 'state "tired": initially true, true_if a'}, [("PML110", 8, "a is a POI, but an event is needed", "")]),
+    ({"dependency": "stateDependency: hand only_if tird is_true"}, [("PML110", 9, "no state tird", "mean tired?")]),
+    ({"dependency": "stateDependency: hant only_if tired is_true"}, [("PML110", 9, "no event hant", "mean hand?")]),
+    ({"agent_bot": BOT.replace("location a", "location hall")}, [("PML110", 10, "there is no POI hall", "one of: a, b")]),
+    ({"agent_bot": BOT + ", fly"}, [("PML110", 10, "there is no event fly", "one of: work, hand, rest")]),
+    ({"agent_man": MAN + ", man"}, [("PML110", 11, "man is an agent, but an event is needed", "declare it")]),
+    ({"objective": "objective: if work then hnd within 3"}, [("PML110", 12, "there is no event hnd", "did you mean hand?")]),
+    ({"objective": "objective: avoid x"}, [("PML110", 12, "there is no event x", "declare it")]),
+    ({"objective": "objective: bot never_with men"}, [("PML110", 12, "there is no agent men", "did you mean man?")]),
+    ({"reach": "reach_objective: do nothing"}, [("PML110", 13, "there is no event nothing", "declare it")]),
+    # numbers
+    ({"connect": "connect a and b distance 0"}, [("PML140", 3, "has no length", "distance 1")]),
+    ({"event_work": 'event "work" location b duration 0'}, [("PML141", 4, "duration of 0", "delete duration")]),
+    ({"agent_bot": BOT.replace("mobile 2", "mobile 0")}, [("PML142", 10, "no time for any way", "mobile 1")]),
+    ({"objective": "objective: if work then hand within 0"}, [("PML143", 12, "no time to answer", "time units")]),
+    (
+        {"connect": "connect a and b distance 1000000", "agent_bot": BOT.replace("mobile 2", "mobile 11")},
+        [("PML144", 10, "more than 10000000 time units", "larger unit")],
+    ),
+    # connections
+    ({"connect": "connect a and b distance 3\nconnect a and a distance 1"}, [("PML145", 4, "a with itself", "two")]),
+    ({"connect": "connect a and b distance 3\nconnect b and a distance 4"}, [("PML146", 4, "line 3 does it", "delete")]),
+    ({"poi_b": 'poi "b" poi "c" poi "d" connect c and d distance 1'}, [("PML147", 2, "from a to c", "connect c and")]),
+    # events
+    ({"more": 'event "fly"'}, [("PML190", 14, "only before", ""), ("PML150", 14, "nobody can do fly", "can_do fly")]),
+    ({"agent_man": 'agent "man" location b can_do rest'}, [("PML151", 5, "nobody reacts to it", "reacts_to hand")]),
+    (
+        {"agent_bot": BOT + " reacts_to hand", "agent_man": 'agent "man" location b can_do rest'},
+        [("PML151", 5, "nobody else reacts to it", "another agent")],
+    ),
+    ({"agent_bot": BOT + " reacts_to hand"}, [("PML155", 10, "its own partner", "delete hand")]),
+    ({"agent_man": MAN + ", work"}, [("PML152", 11, "work is not collaborative", "collaborative")]),
+    ({"agent_bot": BOT.replace("mobile 2 ", "")}, [
+        ("PML154", 5, "never get to one place", "where they can meet"),
+        ("PML153", 10, "bot stays in a and can never do work in b", "make it mobile"),
+    ]),
+    ({"connect": ""}, [
+        ("PML154", 5, "hand can never happen", "connect"),
+        ("PML153", 10, "no way leads from a to b", "connect them"),
+    ]),
+    (
+        {"event_hand": 'event "hand" collaborative location a'},
+        [("PML154", 5, "hand can never happen", "")],
+    ),
+    ({"agent_bot": BOT + ", work"}, [("PML156", 10, "work twice behind can_do", "delete one")]),
+    # rules and dependencies
+    ({"rule": 'rule "order": (work before hand) before work'}, [("PML160", 7, "names work twice", "each event once")]),
+    ({"rule": 'rule "order": work before hand\nrule "back": hand before work'}, [
+        ("PML161", 7, "work waits for hand in the rule back", "change the order"),
+        ("PML161", 8, "hand waits for work in the rule order", ""),
+        ("PML162", 10, "tired never becomes true", "behind true_if of tired"),
+    ]),
+    ({"event_rest": 'event "rest" event "fly"', "rule": 'rule "order": work before fly'}, [
+        ("PML150", 6, "nobody can do fly", ""),
+        ("PML161", 7, "the rule order can never turn: nobody can do fly", ""),
+    ]),
+    ({"state": 'state "tired": initially false, false_if rest'}, [
+        ("PML161", 7, "hand waits for a state that never has the value", ""),
+        ("PML162", 9, "hand can never happen: tired never becomes true", "start it as true"),
+    ]),
+    # agents and objectives
+    ({"agent_bot": BOT.replace("controllable ", "")}, [("PML131", 10, "nobody in this scenario", "controllable")]),
+    ({"agent_man": MAN.replace("location", "human location")}, [("PML180", 11, "human but not controllable", "ally")]),
+    ({"objective": "", "reach": ""}, [("PML171", 14, "has no objective", "reach_objective: do e")]),
+    ({"objective": "objective: if work then work within 4"}, [("PML172", 12, "its own answer", "follow")]),
+    ({"objective": "objective: bot never_with bot"}, [("PML173", 12, "bot is always with itself", "two different")]),
+    (
+        {"objective": "objective: bot never_with man", "agent_man": MAN.replace("location b", "location a")},
+        [("PML174", 12, "both start in a", "somewhere else")],
+    ),
+    ({"more": "objective: avoid rest"}, [("PML170", 14, "a second objective", "keep one")]),
+    ({"more": "reach_objective: do rest"}, [("PML170", 14, "a second reach_objective", "keep one")]),
+    ({"more": 'poi "c" connect c and a distance 1'}, [("PML190", 14, "only before objective", "the order is free")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "expected"), FAULTS, ids=[str(next(iter(row[0].values())))[:50] for row in FAULTS])
+def test_a_fault_is_told_with_its_place_and_a_way_out(
+    changes: Dict[str, str], expected: List[Tuple[str, int, str, str]]
+) -> None:
+    source = text(**changes)
+    found = findings(source)
+    assert [(finding.code, finding.span and finding.span.line) for finding in found] == [row[:2] for row in expected]
+    for finding, (_, _, message, hint) in zip(found, expected):
+        assert message in finding.message
+        assert finding.hint and hint in finding.hint
+
+
+WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML180", "PML190"}
+
+
+def test_only_what_can_be_meant_is_a_warning() -> None:
+    seen = set()
+    for changes, _ in FAULTS:
+        for finding in findings(text(**changes)):
+            assert (finding.severity is Severity.WARNING) == (finding.code in WARNINGS), finding
+            seen.add(finding.code)
+    assert len(seen) > 25
+
+
+def test_an_empty_text_is_told_what_a_scenario_needs() -> None:
+    assert [finding.code for finding in findings("")] == ["PML132", "PML130", "PML171"]
+
+
+def test_everything_is_told_at_once_in_file_order() -> None:
+    source = text(
+        connect="connect a and b distance 0",
+        event_work='event "work" location c duration 0',
+        agent_bot=BOT.replace("mobile 2", "mobile 0"),
+        reach="reach_objective: do hadn",
+    )
+    assert [finding.code for finding in findings(source)] == ["PML140", "PML141", "PML110", "PML142", "PML110"]
+
+
+def test_a_mistake_in_a_name_is_not_told_twice_as_its_consequences() -> None:
+    """An event with a misspelt name in can_do is not also said to be one that nobody can do."""
+    assert [finding.code for finding in findings(text(agent_bot=BOT.replace("hand", "hnd")))] == ["PML110"]
+
+
+def test_a_choice_turns_as_long_as_one_way_is_open() -> None:
+    source = text(
+        event_rest='event "rest" event "help" location b event "call"',
+        rule='rule "order": (work or help) before (hand or call)',
+        agent_bot=BOT + ", help, call",
+        dependency="stateDependency: help only_if tired is_true",
+        state='state "tired": initially false, false_if rest',
+    )
+    assert [finding.code for finding in findings(source)] == ["PML162"]
+
+
+def test_a_value_made_by_hand_is_checked_without_a_text() -> None:
+    scenario = replace(parse(text(), "test.pur"), text="")
+    assert check(scenario) == ()
+    assert [finding.code for finding in check(replace(scenario, connections=()))] == ["PML154", "PML153"]

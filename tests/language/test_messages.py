@@ -1,0 +1,100 @@
+"""Each syntax error says where it is, what was expected there, and what to do."""
+
+from __future__ import annotations
+
+import pytest
+
+from pursue_gen.diagnostics import Severity
+
+from .texts import findings, syntax_errors, text
+
+# the text, then code, column, and a part of the message and of the hint
+SLIPS = [
+    ("poi a", "PML010", 5, "expected a name in quotes after `poi`, found `a`", 'put the name in quotes where it is declared: poi "a"'),
+    ("poi", "PML010", 4, "expected a name in quotes after `poi`, but the statement ends", 'the form is: poi "a"'),
+    ('poi "a', "PML012", 5, "no closing quote", 'write it as "name"'),
+    ("poi “a”", "PML010", 5, "found `“`", "use straight double quotes"),
+    ('poi "a" "b"', "PML010", 9, "expected the end of the statement", "the form is"),
+    ('pois "a"', "PML011", 1, "expected a statement, found `pois`", "did you mean poi?"),
+    ('Poi "a"', "PML011", 1, "expected a statement", "did you mean poi?"),
+    ("hello", "PML011", 1, "expected a statement", "a statement begins with poi, connect, event"),
+    (")", "PML011", 1, "expected a statement", "a statement begins with"),
+    ("connect a b distance 3", "PML010", 11, "expected `and` after `a`, found `b`", "connect a and b distance 3"),
+    ("connect a and b", "PML010", 16, "expected `distance` after `b`, but the statement ends", "connect a and b distance 3"),
+    ('connect "a" and b distance 3', "PML010", 9, "expected a name after `connect`", "write a without them"),
+    ("connect a and b distance", "PML010", 25, "expected a whole number", "connect a and b distance 3"),
+    ("connect a and b distance three", "PML010", 26, "expected a whole number after `distance`", "distance 3"),
+    ("connect a and b distance 3.5", "PML014", 26, "expected a whole number, found 3.5", "choose a smaller unit"),
+    ("connect a and b distance -3", "PML014", 26, "expected a whole number, found -3", "write digits only"),
+    ("connect a and b distance 1000001", "PML014", 26, "too large: 1000000 is the largest", "choose a larger unit"),
+    ("connect a and 2b distance 3", "PML010", 15, "expected a name after `and`, found `2b`", "a name begins with a letter"),
+    ("connect a and or distance 3", "PML010", 15, "expected a name", "or is a word of the language"),
+    ("connect a and state distance 3", "PML010", 15, "expected a name", "state is a word of the language"),
+    ("event catch", "PML010", 7, "expected a name in quotes", 'event "catch"'),
+    ('event "e" duration', "PML010", 19, "expected a whole number after `duration`", "the form is"),
+    ('event "e" duration 3 location a', "PML010", 22, "expected the end of the statement", "location a duration 6"),
+    ('event "e" colaborative', "PML010", 11, "`collaborative`", "did you mean collaborative?"),
+    ('event "e" location', "PML010", 19, "expected a name after `location`", "the form is"),
+    ('rule "r" a before b', "PML010", 10, "expected `:`", "the form is"),
+    ('rule "r": a', "PML010", 12, "expected `before` or `or`", "first before second"),
+    ('rule "r":', "PML010", 10, "expected a name or `(`", "the form is"),
+    ('rule "r": a before', "PML010", 19, "expected a name or `(`", "the form is"),
+    ('rule "r": a befor b', "PML010", 13, "expected `before` or `or`", "did you mean before?"),
+    ('rule "r": a before b before c', "PML010", 22, "found `before`", "put brackets around what belongs together"),
+    ('rule "r": (a before b', "PML010", 22, "expected `)`", "put a `)` for each `(`"),
+    ('rule "r": a before b)', "PML010", 21, "found `)`", "this `)` has no `(`"),
+    ('rule "r": ' + "(" * 41 + "a", "PML016", 51, "more than 40 brackets", "split the rule"),
+    ('state "s": initially false true_if a', "PML010", 28, "expected `,`", "put a comma behind true or false"),
+    ('state "s": initially maybe, true_if a', "PML010", 22, "expected `true` or `false`", "the form is"),
+    ('state "s": false', "PML010", 12, "expected `initially`", "the form is"),
+    ('state "s": initially false, true_if a, false_if b', "PML010", 40, "expected a name", "false_if is a word"),
+    ("stateDependency: a only_if s", "PML010", 29, "expected `is_true` or `is_false`", "the form is"),
+    ("stateDependency: a only_if s is_ture", "PML010", 30, "expected `is_true` or `is_false`", "did you mean is_true?"),
+    ("stateDependency a only_if s is_true", "PML010", 17, "expected `:`", "the form is"),
+    ('agent "b" mobile 3', "PML010", 19, "expected `location` after `3`", "location is required"),
+    ('agent "b" mobile location a', "PML010", 18, "expected a whole number after `mobile`", "mobile 3"),
+    ('agent "b" location a controllable', "PML010", 22, "found `controllable`", "human controllable mobile 3 location"),
+    ('agent "b" location a can_do x y', "PML010", 31, "expected `,`", "put a comma between two names"),
+    ('agent "b" location a can_do x,', "PML010", 31, "expected a name after `,`", "the form is"),
+    ('agent "b" location a reacts_to x can_do y', "PML010", 34, "found `can_do`", "can_do e1, e2 reacts_to e3"),
+    ('agent "b" controlable location a', "PML010", 11, "`controllable`", "did you mean controllable?"),
+    ('agnt "b" location a', "PML011", 1, "expected a statement", "did you mean agent?"),
+    ("objective:", "PML010", 11, "expected a name, `if` or `avoid`", "the form is"),
+    ("objective if a then b within 3", "PML010", 11, "expected `:`", "the form is"),
+    ("objective: if a then b", "PML010", 23, "expected `within`", "the form is"),
+    ("objective: do a", "PML010", 12, "found `do`", "write reach_objective: do"),
+    ("objective: a never with b", "PML010", 14, "expected `never_with`", "did you mean never_with?"),
+    ("reach_objective: avoid a", "PML010", 18, "expected `do`", "is an objective"),
+    ("reach_objective: do a within 3", "PML010", 23, "expected `after`", "after is optional"),
+    ("reach_objective: do a after", "PML010", 28, "expected a whole number", "the form is"),
+    ("/* never closed", "PML013", 1, "never closed: expected `*/`", "use // for one line"),
+    ('poi "a" /* never closed', "PML013", 9, "never closed", "use // for one line"),
+    ("objective: avoid a; ", "PML010", 19, "found `;`", "the form is"),
+    ("control : A<>reachObj.win", "PML017", 1, "stands only behind an objective", "delete it"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("slip", "code", "column", "message", "hint"), SLIPS, ids=[row[0][:40] for row in SLIPS])
+def test_a_slip_is_told_with_its_place_and_a_way_out(slip: str, code: str, column: int, message: str, hint: str) -> None:
+    (finding,) = syntax_errors("// first line\n" + slip)
+    assert finding.severity is Severity.ERROR
+    assert (finding.code, finding.span and (finding.span.line, finding.span.column)) == (code, (2, column))
+    assert message in finding.message
+    assert hint in finding.hint
+
+
+def test_every_slip_of_a_file_is_told_at_once() -> None:
+    source = text(poi_a="poi a", event_rest='evnt "rest"', agent_bot='agent "bot" mobile location a')
+    source += "objective: avoid\n"
+    found = [(finding.code, finding.span and finding.span.line) for finding in syntax_errors(source)]
+    assert found == [("PML010", 1), ("PML011", 6), ("PML010", 10), ("PML010", 14)]
+
+
+def test_no_nonsense_follows_from_a_syntax_error() -> None:
+    """A POI that could not be read is not also said to be unknown."""
+    assert [finding.code for finding in findings(text(poi_a="poi a"))] == ["PML010"]
+
+
+def test_an_expected_list_reads_like_a_sentence() -> None:
+    (finding,) = syntax_errors('event "e" e')
+    assert "expected `location`, `duration`, `collaborative` or the end of the statement after" in finding.message

@@ -1,0 +1,98 @@
+"""Names that cannot stand in a ROS workspace are refused, and never changed behind the author's back."""
+
+from __future__ import annotations
+
+import keyword
+from typing import Dict
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_gen.language.names import GENERATED
+
+from .texts import STATEMENTS, findings, text
+
+RULE = STATEMENTS["rule"]
+
+
+@pytest.mark.parametrize("name", ["", " ", "my robot", "2nd", "bot-1", "_bot", "büro", "a/b", "a.b", "x" * 61])
+@pytest.mark.parametrize("kind", ["poi a", "event rest", "rule", "state", "agent man"])
+def test_malformed_names(kind: str, name: str) -> None:
+    old = STATEMENTS[kind].split('"')[1]
+    found = findings(text(**{kind.replace(" ", "_"): STATEMENTS[kind].replace(f'"{old}"', f'"{name}"')}))
+    finding = next(finding for finding in found if finding.code == "PML101")
+    assert finding.span is not None and finding.span.line == list(STATEMENTS).index(kind) + 1
+    assert finding.hint
+
+
+def test_a_malformed_name_gets_a_proposal() -> None:
+    (finding,) = findings(text(rule=RULE.replace("order", "my order")))
+    assert "my_order" in finding.hint
+
+
+TAKEN = sorted(GENERATED) + ["workDONE", "going_home", "doing_well", "clock", "chan", "before", "poi", *keyword.kwlist]
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_names_that_are_taken(name: str) -> None:
+    found = findings(text(rule=RULE.replace("order", name)))
+    assert [(finding.code, finding.span and finding.span.line) for finding in found] == [("PML102", 7)]
+    assert name in found[0].message and found[0].hint
+
+
+@pytest.mark.parametrize("name", ["human", "DONE_work", "Going_home", "base", "win", "A", "going", "waitDone"])
+def test_names_that_look_alike_are_free(name: str) -> None:
+    assert findings(text(rule=RULE.replace("order", name))) == []
+
+
+def test_a_name_twice_is_told_at_the_second_place() -> None:
+    (finding,) = findings(text(poi_b='poi "b"\npoi "b"'))
+    assert finding.code == "PML103" and finding.span is not None and finding.span.line == 3
+    assert "line 2" in finding.message
+
+
+@pytest.mark.parametrize("name", ["a", "work", "tired", "bot"])
+def test_a_name_for_two_kinds(name: str) -> None:
+    (finding,) = findings(text(rule=RULE.replace("order", name)))
+    assert finding.code == "PML104"
+    assert "a name stands for one thing" in finding.message
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"event_rest": 'event "rest" event "bot_a2b"', "agent_man": STATEMENTS["agent man"].replace("rest", "rest, bot_a2b")}, "bot_a2b"),
+        ({"rule": RULE.replace("order", "Cbot")}, "Cbot"),
+        ({"rule": RULE.replace("order", "Pman")}, "Pman"),
+        ({"rule": RULE.replace("order", "Stired")}, "Stired"),
+        ({"rule": RULE.replace("order", "Creach")}, "Creach"),
+        ({"rule": RULE.replace("order", "each"), "agent_man": 'agent "reach" location b can_do rest reacts_to hand'}, "Creach"),
+        ({"rule": RULE + '\nrule "Porder": work before rest'}, "Porder"),
+        ({"poi_b": 'poi "b" poi "a2a" connect a and a2a distance 1'}, "bot_a2a2a"),
+        ({"poi_b": 'poi "b" poi "b_to_c" poi "a_to_b" poi "c" connect a and b_to_c distance 1 connect a_to_b and c distance 1 connect a and c distance 1'}, "going_a_to_b_to_c"),
+    ],
+)  # fmt: skip
+def test_names_from_which_one_word_would_be_made_twice(changes: Dict[str, str], word: str) -> None:
+    found = [finding for finding in findings(text(**changes)) if finding.code == "PML105"]
+    assert [word in finding.message for finding in found] == [True]
+
+
+def test_package_names_do_not_collide() -> None:
+    source = text(agent_man='agent "x_bringup" location b can_do rest reacts_to hand')
+    assert [finding.code for finding in findings(source, "controller_x")] == ["PML105"]
+    assert findings(source, "another") == []
+
+
+@pytest.mark.parametrize("stem", ["my floor", "2rooms", "one-officer", ".hidden"])
+def test_a_file_name_that_cannot_become_a_package(stem: str) -> None:
+    (finding,) = findings(text(), stem)
+    assert finding.code == "PML106" and finding.span is None
+    assert "rename the file to" in finding.hint
+
+
+@given(st.text(min_size=1, max_size=12).filter(lambda name: not set('"\n\r') & set(name)))
+def test_any_quoted_name_is_accepted_as_it_is_or_refused(name: str) -> None:
+    found = findings(text(rule=RULE.replace('"order"', f'"{name}"')))
+    acceptable = name.isascii() and name.replace("_", "a").isalnum() and name[0].isalpha()
+    assert acceptable or [finding.code for finding in found] == ["PML101"]

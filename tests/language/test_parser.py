@@ -1,0 +1,218 @@
+"""A text becomes the scenario that its author meant."""
+
+from __future__ import annotations
+
+import string
+from pathlib import Path
+from typing import List
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError, Span, render
+from pursue_gen.language import check, load, parse
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.parser import read
+from pursue_gen.language.scenario import Avoid, Choice, Connection, NeverWith, Reach, Ref, Respond, Sequence
+
+from .texts import STATEMENTS, text
+
+POI = 'poi "a"\n'
+
+
+def test_the_sample_of_these_tests_is_sound() -> None:
+    assert check(parse(text(), "test.pur")) == ()
+
+
+def test_every_field_is_read() -> None:
+    scenario = parse(text(), "folder/test.pur")
+    assert (scenario.name, scenario.file, scenario.text) == ("test", "folder/test.pur", text())
+    way = scenario.connections[0]
+    assert way == Connection("a", "b", 3, Span("folder/test.pur", 3, 1, 3, 27))
+    work, hand, rest = scenario.events
+    assert (work.location.name if work.location else None, work.duration, work.collaborative) == ("b", 3, False)
+    assert (hand.location, hand.duration, hand.collaborative) == (None, None, True)
+    (state,) = scenario.states
+    assert (state.name, state.initially) == ("tired", False)
+    assert [ref.name for ref in state.true_if + state.false_if] == ["work", "rest"]
+    (need,) = scenario.dependencies
+    assert (need.event.name, need.state.name, need.value) == ("hand", "tired", True)
+    bot, man = scenario.agents
+    assert (bot.controllable, bot.human, bot.mobile, bot.location.name) == (True, False, 2, "a")
+    assert bot.is_robot and not man.is_robot and man.mobile is None
+    assert [ref.name for ref in man.reacts_to] == ["hand"]
+    assert isinstance(scenario.safety, Respond) and scenario.safety.deadline == 20
+    assert isinstance(scenario.reach, Reach) and scenario.reach.after == 4
+    assert rest.name == "rest"
+
+
+def test_spans_point_at_names_in_the_text() -> None:
+    scenario = parse(POI + 'agent "bot" location a', "test.pur")
+    assert scenario.agents[0].span == Span("test.pur", 2, 7, 2, 12)
+    assert scenario.agents[0].location.span == Span("test.pur", 2, 22, 2, 23)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'poi"a"event"e"agent"bot"location a can_do e objective:avoid e',
+        '// (: /* "\npoi /* here */ "a" /* two\nlines */\nevent "e" // "x\nagent "bot"\nlocation\na can_do\ne\nobjective :avoid e',
+        'poi "a"\r\nevent "e"\r\nagent "bot" location a can_do e\r\nobjective: avoid e\r\n',
+        'poi "a" event "e" agent "bot" location a can_do e objective: avoid e control : A[]not(obj.lose)\n',
+        'poi "a" event "e" agent "bot" location a can_do e\nobjective: avoid e\n\n control : A[]not(obj.lose)',
+    ],
+)
+def test_layout_comments_and_a_query_behind_the_objective_change_nothing(source: str) -> None:
+    scenario = parse(source, "test.pur")
+    assert [poi.name for poi in scenario.pois] == ["a"]
+    assert [agent.name for agent in scenario.agents] == ["bot"]
+    assert isinstance(scenario.safety, Avoid)
+
+
+def test_rules_nest() -> None:
+    body = parse('rule "r": ((a or b) or c) before (d or e)', "test.pur").rules[0].body
+    assert isinstance(body, Sequence)
+    assert isinstance(body.first, Choice) and isinstance(body.first.first, Choice)
+    assert isinstance(body.first.second, Ref) and body.first.second.name == "c"
+    assert isinstance(body.second, Choice)
+
+
+@pytest.mark.parametrize(
+    ("sets", "true_if", "false_if"),
+    [("", [], []), (", true_if a, b", ["a", "b"], []), (", false_if a", [], ["a"]), (", true_if a false_if b", ["a"], ["b"])],
+)
+def test_a_state_may_lack_either_list(sets: str, true_if: List[str], false_if: List[str]) -> None:
+    (state,) = parse(f'state "s" : initially true{sets}', "test.pur").states
+    assert state.initially
+    assert ([ref.name for ref in state.true_if], [ref.name for ref in state.false_if]) == (true_if, false_if)
+
+
+def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> None:
+    scenario = parse(
+        'agent "human" location a agent "nurse" human controllable mobile 3 location a objective: human never_with nurse',
+        "test.pur",
+    )
+    human, nurse = scenario.agents
+    assert (human.name, human.human, human.controllable) == ("human", False, False)
+    assert (nurse.human, nurse.controllable, nurse.is_robot) == (True, True, False)
+    assert isinstance(scenario.safety, NeverWith) and scenario.safety.first.name == "human"
+
+
+def test_after_is_optional() -> None:
+    reach = parse("reach_objective: do e", "test.pur").reach
+    assert reach is not None and reach.after == 0
+
+
+def test_one_objective_of_each_kind_but_not_two_of_one() -> None:
+    both = parse("objective: avoid e reach_objective: do f", "test.pur")
+    assert both.safety is not None and both.reach is not None
+    with pytest.raises(PursueError) as caught:
+        parse("objective: avoid e\nobjective: a never_with b\nreach_objective: do e\nreach_objective: do f", "test.pur")
+    places = [(finding.code, finding.span and finding.span.line) for finding in caught.value.diagnostics]
+    assert places == [("PML170", 2), ("PML170", 4)]
+
+
+def test_load_takes_the_name_from_the_file(tmp_path: Path) -> None:
+    (tmp_path / "my_floor.pur").write_text("\ufeff" + text(), encoding="utf-8")
+    assert load(tmp_path / "my_floor.pur").name == "my_floor"
+
+
+def test_load_raises_what_check_finds(tmp_path: Path) -> None:
+    path = tmp_path / "floor.pur"
+    path.write_text(text(agent_bot='agent "bot" controllable mobile 2 location x can_do work, hand'))
+    with pytest.raises(PursueError) as caught:
+        load(path)
+    assert [finding.code for finding in caught.value.diagnostics] == ["PML110"]
+    assert caught.value.exit_status == 3
+
+
+def test_load_lets_warnings_pass(tmp_path: Path) -> None:
+    path = tmp_path / "floor.pur"
+    path.write_text(text(agent_man='agent "man" human location b can_do rest reacts_to hand'))
+    assert [finding.code for finding in check(load(path))] == ["PML180"]
+
+
+def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
+    (tmp_path / "picture.pur").write_bytes(b"\xff\xd8\xff")
+    for path, code in ((tmp_path / "none.pur", "PML001"), (tmp_path, "PML001"), (tmp_path / "picture.pur", "PML002")):
+        with pytest.raises(PursueError) as caught:
+            load(path)
+        assert [finding.code for finding in caught.value.diagnostics] == [code]
+
+
+WORDS = [*KEYWORDS.values(), "a", "bot", '"a"', '"bot"', '"', "//[1,2,3,0,0,0,1]", "//", "/*", "*/", ",", ":", "(", ")"]
+WORDS += ["3", "-1", "0", "99999999999999999999", "control : A<>x", "\n", " ", "²", "é", "\x00", "\u2028"]
+
+
+def _survives(source: str) -> None:
+    """Reading and checking raise nothing but PursueError, and what they find can be shown."""
+    reading = read(source, "test.pur")
+    assert reading.scenario is not None or reading.diagnostics
+    for finding in reading.diagnostics + (check(reading.scenario) if reading.scenario is not None else ()):
+        assert finding.message and finding.code.startswith("PML")
+        assert render(finding, source)
+    try:
+        parse(source, "test.pur")
+    except PursueError as problem:
+        assert problem.diagnostics
+
+
+@given(st.text())
+def test_any_text_is_read_or_told_what_is_wrong(source: str) -> None:
+    _survives(source)
+
+
+@given(st.lists(st.sampled_from(WORDS), max_size=40).map(" ".join))
+def test_any_words_of_the_language_in_any_order_are_read_or_told(source: str) -> None:
+    _survives(source)
+
+
+@given(st.data())
+def test_a_sound_scenario_with_a_slip_is_read_or_told(data: st.DataObject) -> None:
+    source = text()
+    start = data.draw(st.integers(0, len(source)))
+    end = data.draw(st.integers(start, min(len(source), start + 12)))
+    slip = data.draw(st.sampled_from(["", *WORDS]) | st.text(max_size=4))
+    _survives(source[:start] + slip + source[end:])
+
+
+def test_brackets_have_a_depth_that_they_may_not_pass() -> None:
+    _survives('rule "r": ' + "(" * 5000 + "a before b" + ")" * 5000)
+    _survives("connect a and b distance " + "9" * 5000)
+
+
+NAMES = st.text(string.ascii_letters + string.digits + "_", min_size=1, max_size=8).map(lambda name: "n" + name)
+
+
+@given(st.lists(NAMES, min_size=8, max_size=8, unique=True), st.integers(1, 10**6), st.booleans())
+@settings(max_examples=50)
+def test_names_and_numbers_come_out_as_they_went_in(names: List[str], number: int, controllable: bool) -> None:
+    p, q, e, f, rule, state, bot, man = names
+    statements = [
+        f'poi "{p}"',
+        f'poi "{q}"',
+        f"connect {p} and {q} distance {number}",
+        f'event "{e}" location {q} duration {number}',
+        f'event "{f}" collaborative',
+        f'rule "{rule}": {e} before {f}',
+        f'state "{state}": initially {"true" if controllable else "false"}, true_if {e} false_if {f}',
+        f"stateDependency: {e} only_if {state} is_false",
+        f'agent "{bot}" {"controllable" if controllable else ""} mobile {number} location {p} can_do {e}, {f}',
+        f'agent "{man}" location {p} reacts_to {f}',
+        f"objective: if {e} then {f} within {number}",
+    ]
+    scenario = parse("\n".join(statements), "test.pur")
+    assert [poi.name for poi in scenario.pois] == [p, q]
+    assert [(way.a, way.b, way.distance) for way in scenario.connections] == [(p, q, number)]
+    assert [(event.name, event.duration) for event in scenario.events] == [(e, number), (f, None)]
+    assert [rule.name for rule in scenario.rules] == [rule]
+    assert [(part.name, part.initially) for part in scenario.states] == [(state, controllable)]
+    assert [(agent.name, agent.controllable) for agent in scenario.agents] == [(bot, controllable), (man, False)]
+    assert [ref.name for ref in scenario.agents[0].can_do] == [e, f]
+    assert isinstance(scenario.safety, Respond) and scenario.safety.deadline == number
+
+
+def test_every_statement_of_the_sample_may_stand_alone() -> None:
+    for statement in STATEMENTS.values():
+        assert read(statement, "test.pur").diagnostics == ()
