@@ -81,7 +81,7 @@ def _typical(scenario: Scenario) -> float:
 
 
 def _place(part: Sequence[str], distances: Distances, fixed: Mapping[str, Point]) -> Dict[str, Point]:
-    """Minimises stress by majorisation (Gansner, Koren, North 2004), point by point, from a circle around what is fixed.
+    """Minimises stress by majorisation (Gansner, Koren, North 2004), point by point, from a circle.
 
     Stress is the sum over pairs of (distance on the map - length of the shortest way)² / length².
     """

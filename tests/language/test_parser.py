@@ -57,7 +57,8 @@ def test_spans_point_at_names_in_the_text() -> None:
     "source",
     [
         'poi"a"event"e"agent"bot"location a can_do e objective:avoid e',
-        '// (: /* "\npoi /* here */ "a" /* two\nlines */\nevent "e" // "x\nagent "bot"\nlocation\na can_do\ne\nobjective :avoid e',
+        '// (: /* "\npoi /* here */ "a" /* two\nlines */\nevent "e" // "x\nagent "bot"\nlocation\na can_do\ne\n'
+        "objective :avoid e",
         'poi "a"\r\nevent "e"\r\nagent "bot" location a can_do e\r\nobjective: avoid e\r\n',
         'poi "a" event "e" agent "bot" location a can_do e objective: avoid e control : A[]not(obj.lose)\n',
         'poi "a" event "e" agent "bot" location a can_do e\nobjective: avoid e\n\n control : A[]not(obj.lose)',
@@ -80,7 +81,12 @@ def test_rules_nest() -> None:
 
 @pytest.mark.parametrize(
     ("sets", "true_if", "false_if"),
-    [("", [], []), (", true_if a, b", ["a", "b"], []), (", false_if a", [], ["a"]), (", true_if a false_if b", ["a"], ["b"])],
+    [
+        ("", [], []),
+        (", true_if a, b", ["a", "b"], []),
+        (", false_if a", [], ["a"]),
+        (", true_if a false_if b", ["a"], ["b"]),
+    ],
 )
 def test_a_state_may_lack_either_list(sets: str, true_if: List[str], false_if: List[str]) -> None:
     (state,) = parse(f'state "s" : initially true{sets}', "test.pur").states
@@ -90,7 +96,8 @@ def test_a_state_may_lack_either_list(sets: str, true_if: List[str], false_if: L
 
 def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> None:
     scenario = parse(
-        'agent "human" location a agent "nurse" human controllable mobile 3 location a objective: human never_with nurse',
+        'agent "human" location a agent "nurse" human controllable mobile 3 location a\n'
+        "objective: human never_with nurse",
         "test.pur",
     )
     human, nurse = scenario.agents
