@@ -18,6 +18,11 @@ from pursue_gen.report.thesis_figures import CENTRALIZED_NAME, GENERAL_NAME, Fig
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network
 
+_NOTE = (
+    "General decides the ends of movements and actions itself; the others wait for reports of them. These are two",
+    "games with a strategy each, so a share of General may be above 100 %.",
+)
+
 
 @dataclass(frozen=True)
 class Game:
@@ -43,12 +48,14 @@ class CommandsTable:
     """A scenario's controllers: General, Centralized, then the distributed ones. Percentages are of General.
 
     `thesis_reach_obj` is where the thesis put reachObj's commands, None for a scenario that is not the thesis's.
+    `ideal_general`: General plays another game than the rest (that with a priori ends), so it has another strategy.
     """
 
     scenario: str
     reach_obj: str
     rows: Tuple[Row, ...]
     thesis_reach_obj: Optional[str] = None
+    ideal_general: bool = False
 
 
 def commands_table(
@@ -62,7 +69,8 @@ def commands_table(
 
     `game` is what the workspace plays. `ideal` is the game with controllable ends, which only the General controller
     decides; without it General is made of `game` too (and has the ends that its strategy commands). `reach_obj` None
-    takes the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition` raises.
+    takes the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition`
+    raises.
     """
     thesis = thesis_table(scenario_name, tuple(agent.name for agent in agents if agent.is_robot))
     policy = reach_obj or (thesis.reach_obj if thesis else DEDICATED)
@@ -75,7 +83,7 @@ def commands_table(
             name = title if sub.controller == CONTROLLER else sub.controller
             lines = _lines(sub, scenario_name, played.reaction)
             rows.append(Row(name, sub.commands, lines, thesis.figure(name) if thesis else None))
-    return CommandsTable(scenario_name, policy, tuple(rows), thesis.reach_obj if thesis else None)
+    return CommandsTable(scenario_name, policy, tuple(rows), thesis.reach_obj if thesis else None, ideal is not None)
 
 
 def _lines(sub: SubStrategy, scenario_name: str, reaction: Fraction) -> int:
@@ -90,6 +98,7 @@ def as_json(table: CommandsTable) -> Dict[str, Any]:
         "scenario": table.scenario,
         "reach_obj": table.reach_obj,
         "thesis_reach_obj": table.thesis_reach_obj,
+        "ideal_general": table.ideal_general,
         "controllers": [
             {
                 "controller": row.controller,
@@ -125,7 +134,8 @@ def render_table(table: CommandsTable) -> str:
     title = f"{table.scenario}: commands and lines per controller (reachObj's commands: {table.reach_obj}"
     if table.thesis_reach_obj and table.thesis_reach_obj != table.reach_obj:
         title += f"; in the thesis: {table.thesis_reach_obj}"
-    return "\n".join([title + ")", "", *_aligned([heads, *cells])]) + "\n"
+    notes = ["", *_NOTE] if table.ideal_general else []
+    return "\n".join([title + ")", "", *_aligned([heads, *cells]), *notes]) + "\n"
 
 
 def _thesis_cells(figure: Optional[Figure], general: Figure) -> List[str]:
@@ -151,7 +161,9 @@ def _aligned(cells: Sequence[Sequence[str]]) -> List[str]:
     """The lines of a table: the first column to the left, numbers to the right, a rule below the heads."""
     widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
     lines = [
-        "  ".join(cell.rjust(width) if column else cell.ljust(width) for column, (cell, width) in enumerate(zip(row, widths)))
+        "  ".join(
+            cell.rjust(width) if column else cell.ljust(width) for column, (cell, width) in enumerate(zip(row, widths))
+        )
         for row in cells
     ]
     return [line.rstrip() for line in [lines[0], "  ".join("-" * width for width in widths), *lines[1:]]]

@@ -4,7 +4,7 @@ What stands before the strategy (escape codes, progress, the verdict) is skipped
 
     State: ( police.a thief.d reachObj._unlocked ) Ppolice=1 Pthief=4
     While you are in (Cpolice<=1 && Cthief<Cpolice), wait.
-    When you are in (1<Cpolice), take transition police.a->police.going_a_to_b { Cpolice > 1, police_a2b!, Cpolice := 0 }
+    When you are in (1<Cpolice), take transition police.a->police.b { Cpolice > 1, police_a2b!, Cpolice := 0 }
 
 with the other automata that take part in a transition on the lines after it. A location to which the network gives no
 name is printed by its id with an underscore before it.
@@ -99,8 +99,11 @@ class _Reader:
         """The constraint, remembered by its text."""
         constraints = read_constraint(re.sub(r"[ \t]", "", text))
         if constraints is None:
-            self.fail("PLN004", f"'{text.strip()}' is no constraint on clocks; expected one like `1<C`, `C<=5` or "
-                      "`A-B<2`", _RUN_AGAIN)
+            self.fail(
+                "PLN004",
+                f"'{text.strip()}' is no constraint on clocks; expected one like `1<C`, `C<=5` or `A-B<2`",
+                _RUN_AGAIN,
+            )
         for clock in (constraints[0].left, constraints[0].right):
             if clock is not None and clock not in self.names.clocks:
                 self.fail("PLN005", f"the network has no clock '{clock}'", _OTHER_NETWORK)
@@ -155,24 +158,31 @@ class _Reader:
             return known
         match = _EDGE.fullmatch(text.strip())
         if not match:
-            self.fail("PLN004", "this is no transition; expected `bot.a->bot.b { guard, sync, assignment }`", _RUN_AGAIN)
+            self.fail(
+                "PLN004", "this is no transition; expected `bot.a->bot.b { guard, sync, assignment }`", _RUN_AGAIN
+            )
         automaton, source, other, target, guard, sync, assign = match.groups()
         if automaton != other:
-            self.fail("PLN004", f"a transition stays in one automaton; this goes from '{automaton}' to '{other}'",
-                      _RUN_AGAIN)
+            self.fail(
+                "PLN004", f"a transition stays in one automaton; this goes from '{automaton}' to '{other}'", _RUN_AGAIN
+            )
         ends = (self.location(automaton, source), self.location(automaton, target))
         edges = self.names.edges.get((automaton, *ends, sync), [])
         if not edges:
-            self.fail("PLN007", f"the network has no edge {automaton}.{source}->{automaton}.{target} with '{sync}'",
-                      _OTHER_NETWORK)
+            self.fail(
+                "PLN007",
+                f"the network has no edge {automaton}.{source}->{automaton}.{target} with '{sync}'",
+                _OTHER_NETWORK,
+            )
         for edge in edges:
             same_guard = guard_meaning(guard_text(edge.guard)) == guard_meaning(guard)
             if same_guard and assign_meaning(assign_text(edge)) == assign_meaning(assign):
                 self.moves[text] = Move(automaton, edge)
                 return self.moves[text]
         ours = " or ".join(f"{{ {guard_text(e.guard)}, {sync_text(e)}, {assign_text(e)} }}" for e in edges)
-        self.fail("PLN007", f"in the network the edge {automaton}.{source}->{automaton}.{target} is {ours}",
-                  _OTHER_NETWORK)
+        self.fail(
+            "PLN007", f"in the network the edge {automaton}.{source}->{automaton}.{target} is {ours}", _OTHER_NETWORK
+        )
 
     def check_joint(self, state: DiscreteState, moves: Tuple[Move, ...]) -> None:
         """Fails unless exactly the automata take part that must in this state; a cut or mixed-up file shows so."""
@@ -182,8 +192,11 @@ class _Reader:
                 self.fail("PLN008", f"'{move.automaton}' cannot make this move in the state above", _RUN_AGAIN)
         sync = moves[0].edge.sync
         if sync is not None and not sync.sends:
-            self.fail("PLN008", f"a transition starts with the automaton that sends, not with a receiver of "
-                      f"'{sync.channel}'", _RUN_AGAIN)
+            self.fail(
+                "PLN008",
+                f"a transition starts with the automaton that sends, not with a receiver of '{sync.channel}'",
+                _RUN_AGAIN,
+            )
         taking = [move.automaton for move in moves[1:]]
         due: Set[str] = set()
         for automaton, edge in self.names.receivers.get(sync.channel, []) if sync else []:
@@ -192,8 +205,12 @@ class _Reader:
         channels = {move.edge.sync and move.edge.sync.channel for move in moves}
         if len(channels) > 1 or len(taking) != len(set(taking)) or set(taking) != due:
             expected = ", ".join(sorted(due)) or "nobody"
-            self.fail("PLN008", f"in this state {expected} must receive '{sync_text(moves[0].edge)}', and the plan has "
-                      f"{', '.join(taking) or 'nobody'}", _RUN_AGAIN)
+            self.fail(
+                "PLN008",
+                f"in this state {expected} must receive '{sync_text(moves[0].edge)}', and the plan has "
+                f"{', '.join(taking) or 'nobody'}",
+                _RUN_AGAIN,
+            )
 
 
 class _Open:
@@ -223,7 +240,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
     opened: Optional[_Open] = None
-    for offset, line in enumerate(text[header.end():].split("\n")):
+    for offset, line in enumerate(text[header.end() :].split("\n")):
         line = line.rstrip()
         if not line:
             continue
@@ -247,7 +264,9 @@ def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:
     """The block that a line `State: …` starts."""
     match = _STATE.fullmatch(line)
     if not match:
-        reader.fail("PLN004", "this is no state; expected `State: ( automaton.location … ) variable=value …`", _RUN_AGAIN)
+        reader.fail(
+            "PLN004", "this is no state; expected `State: ( automaton.location … ) variable=value …`", _RUN_AGAIN
+        )
     state = reader.state(match.group(1), match.group(2))
     if state in seen:
         reader.fail("PLN006", "the plan has this state twice", _RUN_AGAIN)
@@ -271,8 +290,12 @@ def _continue(reader: _Reader, opened: _Open, line: str) -> None:
         opened.moves += (reader.move(line),)
         opened.place = (reader.line, reader.text)
     else:
-        reader.fail("PLN004", "this line is cut or damaged; expected `While you are in …, wait.`, "
-                    "`When you are in …, take transition …` or a transition", _RUN_AGAIN)
+        reader.fail(
+            "PLN004",
+            "this line is cut or damaged; expected `While you are in …, wait.`, "
+            "`When you are in …, take transition …` or a transition",
+            _RUN_AGAIN,
+        )
 
 
 def _finish_command(reader: _Reader, opened: _Open) -> None:
@@ -334,8 +357,8 @@ def _title(strategy: Strategy, objective: Objective) -> str:
 def write_plan(strategy: Strategy, network: Network, objective: Objective) -> str:
     """The plan as verifytga prints it, without its progress; `read_plan` makes the same strategy of it.
 
-    A block that says nothing (no zone to wait in and no command) is left out: it covers nothing. Raises ValueError where
-    a command has no zone.
+    A block that says nothing (no zone to wait in and no command) is left out: it covers nothing. Raises ValueError
+    where a command has no zone.
     """
     printed = {
         automaton.name: {location.name: _printed(location.name, location.named) for location in automaton.locations}

@@ -85,7 +85,7 @@ def zones_text(zones: Tuple[Zone, ...]) -> str:
 
 
 def read_constraint(text: str) -> Optional[Tuple[Constraint, ...]]:
-    """The constraint in a text without blanks; an equality makes two. None where the text is no constraint on clocks."""
+    """The constraint in a text without blanks (an equality makes two); None where it is no constraint on clocks."""
     match = _CONSTRAINT.fullmatch(text)
     if not match:
         return None

@@ -1,6 +1,7 @@
 """A small game of every kind of automaton, and random strategies for it, for the tests of plans and partitions.
 
-The game: robots bot1 and bot2, a nurse who is an ally, a thief whom nobody controls; a rule, states and both objectives.
+The game: robots bot1 and bot2, a nurse who is an ally, a thief whom nobody controls; a rule, states and both
+objectives.
 """
 
 from __future__ import annotations
@@ -8,12 +9,16 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Dict, List, Tuple
 
+from hypothesis import settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.scenario import Agent, Ref
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
+
+QUICK = settings(max_examples=50, deadline=None)
+"""For tests that draw whole strategies: on a busy machine one draw may take long."""
 
 SPAN = Span("game.pur", 1, 1, 1, 2)
 REACH = Objective(Kind.REACH, goal=("reachObj", "win"))
@@ -97,9 +102,7 @@ def game() -> Network:
         _walker("nurse", True, "help"),
         _walker("thief", False, "steal"),
     )
-    channels = tuple(
-        dict.fromkeys(e.sync.channel for w in walkers for e in w.edges if e.sync)
-    )
+    channels = tuple(dict.fromkeys(e.sync.channel for w in walkers for e in w.edges if e.sync))
     return Network(
         clocks=("Cbot1", "Cbot2", "Cnurse", "Cthief", "Cobj", "Creach"),
         variables=(("Prule", 0), ("Pbot1", 1), ("Pbot2", 1), ("Pnurse", 1), ("Pthief", 1), ("Sopen", 0)),
@@ -121,14 +124,19 @@ def joint_moves(network: Network, state: DiscreteState, controllable: bool) -> L
     moves = []
     for automaton in network.automata:
         for edge in automaton.edges:
-            if edge.source != at[automaton.name] or edge.controllable is not controllable or not _holds(edge.guard, values):
+            if (
+                edge.source != at[automaton.name]
+                or edge.controllable is not controllable
+                or not _holds(edge.guard, values)
+            ):
                 continue
             if edge.sync and not edge.sync.sends:
                 continue
             joint = [Move(automaton.name, edge)]
             for other in network.automata if edge.sync else ():
                 takes = (
-                    e for e in other.edges
+                    e
+                    for e in other.edges
                     if edge.sync and e.sync == Sync(edge.sync.channel, False) and e.source == at[other.name]
                 )
                 joint += [Move(other.name, e) for e in takes][:1]
@@ -173,9 +181,9 @@ def random_strategies(draw: st.DrawFn, controllable: bool = True) -> Strategy:
     network = game()
     federations = st.lists(zones(network.clocks), min_size=1, max_size=2).map(tuple)
     blocks = []
-    for state in draw(st.lists(states(network), min_size=1, max_size=4, unique=True)):
+    for state in draw(st.lists(states(network), min_size=1, max_size=3, unique=True)):
         possible = joint_moves(network, state, controllable)
-        chosen = draw(st.lists(st.sampled_from(possible), max_size=4)) if possible else []
+        chosen = draw(st.lists(st.sampled_from(possible), max_size=3)) if possible else []
         commands = tuple(Command(draw(federations), moves) for moves in chosen)
         wait = draw(federations if not commands else st.one_of(st.just(()), federations))
         blocks.append(Block(state, wait, commands))

@@ -17,7 +17,7 @@ from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.uppaal import read_network
-from tests.partition.games import AGENTS, agent, game, joint_moves, random_strategies
+from tests.partition.games import AGENTS, QUICK, agent, game, joint_moves, random_strategies
 
 SHAPES = ("distributed", "centralized", "general")
 POLICIES = ("dedicated", "all", "bot1", "bot2")
@@ -58,6 +58,7 @@ def by_name(subs: Iterable[SubStrategy]) -> "dict[str, SubStrategy]":
     return {sub.controller: sub for sub in subs}
 
 
+@QUICK
 @given(random_strategies(), st.sampled_from(SHAPES), st.sampled_from(POLICIES))
 def test_no_command_is_lost_and_none_given_twice_but_by_policy(strategy: Strategy, shape: str, policy: str) -> None:
     subs = partition(strategy, game(), AGENTS, shape, policy)
@@ -69,6 +70,7 @@ def test_no_command_is_lost_and_none_given_twice_but_by_policy(strategy: Strateg
     assert given_to(subs) == expected
 
 
+@QUICK
 @given(random_strategies(), st.sampled_from(SHAPES), st.sampled_from(POLICIES))
 def test_a_controller_commands_its_agents_only(strategy: Strategy, shape: str, policy: str) -> None:
     subs = partition(strategy, game(), AGENTS, shape, policy)
@@ -79,6 +81,7 @@ def test_a_controller_commands_its_agents_only(strategy: Strategy, shape: str, p
     assert all(owners[name] == 1 for name in ("bot1", "bot2", "nurse"))
 
 
+@QUICK
 @given(random_strategies(), st.sampled_from(SHAPES))
 def test_blocks_and_commands_stay_in_order(strategy: Strategy, shape: str) -> None:
     order = [block.state for block in strategy.blocks]
@@ -100,7 +103,11 @@ def test_one_controller_per_robot_and_instructions_for_people() -> None:
 
 def test_policies_for_the_objectives() -> None:
     def with_objective(policy: str) -> List[str]:
-        return [sub.controller for sub in partition(every_move(), game(), AGENTS, reach_obj=policy) if "reachObj" in sub.agents]
+        return [
+            sub.controller
+            for sub in partition(every_move(), game(), AGENTS, reach_obj=policy)
+            if "reachObj" in sub.agents
+        ]
 
     assert with_objective("dedicated") == ["controllerObj"]
     assert with_objective("all") == ["controller_bot1", "controller_bot2"]
@@ -159,13 +166,16 @@ def test_commands_of_somebody_whom_nobody_controls() -> None:
         partition(every_move(), without, AGENTS[1:])
 
 
+@QUICK
 @given(random_strategies(controllable=False))
 def test_counter_strategies_are_refused(strategy: Strategy) -> None:
     with pytest.raises(PursueError, match="counter-strategy"):
         partition(strategy, game(), AGENTS)
 
 
-@pytest.mark.parametrize(("name", "robots"), [("CT1", ["police"]), ("CT4", ["police"]), ("WC1", ["bot"]), ("EB3", ["ecoBot"])])
+@pytest.mark.parametrize(
+    ("name", "robots"), [("CT1", ["police"]), ("CT4", ["police"]), ("WC1", ["bot"]), ("EB3", ["ecoBot"])]
+)
 def test_published_plans(reference_dir: Path, name: str, robots: List[str]) -> None:
     folder = reference_dir / name
     network = read_network((folder / "TGA.xml").read_text(), "TGA.xml")

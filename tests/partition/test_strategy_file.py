@@ -17,7 +17,7 @@ from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Edge, Sync
 from pursue_gen.tga.words import event_word
-from tests.partition.games import AGENTS, game, random_strategies, zones
+from tests.partition.games import AGENTS, QUICK, game, random_strategies, zones
 
 TENTH = Fraction(1, 10)
 
@@ -85,6 +85,7 @@ def test_the_file_is_for_people() -> None:
     assert render(sub, "scenario_1", "0.1.0", TENTH) == FILE
 
 
+@QUICK
 @given(random_strategies(), st.sampled_from(("distributed", "centralized", "general")))
 def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
     for sub in partition(strategy, game(), AGENTS, shape):
@@ -106,6 +107,7 @@ def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
                 assert [read_zone(text) for text in found["when"]] == once(command.zones)
 
 
+@QUICK
 @given(random_strategies())
 def test_the_cover_has_every_zone_of_every_state(strategy: Strategy) -> None:
     data = yaml.safe_load(render_cover(strategy, "game", "0.1.0"))
@@ -162,6 +164,7 @@ def test_zones_read_like_arithmetic(zone: Zone, text: str) -> None:
     assert zone_text(zone) == text
 
 
+@QUICK
 @given(zones(("Ca", "Cb", "Cc")))
 def test_zones_keep_their_meaning(zone: Zone) -> None:
     assert read_zone(zone_text(zone)) == zone

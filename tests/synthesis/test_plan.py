@@ -18,7 +18,7 @@ from pursue_gen.synthesis.plan_text import number_text
 from pursue_gen.synthesis.strategy import Block, Constraint, Strategy
 from pursue_gen.tga.network import ClockBound, Guard, Kind, Network, Objective
 from pursue_gen.tga.uppaal import read_network, read_query
-from tests.partition.games import REACH, SAFETY, game, random_strategies
+from tests.partition.games import QUICK, REACH, SAFETY, game, random_strategies
 
 NAMES = ("CT1", "CT2a", "CT3a", "CT4", "CT5", "WC1", "WC2a", "EB1", "EB2", "EB2x", "EB3")
 
@@ -30,7 +30,7 @@ Preparing: 99%\x1b[K
 Strategy to win:
 
 State: ( states.base bot1.a bot2.b nurse.a thief.a obj.idle reachObj._unlocked rule._rule0 ) \
-Prule=1 Pbot1=1 Pbot2=2 Pnurse=1 Pthief=1 Sopen=0 
+Prule=1 Pbot1=1 Pbot2=2 Pnurse=1 Pthief=1 Sopen=0\x20
 While you are in (Cbot1<=1 && Cbot1-Cbot2<-2) || (Cnurse==3 && 4/3<Cthief), wait.
 When you are in (1.5<Cbot1 && Cbot1==Cthief), take transition bot1.a->bot1.doing_work1_in_a \
 { Cbot1 > 1 && (Prule == 0 || Prule == 1), work1!, Pbot1 := -11, Cbot1 := 0 }
@@ -41,7 +41,9 @@ When you are in true, take transition bot2.b->bot2.going_b_to_a { Cbot2 > 1, bot
 
 def table(reference_dir: Path) -> Dict[str, Tuple[int, int]]:
     """State blocks and commands of each published plan, as the table beside the plans gives them."""
-    rows = re.findall(r"^\| (\w+) \|.*\| ([\d,]+) / ([\d,]+) \|$", (reference_dir.parent / "README.md").read_text(), re.MULTILINE)
+    rows = re.findall(
+        r"^\| (\w+) \|.*\| ([\d,]+) / ([\d,]+) \|$", (reference_dir.parent / "README.md").read_text(), re.MULTILINE
+    )
     return {name: (int(blocks.replace(",", "")), int(commands.replace(",", ""))) for name, blocks, commands in rows}
 
 
@@ -96,18 +98,21 @@ def test_published_plans_are_written_as_tiga_wrote_them(reference_dir: Path, nam
     assert lines(ours) == lines(text)
 
 
+@QUICK
 @given(random_strategies())
 def test_what_is_written_reads_back_equal(strategy: Strategy) -> None:
     network = game()
     assert read_plan(write_plan(strategy, network, REACH), network, "plan.txt") == strategy
 
 
+@QUICK
 @given(random_strategies(controllable=False))
 def test_counter_strategies_read_back_equal(strategy: Strategy) -> None:
     network = game()
     assert read_plan(write_plan(strategy, network, SAFETY), network, "plan.txt") == strategy
 
 
+@QUICK
 @given(random_strategies(), st.data())
 def test_a_cut_plan_is_refused_or_is_a_beginning(strategy: Strategy, data: st.DataObject) -> None:
     """A cut between two commands leaves no trace; any other is found."""
@@ -125,6 +130,7 @@ def test_a_cut_plan_is_refused_or_is_a_beginning(strategy: Strategy, data: st.Da
     assert last.commands == whole.commands[: len(last.commands)]
 
 
+@QUICK
 @given(random_strategies(), st.data())
 def test_a_damaged_plan_never_breaks_the_reader(strategy: Strategy, data: st.DataObject) -> None:
     text = write_plan(strategy, game(), REACH)
