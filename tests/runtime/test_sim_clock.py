@@ -1,0 +1,49 @@
+"""Simulated time: small steps, never backwards, and a pause after each message."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ui_package import sim_clock_core
+
+
+def test_it_starts_after_zero_and_goes_in_steps() -> None:
+    clock = sim_clock_core.SimClock(sim_clock_core.Pace(speed=5, step=0.02))
+    assert clock.now > 0
+    first = clock.now
+    assert clock.tick(10.0) == pytest.approx(first + 0.02)
+    assert clock.tick(99.0) == pytest.approx(first + 0.04), "it does not catch up"
+
+
+def test_it_holds_after_a_message_and_goes_on() -> None:
+    clock = sim_clock_core.SimClock(sim_clock_core.Pace(hold=0.03))
+    clock.heard(10.0)
+    held = clock.tick(10.01)
+    clock.heard(10.02)
+    assert clock.tick(10.04) == held, "each message starts the pause anew"
+    assert clock.tick(10.06) > held
+
+
+def test_the_tick_makes_the_speed() -> None:
+    assert sim_clock_core.Pace(speed=5, step=0.02).tick == pytest.approx(0.004)
+
+
+@pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": -1.0}, {"step": 0.0}, {"hold": -1.0},
+                                   {"speed": float("nan")}, {"speed": float("inf")}])
+def test_a_wrong_pace_is_refused(wrong: dict) -> None:
+    with pytest.raises(ValueError, match="~" + next(iter(wrong))):
+        sim_clock_core.Pace(**wrong)
+
+
+@given(st.lists(st.tuples(st.booleans(), st.floats(0, 100))))
+def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
+    clock = sim_clock_core.SimClock(sim_clock_core.Pace(step=0.02))
+    before = clock.now
+    for message, real in happenings:
+        if message:
+            clock.heard(real)
+        else:
+            after = clock.tick(real)
+            assert before <= after <= before + 0.02 + 1e-9
+            before = after

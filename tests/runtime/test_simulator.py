@@ -1,0 +1,175 @@
+"""The simulator ends what agents do, inside the model's window, once, and only after it was begun."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ui_package import model_data, mover, pursue_model, simulator_core, state, worker
+
+MODEL = pursue_model.Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
+EVERYBODY = ["bot", "thief", "nurse"]
+ARRIVAL = "bot_going_a_to_b2b"
+
+
+def simulator(reports=EVERYBODY, delays: str = "middle", seed: int = 0, model=MODEL):
+    made = simulator_core.Simulator(model, reports, simulator_core.Delays(delays, seed))
+    made.on_state(state(model, 1, 100.0, {}, event="_start_"), real=0.0)
+    return made
+
+
+def leaves(seq: int = 2, stamp: float = 105.0, **locations: str):
+    return state(MODEL, seq, stamp, {"Cbot": 0.0, "Cthief": 0.0, "Cnurse": 0.0},
+                 **(locations or {"bot": "going_a_to_b"}))
+
+
+def test_a_robot_stays_until_its_goal_comes() -> None:
+    world = simulator()
+    world.on_state(leaves(), real=1.0)
+    assert world.next_moments() == (None, None)
+    assert world.due(200.0, 2.0) == []
+    world.on_goal("bot", 105.0)
+    assert world.due(113.9, 3.0) == []
+    assert world.due(115.0, 3.0) == [ARRIVAL]
+
+
+def test_a_goal_may_be_heard_before_the_state() -> None:
+    world = simulator()
+    world.on_goal("bot", 105.0)
+    world.on_state(leaves(), real=1.0)
+    assert world.next_moments()[0] == pytest.approx(114.45)
+
+
+def test_an_old_goal_starts_no_new_movement() -> None:
+    world = simulator()
+    world.on_goal("bot", 103.0)
+    world.on_state(leaves(), real=1.0)
+    assert world.next_moments()[0] is None
+
+
+def test_a_late_goal_makes_the_robot_late() -> None:
+    world = simulator()
+    world.on_state(leaves(), real=1.0)
+    world.on_goal("bot", 108.0)
+    assert world.next_moments()[0] == pytest.approx(117.0)
+
+
+def test_people_and_agents_need_no_goal() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b", nurse="doing_screw_in_s"), real=1.0)
+    assert world.due(109.0, 2.0) == ["screwDONE"]
+    assert world.due(126.0, 2.0) == ["thief_going_a_to_b2b"]
+
+
+def test_only_those_that_it_reports_for() -> None:
+    world = simulator(reports=["thief"])
+    world.on_goal("bot", 105.0)
+    world.on_state(leaves(bot="going_a_to_b", nurse="doing_screw_in_s"), real=1.0)
+    assert world.due(500.0, 2.0) == []
+
+
+def test_an_unknown_agent_to_report_for_is_refused() -> None:
+    with pytest.raises(ValueError, match="bott; the agents are bot, thief, nurse"):
+        simulator(reports=["bott"])
+
+
+def test_an_unknown_choice_of_delays_is_refused() -> None:
+    with pytest.raises(ValueError, match="random, early, middle, late"):
+        simulator_core.Delays("slow")
+
+
+def test_each_end_is_reported_once_when_the_state_follows() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    assert world.due(126.0, 2.0) == ["thief_going_a_to_b2b"]
+    assert world.due(126.0, 2.1) == []
+    world.on_state(state(MODEL, 3, 126.0, {"Cthief": 0.0}, thief="b"), real=2.2)
+    assert world.due(200.0, 60.0) == []
+    assert world.next_moments() == (None, None)
+
+
+def test_without_a_receipt_the_report_is_repeated_a_few_times() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    assert world.due(126.0, 2.0)
+    assert world.next_moments() == (None, 2.5)
+    assert world.due(126.0, 2.4) == []
+    assert len([1 for tenth in range(25, 100) for _ in world.due(126.0, tenth / 10)]) == simulator_core.REPEATS
+
+
+def test_news_of_others_give_the_report_more_time() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    assert world.due(126.0, 2.0)
+    world.on_state(state(MODEL, 3, 126.0, {"Cthief": 21.0}, thief="going_a_to_b"), real=2.4)
+    assert world.due(126.0, 2.6) == []
+    assert world.due(126.0, 2.9) == ["thief_going_a_to_b2b"]
+
+
+def test_the_same_state_again_changes_nothing() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    before = world.next_moments()
+    world.on_state(state(MODEL, 2, 107.0, {"Cthief": 2.0}, thief="going_a_to_b"), real=3.0)
+    assert world.next_moments() == before
+
+
+def test_the_same_movement_again_is_a_new_one() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    assert world.due(126.0, 2.0)
+    world.on_state(state(MODEL, 9, 170.0, {"Cthief": 0.0}, thief="going_a_to_b"), real=3.0)
+    assert world.due(171.0, 9.0) == []
+    assert world.due(191.0, 9.0) == ["thief_going_a_to_b2b"]
+
+
+def test_a_restarted_simulator_goes_on_with_robots_that_are_on_their_way() -> None:
+    world = simulator_core.Simulator(MODEL, EVERYBODY, simulator_core.Delays("middle"))
+    world.on_state(state(MODEL, 7, 108.0, {"Cbot": 3.0}, bot="going_a_to_b"), real=0.0)
+    assert world.next_moments()[0] == pytest.approx(105.0 + 9.45)
+
+
+@pytest.mark.parametrize("status", ["won", "lost", "stopped"])
+def test_nobody_reports_after_the_end(status: str) -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    world.on_state(state(MODEL, 3, 110.0, {"Cthief": 5.0}, status, thief="going_a_to_b"), real=2.0)
+    assert world.due(500.0, 9.0) == []
+
+
+def test_the_agent_is_named_where_two_could_mean_it() -> None:
+    model = pursue_model.Model(model_data(worker("bot", "robot"), worker("human", "agent")))
+    world = simulator(["human"], model=model)
+    world.on_state(state(model, 2, 105.0, {}, human="doing_screw_in_s"), real=1.0)
+    assert world.due(109.0, 1.0) == ["human:screwDONE"]
+
+
+def test_time_units_are_not_seconds() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b")._replace(unit=0.1), real=1.0)
+    assert world.next_moments()[0] == pytest.approx(105.0 + 2.045)
+
+
+@given(st.sampled_from(simulator_core.DELAYS), st.integers(), st.integers(1, 50))
+def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> None:
+    window = simulator_core.window_at(MODEL.automaton("bot"), "going_a_to_b")
+    drawn = simulator_core.Delays(choice, seed).draw(window, "bot", number)
+    assert window == (ARRIVAL, "Cbot", 9, 10)
+    assert 9 < drawn < 10
+    assert drawn == simulator_core.Delays(choice, seed).draw(window, "bot", number)
+
+
+def test_early_middle_and_late_are_in_that_order_and_seeds_differ() -> None:
+    window = simulator_core.window_at(MODEL.automaton("bot"), "going_a_to_b")
+    early, middle, late = (simulator_core.Delays(c).draw(window, "bot", 1) for c in ("early", "middle", "late"))
+    assert early < middle < late
+    assert len({simulator_core.Delays("random", seed).draw(window, "bot", 1) for seed in range(5)}) == 5
+
+
+@given(st.lists(st.tuples(st.floats(0, 400), st.floats(0, 30)), max_size=30))
+def test_no_end_before_its_window_whenever_it_is_asked(asked: list) -> None:
+    world = simulator(delays="random")
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=0.0)
+    for now, real in asked:
+        if world.due(now, real):
+            assert now > 125.0

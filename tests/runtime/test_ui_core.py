@@ -1,0 +1,268 @@
+"""The UI knows what can be done, says what is due, tells what happened, and how it ended."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ui_package import model_data, mover, pursue_library, pursue_model, state, ui_core, ui_players, worker
+
+DATA = model_data(
+    mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent")
+)
+MODEL = pursue_model.Model(DATA)
+CLOCKS = ("Cbot", "Cthief", "Cnurse", "Cboy", "Creach")
+
+
+def at(seq: int, stamp: float, **more):
+    """Everybody at the start, every clock running since 100."""
+    clocks = {clock: stamp - 100.0 for clock in CLOCKS}
+    clocks.update(more.pop("clocks", {}))
+    return state(MODEL, seq, stamp, clocks, **more)
+
+
+def offers(current, now: float, **more):
+    return ui_core.openings(MODEL, current, current.clocks_at(now), **more)
+
+
+def mission(player=None, orders=None):
+    return ui_core.Mission(MODEL, player or ui_players.StandStill(), orders)
+
+
+def orders(*commands: dict):
+    start = {"nurse": "s"}
+    return pursue_library.Strategy({"commands_agents": ["nurse"], "reaction": 0.1,
+                                    "strategy": [{"state": start, "commands": list(commands)}]})
+
+
+SCREW = {"do": "screw", "agent": "nurse", "from": "s", "to": "doing_screw_in_s", "when": ["7 < Cnurse && Cnurse <= 9"]}
+
+
+# What can be done
+
+def test_only_what_nobody_controls_is_offered_with_its_moment() -> None:
+    words = {offer.word: offer for offer in offers(at(1, 100.0), 100.4)}
+    assert set(words) == {"thief_a2b", "boy:screw"}
+    assert 0.6 < words["thief_a2b"].opens < 0.7
+    assert words["thief_a2b"].closes == float("inf")
+
+
+def test_rules_are_kept() -> None:
+    assert [offer.word for offer in offers(at(1, 105.0, values={"Prule": 1}), 105.0)] == ["thief_a2b"]
+
+
+def test_ends_are_offered_only_on_request() -> None:
+    current = at(2, 106.0, clocks={"Cthief": 0.0}, thief="going_a_to_b", boy="doing_screw_in_s")
+    assert offers(current, 110.0) == []
+    (end,) = offers(current, 110.0, kinds=("agent",), ends=True)
+    assert end.word == "thief_going_a_to_b2b"
+    assert (16 < end.opens < 16.1, round(end.closes, 6)) == (True, 17.0)
+
+
+def test_a_window_that_has_closed_is_no_offer() -> None:
+    current = at(2, 106.0, clocks={"Cthief": 0.0}, thief="going_a_to_b", boy="doing_screw_in_s")
+    assert offers(current, 130.0, kinds=("agent",), ends=True) == []
+
+
+# Who plays them
+
+def test_standing_still_says_nothing() -> None:
+    played = mission(ui_players.StandStill())
+    played.on_state(at(1, 100.0, event="_start_"), 100.0)
+    assert played.due(500.0, 1.0) == []
+    assert played.next_moments(500.0) == (None, None)
+
+
+@given(st.integers(), st.floats(0.1, 50.0), st.floats(0.0, 30.0))
+def test_chance_says_only_what_is_possible_then(seed: int, pace: float, since: float) -> None:
+    player = ui_players.AtRandom(MODEL, seed, pace)
+    current = at(1, 100.0)
+    player.on_state(current, 100.0, 100.0 + since)
+    moment = player.next_moment()
+    assert moment is not None and moment >= 100.0 + since
+    (word,) = player.due(moment)
+    named, _, event = word.rpartition(":")
+    position = pursue_model.Position(current.locations, current.values, current.clocks_at(moment))
+    assert MODEL.joint_move(position, event, named) is not None
+
+
+def test_chance_is_the_same_for_the_same_seed_and_other_for_another() -> None:
+    def first(seed: int):
+        player = ui_players.AtRandom(MODEL, seed)
+        player.on_state(at(1, 100.0), 100.0, 100.0)
+        return player.next_moment()
+
+    assert first(3) == first(3)
+    assert len({first(seed) for seed in range(9)}) > 1
+
+
+def test_chance_does_not_repeat_itself_before_an_answer_can_come() -> None:
+    player = ui_players.AtRandom(MODEL, 1)
+    player.on_state(at(1, 100.0), 100.0, 110.0)
+    moment = player.next_moment()
+    assert player.due(moment)
+    assert player.next_moment() >= moment + ui_players.AGAIN
+
+
+def test_chance_waits_while_nothing_is_possible() -> None:
+    player = ui_players.AtRandom(MODEL, 1)
+    player.on_state(at(1, 100.0, thief="going_a_to_b", values={"Prule": 1}), 100.0, 100.0)
+    assert player.next_moment() is None
+    assert player.due(900.0) == []
+
+
+def test_a_wrong_pace_is_refused() -> None:
+    with pytest.raises(ValueError, match="~pace"):
+        ui_players.AtRandom(MODEL, 1, pace=0.0)
+
+
+def steps(*pairs):
+    return [ui_players.Step(moment, word) for moment, word in pairs]
+
+
+def test_a_trace_is_said_at_its_moments_after_the_start() -> None:
+    player = ui_players.Scripted(steps((3.5, "thief_a2b"), (9.0, "boy:screw"), (9.0, "_ping_")))
+    assert player.next_moment() is None, "not before the start"
+    player.on_state(at(1, 100.0)._replace(unit=0.5), 100.0, 100.0)
+    assert player.next_moment() == 101.75
+    assert player.due(101.7) == []
+    assert player.due(101.75) == ["thief_a2b"]
+    player.on_state(at(2, 102.0)._replace(unit=0.5), 100.0, 102.0)
+    assert player.due(104.5) == ["boy:screw", "_ping_"]
+    assert player.next_moment() is None
+
+
+def test_a_restart_does_not_play_the_past_again() -> None:
+    player = ui_players.Scripted(steps((3.0, "thief_a2b"), (40.0, "thief_b2a")))
+    player.on_state(at(7, 120.0), 100.0, 120.0)
+    assert player.due(120.0) == []
+    assert player.next_moment() == 140.0
+
+
+# People
+
+def test_an_order_is_said_when_it_is_due_for_this_state_only() -> None:
+    told = mission(orders=orders(SCREW))
+    told.on_state(at(4, 100.0, event="_start_"), 100.0)
+    moment, _ = told.next_moments(100.0)
+    assert 107.0 < moment <= 107.05
+    assert told.due(107.0, 1.0) == []
+    assert told.due(moment, 1.0) == ["nurse:screw@4"]
+    assert told.due(moment, 1.1) == [], "once"
+    assert told.next_moments(moment) == (None, 1.5)
+    assert told.due(moment, 1.6) == ["nurse:screw@4"], "again when nothing came of it"
+
+
+def test_no_order_after_its_zone() -> None:
+    told = mission(orders=orders(SCREW))
+    told.on_state(at(4, 110.0), 110.0)
+    assert told.due(110.0, 1.0) == []
+    assert told.next_moments(110.0) == (None, None)
+
+
+def test_people_are_told_in_words_once_it_is_taken() -> None:
+    walker = pursue_model.Model(model_data(mover("nurse", "human", 9)))
+    told = ui_core.Mission(walker, ui_players.StandStill())
+    told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
+    lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
+    assert [line.strip() for line in lines] == ["4.0  nurse_a2b", "nurse: go from a to b now"]
+    lines = told.on_state(state(walker, 3, 113.5, {}, event="nurse_going_a_to_b2b", agent="nurse", nurse="b"), 113.5)
+    assert [line.strip() for line in lines] == ["13.5  nurse_going_a_to_b2b"]
+
+
+def test_people_are_told_what_to_do_where() -> None:
+    told = mission()
+    told.on_state(at(1, 100.0, event="_start_"), 100.0)
+    lines = told.on_state(at(2, 103.0, event="screw", agent="nurse", nurse="doing_screw_in_s"), 103.0)
+    assert [line.strip() for line in lines] == ["3.0  screw  (nurse)", "nurse: do screw now, at s"]
+
+
+# What happens
+
+def test_a_state_that_is_published_again_is_told_once() -> None:
+    told = mission()
+    assert told.on_state(at(1, 100.0, event="_start_"), 100.0)
+    assert told.on_state(at(1, 102.0, event="_start_"), 102.0) == []
+
+
+def test_nothing_runs_before_the_start() -> None:
+    told = mission(orders=orders({**SCREW, "when": ["always"]}))
+    told.on_state(at(0, 99.0, status="waiting"), 99.0)
+    assert told.due(99.5, 1.0) == []
+    assert told.elapsed(99.5) == 0.0
+
+
+def test_the_time_of_the_start_is_found_after_a_restart() -> None:
+    told = mission()
+    told.on_state(at(9, 130.0, event="bot_a2b", agent="bot", clocks={"Cbot": 0.0}), 130.0)
+    assert told.elapsed(131.0) == pytest.approx(31.0)
+
+
+@pytest.mark.parametrize("status, reason, code, says", [
+    ("won", "", 0, "The goal is reached, after 31.5 time units."),
+    ("lost", "thief screw", 1, "lost, after 31.5 time units: thief screw"),
+    ("stopped", "no strategy in this state", 1, "stopped, after 31.5 time units: no strategy in this state"),
+    ("stopped", "", 1, "_stop_"),
+])
+def test_the_end_and_its_reason_are_told(status: str, reason: str, code: int, says: str) -> None:
+    told = mission()
+    told.on_state(at(1, 100.0, event="_start_"), 100.0)
+    assert told.verdict() is None
+    told.on_state(at(5, 131.5, status=status, reason=reason), 131.5)
+    assert told.verdict()[0] == code
+    assert says in told.verdict()[1]
+    assert told.due(140.0, 1.0) == []
+
+
+def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
+    safe = pursue_model.Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
+    told = ui_core.Mission(safe, ui_players.StandStill())
+    told.on_state(at(5, 131.5, status="won"), 131.5)
+    assert told.verdict() == (0, "The objective was kept to the end, after 31.5 time units.")
+
+
+def test_progress_says_where_everybody_is() -> None:
+    told = mission()
+    told.on_state(at(1, 100.0, event="_start_", thief="b"), 100.0)
+    assert told.progress(102.5).split("  ")[-4:] == ["bot a", "thief b", "nurse s", "boy s"]
+    assert "2.5" in told.progress(102.5)
+
+
+# Who is ready
+
+def test_the_missing_are_named_until_they_are_ready() -> None:
+    nodes = ui_core.Readiness(["observer", "/controller_bot", "simulator"])
+    nodes.heard("/observer", True)
+    nodes.heard("stranger", True)
+    assert nodes.missing() == ["controller_bot", "simulator"]
+    nodes.heard("controller_bot", True)
+    nodes.heard("observer", False)
+    assert nodes.missing() == ["observer", "simulator"]
+
+
+# What is typed
+
+OFFERS = [ui_core.Opening("thief_a2b", 0.0, float("inf")), ui_core.Opening("boy:screw", 2.5, 4.0)]
+
+
+@pytest.mark.parametrize("text, word, remark", [
+    ("1", "thief_a2b", ""),
+    ("2", "", "boy:screw is possible in 2.5 time units, not now"),
+    ("3", "", "there is no number 3; expected 1 to 2"),
+    ("0", "", "there is no number 0; expected 1 to 2"),
+    ("ping", "_ping_", ""),
+    (" stop ", "_stop_", ""),
+    ("boy:screw", "boy:screw", ""),
+    ("Finish!", "Finish!", ""),
+    ("screww", "screww", "nobody in this scenario knows screww: sent all the same"),
+    ("", "", ""),
+])
+def test_what_is_typed_becomes_a_word(text: str, word: str, remark: str) -> None:
+    assert ui_core.answer(text, OFFERS, {"screw", "thief_a2b"}) == (word, remark)
+
+
+def test_the_menu_lists_by_number() -> None:
+    lines = ui_core.menu(OFFERS)
+    assert lines[0].split() == ["1", "thief_a2b"]
+    assert lines[1].split()[:2] == ["2", "boy:screw"] and "in 2.5 time units, for 1.5" in lines[1]
+    assert "stop" in lines[-1]

@@ -1,0 +1,86 @@
+"""The UI's options: from parameters and from the command line, refused with what was expected."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from ui_package import ui_options, ui_terminal
+
+
+def read(arguments=(), params=None, terminal: bool = False, nodes=("observer",)):
+    return ui_options.read_options(list(arguments), params or {}, terminal, nodes)
+
+
+def test_a_terminal_is_asked_and_none_stands_still() -> None:
+    assert (read(terminal=True).mode, read(terminal=True).autostart) == ("ask", False)
+    assert (read().mode, read().autostart) == ("still", True)
+    assert read().nodes == ("observer",)
+
+
+def test_the_command_line_wins() -> None:
+    options = read(["--mode", "random", "--seed", "7", "--nodes", "a,b c"], {"mode": "still", "seed": 3, "pace": 2})
+    assert (options.mode, options.seed, options.pace, options.nodes) == ("random", 7, 2.0, ("a", "b", "c"))
+
+
+def test_a_trace_says_its_mode() -> None:
+    assert read(["--trace", "t.yaml"]).mode == "trace"
+    assert read(params={"trace": "", "mode": "still"}).mode == "still"
+
+
+def test_flags_are_true_or_false() -> None:
+    assert read(["--autostart"], terminal=True).autostart
+    assert read(params={"autostart": False}).autostart is False
+    assert read(params={"autostart": "true"}, terminal=True).autostart
+
+
+@pytest.mark.parametrize("params, expected", [
+    ({"mode": "quick"}, "mode is 'quick'; expected one of ask, still, random, trace"),
+    ({"mode": "trace"}, "needs a trace file"),
+    ({"seed": "x"}, "seed is 'x'; expected a number"),
+    ({"wait": -1}, "wait is -1; expected a number of at least 0"),
+    ({"pace": 0}, "pace is 0; expected a number"),
+    ({"pace": True}, "pace is True; expected a number"),
+    ({"autostart": "perhaps"}, "autostart is 'perhaps'; expected true or false"),
+    ({"nodes": 7}, "nodes is 7; expected a list of names"),
+])
+def test_a_wrong_option_is_refused(params: dict, expected: str) -> None:
+    with pytest.raises(ui_options.OptionError) as caught:
+        read(params=params)
+    assert expected in str(caught.value)
+
+
+def test_help_says_what_there_is(capsys: pytest.CaptureFixture) -> None:
+    with pytest.raises(SystemExit) as left:
+        read(["--help"])
+    assert left.value.code == 0
+    said = capsys.readouterr().out
+    assert all(word in said for word in ("--mode", "--trace", "--seed", "example", "Exit status"))
+
+
+class Screen(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def written(stream: io.StringIO, environment: dict) -> str:
+    terminal = ui_terminal.Terminal(stream, environment)
+    terminal.progress("3.0 on the way")
+    terminal.line("done", ui_terminal.GOOD)
+    terminal.close()
+    return stream.getvalue()
+
+
+def test_no_codes_and_no_progress_but_on_a_terminal() -> None:
+    assert written(io.StringIO(), {}) == "done\n"
+
+
+def test_progress_is_replaced_on_a_terminal() -> None:
+    text = written(Screen(), {"TERM": "xterm"})
+    assert "on the way\r\033[K" in text
+    assert "\033[32mdone\033[0m\n" in text
+
+
+def test_no_colours_where_they_are_not_wanted() -> None:
+    text = written(Screen(), {"TERM": "xterm", "NO_COLOR": "1"})
+    assert "on the way" in text and "\033[3" not in text

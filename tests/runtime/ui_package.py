@@ -1,0 +1,90 @@
+"""The modules of the generated package UI, rendered and importable: `from ui_package import ui_core`."""
+
+from __future__ import annotations
+
+import atexit
+import importlib
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any, Dict
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+TEMPLATES = Path(__file__).resolve().parents[2] / "templates" / "catkin"
+NAMES = {"scenario": "example", "generator": "0", "package": "UI"}
+
+
+def render(folder: Path) -> None:
+    """Writes the scripts of the package, and those that every package has, to the folder."""
+    for source in (TEMPLATES / "common" / "scripts", TEMPLATES / "UI" / "scripts"):
+        environment = Environment(loader=FileSystemLoader(str(source)), undefined=StrictUndefined, trim_blocks=True,
+                                  lstrip_blocks=True, keep_trailing_newline=True)
+        for path in sorted(source.glob("*.j2")):
+            (folder / path.stem).write_text(environment.get_template(path.name).render(NAMES), encoding="utf-8")
+
+
+SCRIPTS = Path(tempfile.mkdtemp(prefix="ui_package_"))
+atexit.register(shutil.rmtree, str(SCRIPTS), ignore_errors=True)
+render(SCRIPTS)
+sys.path.insert(0, str(SCRIPTS))
+
+pursue_library: Any = importlib.import_module("pursue_library")
+pursue_model: Any = importlib.import_module("pursue_model")
+sim_clock_core: Any = importlib.import_module("sim_clock_core")
+simulator_core: Any = importlib.import_module("simulator_core")
+ui_core: Any = importlib.import_module("ui_core")
+ui_options: Any = importlib.import_module("ui_options")
+ui_players: Any = importlib.import_module("ui_players")
+ui_terminal: Any = importlib.import_module("ui_terminal")
+ui_trace: Any = importlib.import_module("ui_trace")
+
+
+def mover(name: str, kind: str, speed: int) -> Dict[str, Any]:
+    """An agent that goes between a and b (distance `speed`) and may catch wherever it is."""
+    clock, position = f"C{name}", f"P{name}"
+    edges = []
+    for x, y, i, j in (("a", "b", 1, 2), ("b", "a", 2, 1)):
+        going = f"going_{x}_to_{y}"
+        edges += [
+            {"from": x, "to": going, "word": f"{name}_{x}2{y}", "sync": "send", "when": [f"{clock} > 1"],
+             "set": {position: -(10 * i + j)}, "reset": [clock], "controllable": kind != "agent"},
+            {"from": going, "to": y, "word": f"{name}_{going}2{y}", "sync": "own", "when": [f"{clock} > {speed}"],
+             "set": {position: j}, "reset": [clock], "controllable": False},
+        ]
+    late = [f"{clock} <= {speed + 1}"]
+    return {"name": name, "kind": kind, "initial": "a", "edges": edges,
+            "locations": {"a": [], "b": [], "going_a_to_b": late, "going_b_to_a": late}}
+
+
+def worker(name: str, kind: str) -> Dict[str, Any]:
+    """An agent that may screw (for 3 to 4 units, in its turn) at its station."""
+    clock = f"C{name}"
+    edges = [
+        {"from": "s", "to": "doing_screw_in_s", "word": "screw", "sync": "send", "when": [f"{clock} > 1"],
+         "if": [["Prule=0", "Prule=2"]], "set": {}, "reset": [clock], "controllable": kind != "agent"},
+        {"from": "doing_screw_in_s", "to": "s", "word": "screwDONE", "sync": "send", "when": [f"{clock} > 3"],
+         "set": {}, "reset": [clock], "controllable": False},
+    ]
+    return {"name": name, "kind": kind, "initial": "s", "edges": edges,
+            "locations": {"s": [], "doing_screw_in_s": [f"{clock} <= 4"]}}
+
+
+def model_data(*automata: Dict[str, Any]) -> Dict[str, Any]:
+    """A model.yaml of these automata, with an objective to reach."""
+    goal = {"name": "reachObj", "kind": "reach", "initial": "unlocked", "locations": {"unlocked": [], "win": []},
+            "edges": [{"from": "unlocked", "to": "win", "word": "screw", "sync": "receive", "controllable": True}]}
+    return {"format": 1, "scenario": "example", "clocks": [f"C{a['name']}" for a in automata] + ["Creach"],
+            "variables": {"Prule": 0, **{f"P{a['name']}": 1 for a in automata}}, "automata": [*automata, goal],
+            "objective": {"kind": "reach", "goal": ["reachObj", "win"], "bad": None}}
+
+
+def state(model: Any, seq: int, stamp: float, clocks: Dict[str, float], status: str = "running", event: str = "",
+          agent: str = "", reason: str = "", unit: float = 1.0, values: Any = None, **locations: str) -> Any:
+    """A system state of the model: everything at its start but what is named."""
+    start = model.initial()
+    return pursue_library.SystemState(
+        seq, stamp, {**start.locations, **locations}, {**start.values, **(values or {})}, {**start.clocks, **clocks},
+        event, agent, status, reason, unit,
+    )
