@@ -3,8 +3,8 @@
 At the root of what we write stands a manifest, `.pursue_gen.json`: the digest of each file as it was generated. When
 a workspace is generated again, files that still have that digest are replaced (or removed, when they are no longer
 part of it); a file that has another one was edited, a file that is not listed is not ours: both stop the generator
-before it changes anything, unless it is told to `force`. Whatever else stands in the folder (build, devel, install, packages
-that the user added) is never touched.
+before it changes anything, unless it is told to `force`. Whatever else stands in the folder (build, devel, install,
+packages that the user added) is never touched.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import json
 import os
 import shutil
 import signal
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
-from typing import Dict, Iterator, Mapping
+from typing import Dict, Iterator, List, Mapping
 
 from pursue_gen.diagnostics import PursueError, error
 
@@ -71,7 +72,8 @@ def _inside(path: str) -> bool:
 
 def _refuse_conflicts(files: Mapping[str, bytes], folder: Path, force: bool) -> None:
     known = _known(folder)
-    edited, unknown = [], []
+    edited: List[str] = []
+    unknown: List[str] = []
     for path in sorted({*files, *known}):
         place = folder / path
         blocked = [p for p in PurePosixPath(path).parents if (folder / p).exists() and not (folder / p).is_dir()]
@@ -87,10 +89,9 @@ def _refuse_conflicts(files: Mapping[str, bytes], folder: Path, force: bool) -> 
         return
     findings = []
     for code, paths, what in (("WSP001", edited, "edited since it was generated"), ("WSP002", unknown, "not ours")):
-        findings += [error(code, f"{folder / path} would be overwritten or removed, but it is {what}") for path in paths]
-    findings[-1] = error(
-        findings[-1].code, findings[-1].message, hint="move it away, write elsewhere with -o DIR, or replace it with --force"
-    )
+        findings += [error(code, f"{folder / path} would be replaced or removed, but it is {what}") for path in paths]
+    hint = "move it away, write elsewhere with -o DIR, or replace it with --force"
+    findings[-1] = replace(findings[-1], hint=hint)
     raise PursueError(findings, 2)
 
 
@@ -106,7 +107,7 @@ def _create(files: Mapping[str, bytes], folder: Path) -> None:
 def _renew(files: Mapping[str, bytes], folder: Path) -> None:
     """A workspace where there is one: everything is on the disk before the first old file is replaced.
 
-    The staged folder gets its final name only when it is complete; a run that is killed after that is finished by the next.
+    The staged folder gets its final name only when it is complete; a run killed after that is finished by the next.
     """
     draft = folder / f"{_STAGE}.part"
     with _only_one(draft):
@@ -169,7 +170,7 @@ def _fill(stage: Path, files: Mapping[str, bytes]) -> None:
 
 @contextlib.contextmanager
 def _only_one(stage: Path) -> Iterator[None]:
-    """An empty folder for this process alone; a leftover of a killed run is cleared, and nothing stays after a failure."""
+    """An empty folder for this process alone: the leftover of a killed run is cleared, a failure leaves nothing."""
     stage.mkdir(exist_ok=True)
     handle = os.open(str(stage), os.O_RDONLY)
     try:

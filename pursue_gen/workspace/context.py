@@ -1,0 +1,82 @@
+"""What the templates are told: names and numbers, no decisions left to make.
+
+A template that asks for anything else is an error (jinja2's StrictUndefined). Every template knows
+
+- `scenario`, the scenario's name; `generator`, the version of the generator;
+- `package`, the package's name, and `controller`, the same in a controller; `version`, `maintainer`,
+  `maintainer_email`, `license`, `summary` of its manifest;
+- `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (nobody controls it);
+- `free_agents`, the names of those that nobody controls; `robots`, those of the robots;
+- `controllers`, the controllers' names in order: their packages and their nodes have them;
+- `reported`, the agents whose ends come from the world: all of them, but for the robots of a `general` controller;
+- `reaches`: the mission has a goal to reach; `bringup`: the name of the package with the launch files;
+- `time_unit`: the default length of a time unit in seconds;
+- `plays`: the arguments of each launch test.
+
+The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` and `modules` (files of `scripts/`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Dict, Sequence
+
+from pursue_gen import __version__
+from pursue_gen.language.scenario import Agent, Scenario
+from pursue_gen.partition import GENERAL
+from pursue_gen.tga.network import Kind, Objective
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a workspace is made.
+
+    `controllers`: distributed (one per robot), centralized (one, without a-priori ends) or general (one, with them, as
+    the original has it). `reach_obj`: who gets the commands of the objective: dedicated (a controller of their own),
+    all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for.
+    `time_unit`: the default length of a time unit in seconds. The rest goes into the manifests.
+    """
+
+    controllers: str = "distributed"
+    reach_obj: str = "dedicated"
+    reaction: Fraction = Fraction(1, 10)
+    time_unit: float = 1.0
+    maintainer: str = "maintainer"
+    maintainer_email: str = "maintainer@example.org"
+    license: str = "BSD-3-Clause"
+
+
+def bringup_of(scenario: Scenario) -> str:
+    """The name of the package with the launch files."""
+    return f"{scenario.name}_bringup"
+
+
+def kind_of(agent: Agent) -> str:
+    """robot, human, or agent for one that nobody controls."""
+    if not agent.controllable:
+        return "agent"
+    return "human" if agent.human else "robot"
+
+
+def common(scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[str]) -> Dict[str, Any]:
+    """The values that every template of a workspace knows (but for `package` and `summary`)."""
+    agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
+    robots = [agent.name for agent in scenario.agents if agent.is_robot]
+    decided = robots if options.controllers == GENERAL else []
+    return {
+        "scenario": scenario.name,
+        "generator": __version__,
+        "version": __version__,
+        "maintainer": options.maintainer,
+        "maintainer_email": options.maintainer_email,
+        "license": options.license,
+        "agents": agents,
+        "robots": robots,
+        "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
+        "controllers": list(controllers),
+        "reported": [agent.name for agent in scenario.agents if agent.name not in decided],
+        "reaches": objective.kind is not Kind.SAFETY,
+        "bringup": bringup_of(scenario),
+        "time_unit": options.time_unit,
+    }

@@ -1,0 +1,57 @@
+"""What the generated launch tests judge a mission by: taken from the network, not from what the nodes read."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.words import event_word
+
+
+def expected(
+    network: Network,
+    objective: Objective,
+    robots: Mapping[str, str],
+    commands: Mapping[str, Sequence[str]],
+    nodes: Sequence[str],
+) -> bytes:
+    """The text of expected.json.
+
+    `robots` says which node may command a robot, `commands` what a controller may say, `nodes` who must be ready first.
+    """
+    said = {word for words in commands.values() for word in words}
+    data: Dict[str, Any] = {
+        "reach": objective.kind is not Kind.SAFETY,
+        "bad": list(objective.bad) if objective.bad else None,
+        "nodes": sorted(nodes),
+        "robots": dict(robots),
+        "commands": {node: sorted(set(words)) for node, words in commands.items()},
+        "ends": [word for word in _ends(network) if word not in said],
+        "automata": {a.name: [_edge(a, edge) for edge in a.edges] for a in network.automata},
+    }
+    return (json.dumps(data, indent=1) + "\n").encode()
+
+
+def _ends(network: Network) -> List[str]:
+    ends = (event_word(a.name, edge) for a in network.automata for edge in a.edges if is_end(edge))
+    return list(dict.fromkeys(ends))
+
+
+def _edge(automaton: Automaton, edge: Edge) -> Dict[str, Any]:
+    sync = "own" if edge.sync is None else "send" if edge.sync.sends else "receive"
+    tests = [[[test.variable, test.value] for test in clause] for clause in edge.guard.integers]
+    return {"from": edge.source, "to": edge.target, "word": event_word(automaton.name, edge), "sync": sync, "if": tests}
+
+
+def first_report(network: Network) -> Optional[str]:
+    """A word that an agent which nobody controls may say at the start, for a trace; None where there is none."""
+    places = {automaton.name: automaton.initial for automaton in network.automata}
+    values = dict(network.variables)
+    for automaton in network.automata:
+        for edge in automaton.edges:
+            open_ = all(any(values[t.variable] == t.value for t in clause) for clause in edge.guard.integers)
+            said = edge.sync is not None and edge.sync.sends and not edge.controllable
+            if said and open_ and edge.source == places[automaton.name] and not is_end(edge):
+                return f"{automaton.name}:{event_word(automaton.name, edge)}"
+    return None

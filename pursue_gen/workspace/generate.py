@@ -1,0 +1,196 @@
+"""A scenario, its game and a strategy for it → the files of a catkin workspace, in memory.
+
+Pure: the same arguments give the same bytes, with no date and no path of the machine in them.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import jinja2
+
+from pursue_gen import __version__
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.partition import SubStrategy, partition, strategy_file
+from pursue_gen.report import map_svg
+from pursue_gen.synthesis.plan import write_plan
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.uppaal import write_network, write_query
+from pursue_gen.tga.words import event_word
+from pursue_gen.workspace import context, expected, model_file
+from pursue_gen.workspace.context import Options
+from pursue_gen.workspace.layout import poses
+from pursue_gen.workspace.packages import TEST_DEPENDS, Package, environment, files_of, templates_dir
+
+_UI = "UI"
+_PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
+_PEOPLE = "people"
+
+
+def generate(
+    scenario: Scenario, network: Network, objective: Objective, strategy: Strategy, options: Options
+) -> Dict[str, bytes]:
+    """path within the workspace → content.
+
+    `network` is the game that the strategy was made for (its ends and slack included). Raises PursueError where the
+    scenario's name cannot become a package's, and what `partition` raises.
+    """
+    _check_name(scenario)
+    subs = partition(strategy, network, scenario.agents, options.controllers, options.reach_obj)
+    controllers = [sub for sub in subs if sub.controller != _UI]
+    where, computed = poses(scenario)
+    templates = templates_dir()
+    jinja = environment(templates)
+    trace = expected.first_report(network)
+    values = context.common(scenario, objective, options, [sub.controller for sub in controllers])
+    values["plays"] = _plays(scenario, trace)
+    data = {
+        "poses": _poses(scenario, where, computed),
+        "model": model_file.render(network, objective, scenario, __version__).encode(),
+        "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
+        "expected": _expected(network, objective, scenario, controllers),
+        "ui": _ui_settings(values),
+        "trace": f"- {{at: 2.0, do: {trace}}}\n".encode() if trace else b"[]\n",
+    }
+    files: Dict[str, bytes] = {}
+    packages = _packages(scenario, subs, data, options)
+    _check_packages(packages)
+    for package in packages:
+        for path, content in files_of(package, values, jinja, templates).items():
+            files[f"src/{package.name}/{path}"] = content
+    files.update(_beside(scenario, network, objective, strategy))
+    files["map.svg"] = map_svg.draw(scenario, where, computed).encode()
+    files["README.md"] = _readme(jinja, values, scenario, packages, computed)
+    return files
+
+
+def _check_name(scenario: Scenario) -> None:
+    if not _PACKAGE_NAME.fullmatch(scenario.name):
+        message = (
+            f"the scenario is called '{scenario.name}', and {context.bringup_of(scenario)} cannot be a ROS package; "
+            "expected letters, digits and underscores, a letter first"
+        )
+        raise PursueError([error("WSP005", message, hint="rename the .pur file, for example to my_mission.pur")])
+
+
+def _check_packages(packages: Sequence[Package]) -> None:
+    """Two packages of one name would be one folder; on some disks also where the names differ in case only."""
+    names = [package.name.lower() for package in packages]
+    twice = sorted({package.name for package in packages if names.count(package.name.lower()) > 1})
+    if twice:
+        message = f"two packages would have the same name: {', '.join(twice)}"
+        raise PursueError([error("WSP006", message, hint="rename the robot, or the .pur file")])
+
+
+def _packages(
+    scenario: Scenario, subs: Sequence[SubStrategy], data: Mapping[str, bytes], options: Options
+) -> List[Package]:
+    """The packages with what their manifests say and their data, the controllers first."""
+    packages = []
+    people: Dict[str, bytes] = {}
+    for sub in subs:
+        text = strategy_file.render(sub, scenario.name, __version__, options.reaction).encode()
+        if sub.controller == _UI:
+            people = {f"config/{_PEOPLE}.yaml": text}
+            continue
+        commanded = " and ".join(sub.agents) or "nobody"
+        summary = f"The controller that commands {commanded}."
+        files = {"config/strategy.yaml": text, "config/poses.yaml": data["poses"]}
+        packages.append(Package(sub.controller, "controller", summary, files))
+    observer = {"config/model.yaml": data["model"], "config/cover.yaml": data["cover"]}
+    packages.append(Package("observer", "observer", "The observer: keeps the state of the mission.", observer))
+    ui = {"config/model.yaml": data["model"], "config/poses.yaml": data["poses"], **people}
+    ui["config/ui.yaml"] = data["ui"]
+    packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
+    tests = {"test/expected.json": data["expected"], "test/trace.yaml": data["trace"]}
+    names = tuple(package.name for package in packages)
+    bringup = context.bringup_of(scenario)
+    summary = "Launch files and tests of the whole mission."
+    packages.append(Package(bringup, "bringup", summary, tests, names, TEST_DEPENDS))
+    return packages
+
+
+def _plays(scenario: Scenario, trace: Optional[str]) -> List[str]:
+    """What the launch tests let agents do that nobody controls: nothing, anything, what the trace says."""
+    random = ["mode:=random seed:=1", "mode:=random seed:=2"]
+    free = any(not agent.controllable for agent in scenario.agents)
+    return ["mode:=still", *(random if free else []), *(["mode:=trace"] if trace else [])]
+
+
+def _expected(
+    network: Network, objective: Objective, scenario: Scenario, controllers: Sequence[SubStrategy]
+) -> bytes:
+    commands = {}
+    for sub in controllers:
+        moves = [command.moves[0] for _, block in sub.blocks for command in block]
+        commands[sub.controller] = [event_word(move.automaton, move.edge) for move in moves]
+    robots = {agent.name for agent in scenario.agents if agent.is_robot}
+    owner = {agent: sub.controller for sub in controllers for agent in sub.agents if agent in robots}
+    nodes = ["observer", "simulator", _UI, *commands]
+    return expected.expected(network, objective, owner, commands, nodes)
+
+
+def _poses(scenario: Scenario, where: Mapping[str, Pose], computed: bool) -> bytes:
+    """The text of poses.yaml."""
+    lines = [f"# Where the points of {scenario.name} are, in frame map, written by pursue-gen {__version__}."]
+    if computed:
+        given = {poi.name for poi in scenario.pois if poi.pose is not None}
+        missing = [name for name in where if name not in given]
+        lines.append(f"# Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
+    lines.append("# [x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
+    lines += ["format: 1", f"computed: {str(computed).lower()}", "poses:"]
+    for name, p in where.items():
+        numbers = ", ".join(repr(float(number)) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw))
+        lines.append(f'  "{name}": [{numbers}]')
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _ui_settings(values: Mapping[str, Any]) -> bytes:
+    """The text of ui.yaml: the nodes that the UI waits for before the mission, and whose ends the simulator tells."""
+    nodes = ", ".join(("observer", *values["controllers"], "simulator"))
+    reports = ", ".join(json.dumps(name) for name in values["reported"])
+    head = f"# Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
+    return f"{head}\nformat: 1\nnodes: [{nodes}]\nreports: [{reports}]\n".encode()
+
+
+def _beside(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:
+    """What stands next to src/."""
+    return {
+        f"{scenario.name}.pur": scenario.text.encode(),
+        "TGA.xml": write_network(network, objective).encode(),
+        "TCTL.q": write_query(objective).encode(),
+        "UPPAAL_plan.txt": write_plan(strategy, network, objective).encode(),
+    }
+
+
+def _readme(
+    jinja: jinja2.Environment,
+    values: Mapping[str, Any],
+    scenario: Scenario,
+    packages: Sequence[Package],
+    computed: bool,
+) -> bytes:
+    nodes = [package.name for package in packages if package.kind != "bringup"]
+    told = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
+    return jinja.get_template("workspace/README.md.j2").render({**values, **told}).encode()
+
+
+def _promise(scenario: Scenario) -> str:
+    """What the mission does, in a sentence, with the author's words for it."""
+    goal = f"reaches `{scenario.reach.event.name}`" if scenario.reach else ""
+    if goal and scenario.reach and scenario.reach.after:
+        goal += f" after {scenario.reach.after} time units"
+    safe = f"keeps `{_source(scenario)}`" if scenario.safety else ""
+    what = " and ".join(part for part in (goal, safe) if part)
+    return f"The mission {what}, whatever the agents do that nobody controls."
+
+
+def _source(scenario: Scenario) -> str:
+    """The safety objective as it stands in the scenario."""
+    assert scenario.safety is not None
+    line = scenario.text.splitlines()[scenario.safety.span.line - 1]
+    return line.split("//")[0].split(":", 1)[-1].strip()

@@ -1,0 +1,288 @@
+"""A workspace in memory: what it holds, that catkin, roslaunch and Python accept it, and that it is always the same."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import json
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Dict, List, Set
+
+import pytest
+import yaml
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import load
+from pursue_gen.partition import partition
+from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.tga.uppaal import read_network, read_query
+from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
+from worlds import REACTION, SCENARIOS, files, world
+
+SHAPES = [
+    ("thesis/scenario_1", "distributed", "dedicated"),
+    ("thesis/scenario_1", "distributed", "bot2"),
+    ("thesis/catch_the_thief", "distributed", "all"),
+    ("thesis/catch_the_thief", "centralized", "dedicated"),
+    ("thesis/catch_the_thief", "general", "dedicated"),
+    ("work_cell/work_cell", "distributed", "dedicated"),
+]
+
+
+def packages(generated: Dict[str, bytes]) -> Set[str]:
+    return {path.split("/")[1] for path in generated if path.startswith("src/")}
+
+
+def python(generated: Dict[str, bytes]) -> Dict[str, str]:
+    shebang = b"#!/usr/bin/env python3\n"
+    return {p: text.decode() for p, text in generated.items() if p.endswith(".py") or text.startswith(shebang)}
+
+
+@pytest.fixture(scope="module", params=SHAPES, ids="-".join)
+def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
+    return files(*request.param)
+
+
+def test_one_package_for_each_node() -> None:
+    common = {"observer", "UI", "catch_the_thief_bringup"}
+    robots = {"controller_polBot1", "controller_polBot2"}
+    name = "thesis/catch_the_thief"
+    assert packages(files(name)) == common | robots | {"controllerObj"}
+    assert packages(files(name, "distributed", "all")) == common | robots
+    assert packages(files(name, "distributed", "polBot1")) == common | robots
+    assert packages(files(name, "centralized")) == common | {"controller"}
+    assert packages(files(name, "general")) == common | {"controller"}
+
+
+def test_manifests_are_valid_and_named_like_their_folders(generated: Dict[str, bytes], tmp_path: Path) -> None:
+    package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg is not installed")
+    for name in packages(generated):
+        manifest = tmp_path / "package.xml"
+        manifest.write_bytes(generated[f"src/{name}/package.xml"])
+        parsed = package.parse_package(str(manifest))
+        parsed.validate()
+        assert parsed.name == name
+        assert [d.name for d in parsed.buildtool_depends] == ["catkin"]
+        assert name.endswith("_bringup") or {"rospy", "std_msgs"} <= {d.name for d in parsed.exec_depends}
+
+
+def test_every_ros_import_is_in_the_manifest(generated: Dict[str, bytes]) -> None:
+    keys = {"yaml": "python3-yaml", "transitions": "python3-transitions"}
+    known = {"rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "rostest", *keys}
+    for path, text in python(generated).items():
+        manifest = generated["/".join(path.split("/")[:2]) + "/package.xml"].decode()
+        for module in imports(text) & known:
+            assert f"_depend>{keys.get(module, module)}<" in manifest, f"{path} imports {module}"
+
+
+def imports(text: str) -> Set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        found |= {name.split(".")[0] for name in names}
+    return found
+
+
+def test_every_package_is_complete_in_itself(generated: Dict[str, bytes]) -> None:
+    modules = {Path(path).stem for path in generated if "/scripts/" in path and path.endswith(".py")}
+    for path, text in python(generated).items():
+        for module in imports(text) & modules:
+            assert f"{path.rsplit('/', 1)[0]}/{module}.py" in generated, f"{path} imports {module}"
+
+
+def test_no_package_carries_a_module_that_it_does_not_use(generated: Dict[str, bytes]) -> None:
+    scripts = {path: text for path, text in python(generated).items() if "/scripts/" in path}
+    for path in scripts:
+        folder, name = path.rsplit("/", 1)
+        users = [text for other, text in scripts.items() if other.startswith(f"{folder}/") and other != path]
+        assert not name.endswith(".py") or any(name[:-3] in imports(text) for text in users), path
+
+
+def test_what_cmake_names_is_there_and_everything_is_installed(generated: Dict[str, bytes]) -> None:
+    for name in packages(generated):
+        cmake = generated[f"src/{name}/CMakeLists.txt"].decode()
+        assert f"project({name})" in cmake
+        inside = {p.split("/", 2)[2] for p in generated if p.startswith(f"src/{name}/")}
+        named = set(re.findall(r"(?:scripts|test)/[\w.]+", cmake))
+        assert named <= inside
+        assert {p for p in inside if p.startswith("scripts/")} <= named
+        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts"}
+        for folder in folders:
+            assert re.search(rf"install\(DIRECTORY[^)]*\b{folder}\b", cmake), f"{name}/{folder} is not installed"
+
+
+def test_each_package_has_the_node_of_its_name(generated: Dict[str, bytes]) -> None:
+    for name in packages(generated):
+        if not name.endswith("_bringup"):
+            assert generated[f"src/{name}/scripts/{name}"].startswith(b"#!/usr/bin/env python3\n")
+    assert "src/UI/scripts/simulator" in generated and "src/UI/scripts/sim_clock" in generated
+
+
+def test_python_is_that_of_ubuntu_20_04(generated: Dict[str, bytes]) -> None:
+    for path, text in python(generated).items():
+        ast.parse(text, path, feature_version=(3, 8))
+
+
+def test_python_passes_the_linter(generated: Dict[str, bytes], tmp_path: Path) -> None:
+    pytest.importorskip("ruff", reason="ruff is not installed")
+    for number, (path, text) in enumerate(sorted(python(generated).items())):
+        folder = tmp_path / str(number)  # alone: ruff tells first-party modules by their neighbours
+        folder.mkdir()
+        (folder / (Path(path).stem + ".py")).write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--target-version", "py38", "--line-length", "120"]
+    done = subprocess.run([*command, "--select", "E4,E7,E9,F,W,B", str(tmp_path)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def test_data_and_launch_files_can_be_read(generated: Dict[str, bytes]) -> None:
+    for path, text in generated.items():
+        if path.endswith(".yaml"):
+            assert yaml.safe_load(text) is not None, path
+        elif path.endswith((".xml", ".launch", ".test", ".svg")):
+            ElementTree.fromstring(text)
+        elif path.endswith(".json"):
+            json.loads(text)
+
+
+def test_every_launch_argument_has_a_default_and_says_what_it_is(generated: Dict[str, bytes]) -> None:
+    arguments = []
+    for path, text in generated.items():
+        if path.endswith((".launch", ".test")):
+            arguments += ElementTree.fromstring(text).findall("arg")
+    assert len(arguments) > 10
+    assert all("default" in a.attrib and a.attrib.get("doc") for a in arguments)
+
+
+def test_the_launch_file_starts_every_node_and_no_other(generated: Dict[str, bytes]) -> None:
+    (launch,) = [text for path, text in generated.items() if path.endswith("mission.launch")]
+    nodes = {(n.attrib["pkg"], n.attrib["type"]) for n in ElementTree.fromstring(launch).iter("node")}
+    there = {(p.split("/")[1], p.split("/")[3]) for p in generated if "/scripts/" in p and not p.endswith(".py")}
+    assert nodes == there
+
+
+def test_the_same_scenario_gives_the_same_bytes() -> None:
+    assert files("thesis/catch_the_thief") == files("thesis/catch_the_thief")
+
+
+def test_neither_the_machine_nor_the_day_is_in_any_file(generated: Dict[str, bytes]) -> None:
+    for path, text in generated.items():
+        said = text.decode()
+        assert str(SCENARIOS) not in said and str(Path.home()) + "/" not in said, path
+        assert not re.search(r"\b20\d\d-\d\d-\d\d\b", said), path
+
+
+def test_what_stands_beside_the_packages_tells_the_same_game() -> None:
+    scenario, network, objective, strategy = world("thesis/catch_the_thief")
+    generated = files("thesis/catch_the_thief")
+    again = read_network(generated["TGA.xml"].decode(), "TGA.xml")
+    assert {a.name for a in again.automata} == {a.name for a in network.automata}
+    assert read_query(generated["TCTL.q"].decode(), "TCTL.q") == objective
+    plan = read_plan(generated["UPPAAL_plan.txt"].decode(), network, "plan")
+    assert {b.state for b in plan.blocks} == {b.state for b in strategy.blocks if b.wait or b.commands}
+    assert generated["catch_the_thief.pur"].decode() == scenario.text
+
+
+def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:
+    given = yaml.safe_load(files("thesis/catch_the_thief")["src/controller_polBot1/config/poses.yaml"])
+    assert given["computed"] is False
+    assert given["poses"]["a"] == pytest.approx([3.0, 1.54, 0.0, 0.0, 0.0, 0.67, 0.73], abs=0.01)
+    computed = files("thesis/scenario_1")["src/UI/config/poses.yaml"]
+    assert yaml.safe_load(computed)["computed"] is True and b"Computed from the distances" in computed
+    assert "computed from the\ndistances" in files("thesis/scenario_1")["README.md"].decode()
+
+
+def test_expectations_of_the_launch_tests() -> None:
+    expected = json.loads(files("thesis/catch_the_thief")["src/catch_the_thief_bringup/test/expected.json"])
+    assert expected["reach"] is True
+    assert expected["robots"] == {"polBot1": "controller_polBot1", "polBot2": "controller_polBot2"}
+    assert all(word.startswith("polBot1_") or word == "catch" for word in expected["commands"]["controller_polBot1"])
+    assert "polBot1_going_a_to_b2b" in expected["ends"]
+    assert set(expected["nodes"]) == {
+        "observer", "UI", "simulator", "controllerObj", "controller_polBot1", "controller_polBot2",
+    }
+
+
+def test_a_trace_is_something_that_can_happen() -> None:
+    generated = files("work_cell/work_cell")
+    (step,) = yaml.safe_load(generated["src/work_cell_bringup/test/trace.yaml"])
+    assert step["do"].split(":")[-1] == "newBox"
+
+
+@pytest.mark.parametrize("name", ["2fast", "my scenario", "a-b", "ä", ""])
+def test_a_name_that_no_package_can_have_is_told(name: str) -> None:
+    scenario, *rest = world("thesis/scenario_1")
+    with pytest.raises(PursueError) as caught:
+        generate(dataclasses.replace(scenario, name=name), *rest, Options(reaction=REACTION))
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "WSP005" and "rename" in finding.hint
+
+
+def test_two_packages_of_one_name_are_told() -> None:
+    scenario, *rest = world("thesis/scenario_1")
+    renamed = dataclasses.replace(scenario, name="controller_bot1")
+    assert "src/controller_bot1_bringup/package.xml" in generate(renamed, *rest, Options(reaction=REACTION))
+    text = scenario.text.replace("bot1", "x_bringup")
+    with pytest.raises(PursueError, match="same name"):
+        generate_text(text, "controller_x")
+
+
+def generate_text(text: str, name: str) -> Dict[str, bytes]:
+    from pursue_gen.language import parse
+    from pursue_gen.synthesis.solve import solve
+    from pursue_gen.tga import scenario_objective, translate
+
+    scenario = parse(text, f"{name}.pur", name)
+    network, objective = translate(scenario), scenario_objective(scenario)
+    strategy = solve(network, objective).strategy
+    assert strategy is not None
+    return generate(scenario, network, objective, strategy, Options())
+
+
+def test_people_get_instructions_and_no_controller() -> None:
+    text = (SCENARIOS / "thesis/scenario_1.pur").read_text().replace('"bot2" controllable', '"bot2" human controllable')
+    generated = generate_text(text, "ward")
+    assert packages(generated) == {"controller_bot1", "controllerObj", "observer", "UI", "ward_bringup"}
+    (instructions,) = [yaml.safe_load(t) for p, t in generated.items() if p.endswith("/config/people.yaml")]
+    assert instructions["commands_agents"] == ["bot2"]
+
+
+def test_writing_puts_the_folder_where_it_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    given = world("thesis/scenario_1")
+    assert write_workspace(*given) == Path("workspace_out/scenario_1")
+    assert (tmp_path / "workspace_out/scenario_1/src/observer/package.xml").is_file()
+    assert write_workspace(*given, folder=tmp_path / "there") == tmp_path / "there"
+    assert (tmp_path / "there/scenario_1.pur").read_text() == given[0].text
+
+
+def test_templates_are_found() -> None:
+    assert (templates_dir() / "bringup" / "package.xml.j2").is_file()
+
+
+def test_each_command_of_the_strategy_reaches_a_package() -> None:
+    scenario, network, _, strategy = world("thesis/catch_the_thief")
+    generated = files("thesis/catch_the_thief")
+    for sub in partition(strategy, network, scenario.agents):
+        data = yaml.safe_load(generated[f"src/{sub.controller}/config/strategy.yaml"])
+        assert sum(len(entry["commands"]) for entry in data["strategy"]) == sub.commands
+
+
+def paths_in(readme: str) -> List[str]:
+    return re.findall(r"\| `([^`]+)`", readme) + re.findall(r"\((\w+\.svg)\)", readme)
+
+
+def test_the_readme_names_what_is_there(generated: Dict[str, bytes]) -> None:
+    named = [p for cell in paths_in(generated["README.md"].decode()) for p in cell.split("`, `")]
+    assert len(named) > 8
+    there = {*generated, ".pursue_gen.json", *(f"src/{name}" for name in packages(generated))}
+    assert set(named) <= there
+
+
+def test_scenarios_of_the_project_can_all_be_packages() -> None:
+    for path in sorted(SCENARIOS.rglob("*.pur")):
+        assert re.fullmatch("[a-z][a-z0-9_]*", load(str(path)).name), path

@@ -1,0 +1,36 @@
+"""Scenarios solved once for all the tests that need a strategy."""
+
+from __future__ import annotations
+
+import functools
+from fractions import Fraction
+from pathlib import Path
+from typing import Dict, Tuple
+
+from pursue_gen.language import load
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import ends_reported, scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.workspace import Options, generate
+
+SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
+REACTION = Fraction(1, 10)
+World = Tuple[Scenario, Network, Objective, Strategy]
+
+
+@functools.lru_cache(maxsize=None)
+def world(name: str) -> World:
+    """The scenario `scenarios/<name>.pur` in the default game, and a strategy that wins it."""
+    scenario = load(str(SCENARIOS / f"{name}.pur"))
+    objective = scenario_objective(scenario)
+    network = ends_reported(translate(scenario), {})
+    verdict = solve(network, objective, REACTION)
+    assert verdict.strategy is not None, f"{name} is lost"
+    return scenario, network, objective, verdict.strategy
+
+
+def files(name: str, controllers: str = "distributed", reach_obj: str = "dedicated") -> Dict[str, bytes]:
+    """The workspace of the scenario, in memory."""
+    return generate(*world(name), Options(controllers=controllers, reach_obj=reach_obj, reaction=REACTION))
