@@ -53,8 +53,9 @@ def partition(
     """The sub-strategies: the robots' in order of declaration (or the one `controller`), `controllerObj`, `UI`.
 
     A robot without commands still gets its (empty) controller. `controllerObj` is there under the policy `dedicated`
-    when the network has a reachObj or an objective has commands; `UI` when there are human allies. Ends are left out but for
-    `general`; every other command is in exactly one sub-strategy, with `all` those of the objectives in every robot's.
+    when the network has a reachObj or an objective has commands; `UI` when there are human allies. Ends are left out
+    but for `general`; every other command is in exactly one sub-strategy, with `all` those of the objectives in every
+    robot's.
 
     Raises PursueError for an unknown shape or policy (exit status 2), for a counter-strategy, and for a command of an
     automaton that nobody controls.

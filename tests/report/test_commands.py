@@ -70,8 +70,8 @@ def test_without_an_ideal_game_general_is_of_the_same_strategy(strategy: Strateg
 def test_two_games_are_said_to_be_two() -> None:
     played = Game(game(), Strategy(()))
     one, two = commands_table("game", AGENTS, played), commands_table("game", AGENTS, played, played)
-    assert "two games" in render_table(two) and as_json(two)["ideal_general"] is True
-    assert "two games" not in render_table(one) and as_json(one)["ideal_general"] is False
+    assert "a strategy each" in render_table(two) and as_json(two)["ideal_general"] is True
+    assert "a strategy each" not in render_table(one) and as_json(one)["ideal_general"] is False
 
 
 @QUICK

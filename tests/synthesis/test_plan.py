@@ -13,9 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import load
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.plan_text import number_text
 from pursue_gen.synthesis.strategy import Block, Constraint, Strategy
+from pursue_gen.tga import translate
 from pursue_gen.tga.network import ClockBound, Guard, Kind, Network, Objective
 from pursue_gen.tga.uppaal import read_network, read_query
 from tests.partition.games import QUICK, REACH, SAFETY, game, random_strategies
@@ -96,6 +98,16 @@ def test_published_plans_are_written_as_tiga_wrote_them(reference_dir: Path, nam
     if any(automaton.name == "states" for automaton in network.automata):
         assert "states.base" in ours
     assert lines(ours) == lines(text)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_published_plans_fit_the_network_that_we_make_of_the_scenario(reference_dir: Path, name: str) -> None:
+    text, network, _ = published(reference_dir, name)
+    ours = translate(load(reference_dir / name / "scenario.pur"))
+    theirs = read_plan(text, network, name)
+    mine = read_plan(text, ours, name)
+    assert len(mine.blocks) == len(theirs.blocks)
+    assert all(len(a.commands) == len(b.commands) for a, b in zip(mine.blocks, theirs.blocks))
 
 
 @QUICK
