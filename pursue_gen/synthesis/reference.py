@@ -272,13 +272,14 @@ class _Safety(_Fixpoint):
         return _union([self.found[number], spoilt, stuck]).reduced(), usable
 
     def _blocks(self) -> Tuple[Tuple[State, Tuple[Piece, ...]], ...]:
-        """Wait where waiting for ever never meets E; else take a safe move where there is one; else wait for one."""
+        """Wait where that may go on for ever; else take a safe move where there is one; else wait for one."""
         blocks: List[Tuple[State, Tuple[Piece, ...]]] = []
         for number, node in enumerate(self.arena.nodes):
             safe = self.rest[number]
             if safe:
                 danger, usable = self._look(number)
-                threatened = safe.intersect(danger.down())
+                # At a bound that only the controller can leave, waiting on is not possible.
+                threatened = safe.intersect(danger.union(self._unforced[number]).down())
                 pieces: List[Piece] = [(zone, None) for zone in _disjoint(safe.minus(threatened))]
                 blocks.append((node.state, (*pieces, *_assign(threatened, usable))))
         return tuple(blocks)

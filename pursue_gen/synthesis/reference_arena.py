@@ -12,7 +12,7 @@ from typing import Callable, Deque, Dict, Iterable, List, Optional, Sequence, Se
 
 from pursue_gen.synthesis.dbm import Dbm, complement
 from pursue_gen.synthesis.federation import Federation
-from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, invariant, joint_moves
+from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, invariant, is_bad, is_goal, joint_moves
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
 """Of a state and its moves that the controller can take, those that a search is to follow at first."""
@@ -105,7 +105,9 @@ class Arena:
         return (k for k, automaton in enumerate(self.game.automata) if automaton.invariants[locations[k]])
 
     def _expand(self, node: Node) -> None:
-        moves = list(joint_moves(self.game, node.state))
+        # At the goal and at what is to be avoided the game is decided.
+        decided = is_goal(self.game, node.state) or is_bad(self.game, node.state)
+        moves = [] if decided else list(joint_moves(self.game, node.state))
         own = [joint for joint in moves if joint.controllable]
         chosen = own if self._choose is None else self._choose(node.state, own)
         node.controllable = [Move(joint) for joint in own if joint in chosen]
