@@ -1,0 +1,136 @@
+"""A controller's player speaks when a command is due, for the state it knows; its robot moves once that is taken."""
+
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+import pytest
+from node_modules import controller_core, library, read
+
+STRATEGY = """
+format: 1
+controller: controller_bot
+commands_agents: [bot]
+reaction: 0.2
+strategy:
+- state: {bot: c}
+  commands:
+  - {do: bot_c2b, agent: bot, from: c, to: going_c_to_b, when: ["5 <= Cbot && Cbot <= 6"]}
+- state: {bot: b}
+  commands:
+  - {do: catch, agent: bot, from: b, to: b, when: ["1 < Cbot"]}
+"""
+
+
+def player(text: str = STRATEGY) -> Any:
+    return controller_core.Player(library.Strategy(read(text)))
+
+
+def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running") -> Any:
+    agent = "bot" if event else ""
+    return library.SystemState(seq, stamp, {"bot": bot}, {}, {"Cbot": clock}, event, agent, status)
+
+
+def test_it_waits_for_the_moment_and_speaks_for_the_state_it_knows() -> None:
+    bot = player()
+    assert bot.see(state(1, 100.0), 100.0) == []
+    assert bot.wake() == (105.0, None)
+    assert bot.ring(104.9) is None and bot.wake() == (105.0, None)
+    assert bot.ring(105.0) == ("bot", "bot_c2b", 1)
+
+
+def test_it_does_nothing_before_the_mission_runs_nor_after() -> None:
+    for status in ("waiting", "won", "lost", "stopped"):
+        bot = player()
+        assert bot.see(state(0, 100.0, bot="going_c_to_b", status=status), 100.0) == []
+        assert bot.wake() == (None, None) and bot.ring(105.0) is None
+
+
+def test_a_new_state_replaces_what_was_planned() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    bot.see(state(2, 102.0, clock=1.0), 102.0)
+    assert bot.wake() == (106.0, None)
+    assert bot.ring(106.0).seq == 2
+
+
+def test_a_word_that_is_not_answered_is_sent_again_ever_more_slowly() -> None:
+    bot = player(STRATEGY.replace(" && Cbot <= 6", ""))
+    bot.see(state(1, 100.0), 100.0)
+    bot.ring(105.0)
+    patience: List[Optional[float]] = []
+    for step in range(6):
+        patience.append(bot.wake()[1])
+        assert bot.wake()[0] is None
+        assert bot.ring(106.0 + step) == ("bot", "bot_c2b", 1)
+    assert patience == [0.5, 1.0, 2.0, 4.0, 4.0, 4.0]
+    assert bot.counts["sent_again"] == 6
+
+
+def test_it_falls_silent_when_the_window_has_passed() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    bot.ring(105.0)
+    assert bot.ring(107.0) is None and bot.wake() == (None, None)
+
+
+def test_an_answered_word_is_not_repeated() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    bot.ring(105.0)
+    bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    assert bot.wake() == (None, None) and bot.ring(106.0) is None
+
+
+def test_it_may_wake_late_within_the_reaction_and_not_later() -> None:
+    for late, spoken in ((0.09, True), (0.2, False)):
+        bot = player(STRATEGY.replace("Cbot <= 6", "Cbot <= 5"))
+        bot.see(state(1, 100.0), 100.0)
+        assert (bot.ring(105.0 + late) is not None) is spoken
+        assert bot.counts["too_late"] == (not spoken)
+
+
+def test_a_window_that_is_still_open_is_used_however_late() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    assert bot.ring(105.9) == ("bot", "bot_c2b", 1)
+    assert bot.counts["too_late"] == 0
+
+
+def test_its_robot_moves_once_the_observer_has_taken_the_word() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    orders = bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    assert orders == [("bot", "bot_c2b", "c", "going_c_to_b")]
+    assert bot.see(state(3, 114.0, bot="b", event="bot_going_c_to_b2b"), 114.0) == []
+
+
+def test_an_instantaneous_action_goes_to_the_robot_too() -> None:
+    bot = player()
+    bot.see(state(3, 114.0, bot="b"), 114.0)
+    assert bot.see(state(4, 116.0, bot="b", event="catch"), 116.0) == [("bot", "catch", "b", "b")]
+
+
+def test_what_others_do_moves_nobody() -> None:
+    bot = player()
+    bot.see(state(1, 100.0, bot="b"), 100.0)
+    other = state(2, 101.0, bot="b")._replace(event="catch", agent="dog")
+    assert bot.see(other, 101.0) == []
+
+
+def test_the_answer_to_a_ping_changes_nothing() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    assert bot.see(state(2, 107.0, bot="going_c_to_b", event="bot_c2b", clock=2.0), 107.0) == []
+
+
+@pytest.mark.parametrize(
+    "place, trigger", [("going_c_to_b", "going_c_to_b"), ("doing_pick_in_box_in_b", "pick_in_box")]
+)
+def test_one_that_comes_late_or_missed_states_tells_the_robot_where_it_should_be(place: str, trigger: str) -> None:
+    fresh = player()
+    assert fresh.see(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "", place)]
+    missed = player()
+    missed.see(state(1, 90.0), 90.0)
+    assert missed.see(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "c", place)]

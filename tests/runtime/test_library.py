@@ -1,0 +1,260 @@
+"""What the generated nodes share: the texts on the topics, zones, and the moment at which a command is due."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from node_modules import library, read
+
+MARGIN = 0.02
+CLOCKS = ("Cx", "Cy", "Cz")
+names = st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,8}", fullmatch=True)
+
+# Values and bounds are multiples of 1/4: exact as floats, so that the brute force below decides every bound.
+quarters = st.integers(0, 24).map(lambda n: n / 4)
+valuations = st.fixed_dictionaries(dict.fromkeys(CLOCKS, quarters))
+
+
+@st.composite
+def comparisons(draw: st.DrawFn) -> str:
+    """A comparison as strategy files have it, or as models have it."""
+    first, second = draw(st.permutations(CLOCKS))[:2]
+    bound, operator = draw(st.integers(-24, 24)), draw(st.sampled_from(("<", "<=", "==", ">", ">=")))
+    number = str(Fraction(abs(bound), 4)) if draw(st.booleans()) else f"{abs(bound) / 4:g}"
+    sides = draw(
+        st.sampled_from(
+            (
+                (first, number),
+                (number, first),
+                (f"{first} - {second}", f"-{number}" if bound < 0 else number),
+                (first, second),
+            )
+        )
+    )
+    return f"{sides[0]} {operator} {sides[1]}"
+
+
+zone_texts = st.lists(comparisons(), min_size=1, max_size=4).map(" && ".join)
+
+
+def true_at(text: str, clocks: dict, delay: float) -> bool:
+    """The zone's text as Python reads it, so to speak: an evaluation that shares nothing with the library."""
+    moved = {clock: Fraction(value) + Fraction(delay) for clock, value in clocks.items()}
+    python = text.replace("&&", "and")
+    for clock in CLOCKS:
+        python = python.replace(clock, f"c['{clock}']")
+    # fractions like 3/4 are exact here: the operands are quarters
+    return bool(eval(python, {"c": moved}))
+
+
+@given(zone_texts, valuations)
+def test_a_zone_holds_where_its_text_says(text: str, clocks: dict) -> None:
+    assert library.holds(library.parse_zone(text), clocks) == true_at(text, clocks, 0.0)
+
+
+@given(st.lists(zone_texts, min_size=1, max_size=3), valuations)
+def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> None:
+    zones = [library.parse_zone(text) for text in texts]
+    delay = library.due(zones, clocks, MARGIN)
+    # Bounds and clocks are quarters: between two quarters nothing changes, so quarters and what lies between suffice.
+    steps = [step / 8 for step in range(0, 8 * 40)]
+    first = next((s for s in steps if any(true_at(text, clocks, s) for text in texts)), None)
+    if first is None:
+        assert delay is None
+        return
+    assert delay is not None
+    assert any(true_at(text, clocks, delay) for text in texts)
+    opens = first * 4 != math.floor(first * 4)  # first true strictly between two quarters
+    assert delay == pytest.approx(first - 1 / 8 + MARGIN if opens else first, abs=1e-12)
+
+
+@given(zone_texts, valuations, quarters)
+def test_what_is_due_stays_due_while_time_passes(text: str, clocks: dict, passed: float) -> None:
+    zones = [library.parse_zone(text)]
+    delay = library.due(zones, clocks, MARGIN)
+    assume(delay is not None and passed <= delay)
+    later = library.due(zones, {clock: value + passed for clock, value in clocks.items()}, MARGIN)
+    assert later is not None and passed + later <= delay + MARGIN + 1e-9
+
+
+def test_a_command_is_due_inside_a_window_that_opens_strictly_and_is_narrow() -> None:
+    zone = library.parse_zone("1 < Cx && Cx < 1.01")
+    assert library.due([zone], {"Cx": 0.0}, MARGIN) == pytest.approx(1.005)
+    assert library.due([zone], {"Cx": 1.0}, MARGIN) == pytest.approx(0.005)
+    assert library.due([zone], {"Cx": 1.01}, MARGIN) is None
+
+
+def test_always_is_due_now() -> None:
+    assert library.due([library.parse_zone("always")], {"Cx": 3.0}) == 0.0
+    assert library.due([], {"Cx": 3.0}) is None
+
+
+def test_fractions_are_bounds() -> None:
+    assert library.due([library.parse_zone("4/3 <= Cx")], {"Cx": 1.0}) == pytest.approx(1 / 3)
+
+
+def test_the_decimals_of_a_message_do_not_break_an_equality() -> None:
+    zone = library.parse_zone("Cx - Cy == 3 && Cx == 5")
+    assert library.due([zone], {"Cx": 4.123456789, "Cy": 1.123456788}) == pytest.approx(0.876543211)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "Cx", "Cx < ", "1 < 2", "Cx - Cy < Cz", "1 < Cx <= 2", "Cx = 3", "Cx < 1 || Cy < 1"]
+)
+def test_what_is_no_zone_is_told(text: str) -> None:
+    with pytest.raises(library.DataError):
+        library.parse_zone(text)
+
+
+def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
+    zone = library.parse_zone("1 < Cx && Cx - Cy <= 3")
+    assert library.holds(zone, {"Cx": 0.95, "Cy": 0.0}, slack=0.1)
+    assert library.holds(zone, {"Cx": 3.05, "Cy": 0.0}, slack=0.1)
+    assert not library.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
+
+
+# Words and states
+
+
+@given(st.one_of(st.just(""), names), names, st.none() | st.integers(0, 10**6))
+def test_words_come_back(agent: str, event: str, seq: object) -> None:
+    word = library.Word(agent, event, seq)
+    assert library.parse_word(library.format_word(word)) == word
+
+
+@pytest.mark.parametrize(
+    "text, agent, event, seq",
+    [
+        ("catch", "", "catch", None),
+        ("catch@7", "", "catch", 7),
+        ("polBot2:catch@7", "polBot2", "catch", 7),
+        (" bot1_c2b! ", "", "bot1_c2b", None),
+    ],
+)
+def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: object) -> None:
+    assert library.parse_word(text) == (agent, event, seq)
+
+
+@pytest.mark.parametrize("text", ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…"])
+def test_what_is_no_word_is_none(text: str) -> None:
+    assert library.parse_word(text) is None
+
+
+@given(
+    st.integers(0, 10**6),
+    st.floats(0, 2e9),
+    st.dictionaries(names, names, max_size=4),
+    st.dictionaries(names, st.integers(-999, 999), max_size=4),
+    st.dictionaries(names, st.floats(0, 1e4), max_size=4),
+    names,
+    st.sampled_from(("waiting", "running", "won", "lost", "stopped")),
+    st.text(st.characters(codec="ascii", exclude_categories=("C", "Z")), max_size=9),
+)
+def test_states_come_back(  # type: ignore[no-untyped-def]
+    seq, stamp, locations, values, clocks, event, status, reason
+) -> None:
+    assume(not set(locations) & set(values))
+    state = library.SystemState(seq, stamp, locations, values, clocks, event, event, status, reason, 0.1)
+    back = library.parse_state(library.format_state(state))
+    assert back._replace(stamp=0, clocks={}) == state._replace(stamp=0, clocks={})
+    assert back.stamp == pytest.approx(stamp, abs=1e-6)
+    assert back.clocks == pytest.approx(clocks, abs=1e-9)
+
+
+def test_a_state_is_the_thesiss_text_under_one_line_of_ours() -> None:
+    state = library.SystemState(7, 12.25, {"bot1": "going_c_to_b"}, {"Pbot1": -32}, {"Cbot1": 0.5}, "bot1_c2b", "bot1")
+    assert library.format_state(state).splitlines() == [
+        "seq=7 stamp=12.250000 unit=1.0 event=bot1_c2b agent=bot1 status=running",
+        "bot1=going_c_to_b",
+        "Pbot1=-32",
+        "",
+        "Cbot1=0.500000000",
+    ]
+
+
+def test_a_reason_takes_the_rest_of_its_line() -> None:
+    state = library.SystemState(3, 1.0, {}, {}, {}, status="stopped", reason="no strategy: a=b\nCx=1")
+    assert library.parse_state(library.format_state(state)).reason == "no strategy: a=b Cx=1"
+
+
+def test_lines_that_nobody_knows_are_skipped() -> None:
+    state = library.parse_state("seq=2 stamp=1 colour=red\nbot=a\nwhat is this\nPbot=1\n\nCbot=1.5\nCother=soon")
+    assert (state.seq, state.locations, state.values, state.clocks) == (2, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 1.5})
+
+
+@pytest.mark.parametrize("text", ["", "hello", "seq=x stamp=1", "bot=a\n\nCbot=1"])
+def test_what_is_no_state_is_none(text: str) -> None:
+    assert library.parse_state(text) is None
+
+
+def test_clocks_go_on_from_the_stamp_in_the_states_own_unit() -> None:
+    state = library.SystemState(1, 100.0, {}, {}, {"Cx": 2.0}, unit=0.5)
+    assert state.clocks_at(101.0) == {"Cx": 4.0}
+    assert state.clocks_at(99.0) == {"Cx": 2.0}
+
+
+# Strategies -----------------------------------------------------------------------------------------------------------
+
+STRATEGY = """
+format: 1
+controller: controller_bot1
+commands_agents: [bot1]
+reaction: 0.1
+strategy:
+- state: {bot1: c, rule1: start, Sopen: 1}
+  commands:
+  - {do: bot1_c2b, agent: bot1, from: c, to: going_c_to_b, when: ["5 <= Cx && Cx < 6"]}
+  - {do: bot1_c2a, agent: bot1, from: c, to: going_c_to_a, when: ["3 <= Cx && Cx - Cy <= 0", "8 <= Cx"]}
+"""
+
+
+def state(seq: int = 1, stamp: float = 10.0, clocks=(0.0, 0.0), **holds: object):  # type: ignore[no-untyped-def]
+    everything = {"bot1": "c", "rule1": "start", "Sopen": 1, "Pbot1": 3, **holds}
+    locations = {name: value for name, value in everything.items() if isinstance(value, str)}
+    values = {name: value for name, value in everything.items() if isinstance(value, int)}
+    return library.SystemState(seq, stamp, locations, values, {"Cx": clocks[0], "Cy": clocks[1]}, unit=2.0)
+
+
+def test_the_first_of_several_commands_is_next() -> None:
+    strategy = library.Strategy(read(STRATEGY))
+    moment, command = strategy.next_command(state(), now=10.0)
+    assert (moment, command.event) == (10.0 + 2.0 * 3, "bot1_c2a")
+    moment, command = strategy.next_command(state(clocks=(1.0, 0.0)), now=10.0)
+    assert (moment, command.event) == (10.0 + 2.0 * 4, "bot1_c2b")
+
+
+def test_a_state_without_commands_has_no_next_one() -> None:
+    strategy = library.Strategy(read(STRATEGY))
+    assert strategy.next_command(state(Sopen=0), now=10.0) is None
+    assert strategy.next_command(state(bot1="a"), now=10.0) is None
+
+
+def test_a_strategy_with_something_amiss_is_told() -> None:
+    for broken in (STRATEGY.replace("Cx < 6", "Cx ~ 6"), STRATEGY.replace("do:", "doo:"), "format: 1\nstrategy: []"):
+        with pytest.raises(library.DataError):
+            library.Strategy(read(broken))
+
+
+def test_a_file_of_another_format_is_told(tmp_path: Path) -> None:
+    for text in ("format: 2", "[1, 2]", "format: [", "{"):
+        (tmp_path / "strategy.yaml").write_text(text)
+        with pytest.raises(library.DataError, match=r"strategy\.yaml"):
+            library.read_data(str(tmp_path / "strategy.yaml"))
+
+
+def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) -> None:
+    source, install = tmp_path / "src" / "bot" / "scripts" / "bot", tmp_path / "install" / "lib" / "bot" / "bot"
+    places = source.parent.parent / "config", tmp_path / "install" / "share" / "bot" / "config"
+    for script, place in zip((source, install), places):
+        for folder in (script.parent, place):
+            folder.mkdir(parents=True)
+        (place / "model.yaml").write_text("format: 1")
+        assert library.data_file(str(script), "bot", "model.yaml") == str(place / "model.yaml")
+    assert library.data_file(str(source), "bot", "model.yaml", str(places[1])) == str(places[1] / "model.yaml")
+    with pytest.raises(library.DataError, match="~config"):
+        library.data_file(str(source), "bot", "nothing.yaml")
