@@ -1,0 +1,96 @@
+"""The whole chain from a scenario to a proven strategy, as one value: what the commands and the workspace start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Mapping, Optional
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.synthesis.solve import Stats, solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.verify import pruned, verify
+from pursue_gen.tga import ends_reported, scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+
+REPORTED, CONTROLLABLE = "reported", "controllable"
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Which game is played.
+
+    `ends`: who controls the end of a controllable agent's movement or action, "reported" (the robot tells) or
+    "controllable" (the original's game). `reaction`: how late a command may take effect, in time units. `slack`: how
+    many time units later than the model an agent may end, per agent.
+    """
+
+    ends: str = REPORTED
+    reaction: Fraction = Fraction(1, 10)
+    slack: Mapping[str, int] = field(default_factory=dict)
+
+
+IDEAL = Rules(CONTROLLABLE, Fraction(0))
+"""The game that UPPAAL-TIGA plays."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A proven strategy for the objective in `network` (the game as it is played, ends and slack included)."""
+
+    network: Network
+    objective: Objective
+    strategy: Strategy
+    reaction: Fraction
+    stats: Optional[Stats] = None
+
+
+def played(network: Network, rules: Rules) -> Network:
+    """The network with the ends and the slack of the rules."""
+    return ends_reported(network, rules.slack) if rules.ends == REPORTED else network
+
+
+def solution(network: Network, objective: Objective, rules: Rules, seconds: float = 0.0) -> Solution:
+    """Solves the game and proves the strategy with the independent checker.
+
+    Raises PursueError with exit status 4 when the objective cannot be met under these rules; it says so plainly when the
+    ideal game, which no robot can play, would be won. With exit status 5 at a limit.
+    """
+    game = played(network, rules)
+    verdict = solve(game, objective, rules.reaction, seconds=seconds)
+    if verdict.strategy is None:
+        raise PursueError([_cannot_be_met(network, objective, rules, seconds)], exit_status=4)
+    strategy = prove(game, objective, verdict.strategy, rules.reaction)
+    return Solution(game, objective, strategy, rules.reaction, verdict.stats)
+
+
+def prove(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> Strategy:
+    """The part of the strategy that plays can reach, once the checker has found it winning.
+
+    Raises PursueError with the play that breaks it.
+    """
+    report = verify(network, objective, strategy, reaction)
+    if not report.ok:
+        play = "".join(f"\n      {step}" for step in report.play)
+        hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
+        raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
+    return pruned(strategy, report)
+
+
+def solve_scenario(scenario: Scenario, rules: Rules, seconds: float = 0.0) -> Solution:
+    """The proven strategy of a scenario. Raises as `solution` does."""
+    return solution(translate(scenario), scenario_objective(scenario), rules, seconds)
+
+
+def _cannot_be_met(network: Network, objective: Objective, rules: Rules, seconds: float):  # type: ignore[no-untyped-def]
+    message = f"the objective cannot be met with ends {rules.ends} and a reaction of {_decimal(rules.reaction)} time units"
+    hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
+    if rules != IDEAL and solve(network, objective, seconds=seconds).won:
+        message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
+        hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
+    return error("SYN021", message, hint=hint)
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):g}"

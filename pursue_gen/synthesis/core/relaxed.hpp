@@ -1,0 +1,123 @@
+// Which controllable edge looks best: the first one of a relaxed plan (delete relaxation, as the FF planner has it).
+//
+// Facts are "automaton a is at location l" and "variable x has value v"; a step never takes a fact away. Uncontrollable
+// edges count only where an invariant will force them (ends of movements and actions): nobody may hope for the rest.
+#pragma once
+
+#include <map>
+
+#include "game.hpp"
+
+namespace pursue {
+
+class RelaxedPlanner {
+  public:
+    RelaxedPlanner(const Game& game, Place goal) : game_(game), goal_(goal) {
+        for (int a = 0; a < static_cast<int>(game.automata.size()); ++a)
+            for (const Edge& edge : game.automata[a].edges) {
+                if (edge.channel >= 0 && !edge.sends) continue;
+                if (!edge.controllable && game.automata[a].invariants[edge.source].empty()) continue;
+                add_step(a, edge, -1, nullptr);
+                if (edge.channel < 0) continue;
+                for (int b = 0; b < static_cast<int>(game.automata.size()); ++b)
+                    for (const Edge& other : game.automata[b].edges)
+                        if (b != a && other.channel == edge.channel && !other.sends) add_step(a, edge, b, &other);
+            }
+    }
+
+    // The ids of controllable sender edges that a relaxed plan from d takes first; empty when there is no plan.
+    std::vector<int> first_edges(const Discrete& d) const {
+        std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1);
+        for (std::size_t k = 0; k < d.size(); ++k) {
+            const auto fact = facts_.find({static_cast<int>(k), d[k]});
+            if (fact != facts_.end()) layer[fact->second] = 0;
+        }
+        const auto goal = facts_.find({goal_.automaton, goal_.location});
+        if (goal == facts_.end()) return {};
+        for (int depth = 0; layer[goal->second] < 0; ++depth) {
+            bool changed = false;
+            std::vector<std::pair<int, int>> reached;
+            for (std::size_t s = 0; s < steps_.size(); ++s) {
+                if (!ready(steps_[s], layer)) continue;
+                for (int fact : steps_[s].effects)
+                    if (layer[fact] < 0) reached.emplace_back(fact, static_cast<int>(s));
+            }
+            for (const auto& [fact, step] : reached)
+                if (layer[fact] < 0) {
+                    layer[fact] = depth + 1;
+                    achiever[fact] = step;
+                    changed = true;
+                }
+            if (!changed) return {};
+        }
+        return extract(goal->second, layer, achiever);
+    }
+
+  private:
+    struct Step {
+        int edge;
+        bool controllable;
+        std::vector<std::vector<int>> needs;  // of each at least one fact
+        std::vector<int> effects;
+    };
+
+    int fact(int what, int value) { return facts_.emplace(std::make_pair(what, value), static_cast<int>(facts_.size())).first->second; }
+
+    void add_part(Step& step, int automaton, const Edge& edge) {
+        const int base = static_cast<int>(game_.automata.size());
+        step.needs.push_back({fact(automaton, edge.source)});
+        for (const auto& clause : edge.clauses) {
+            std::vector<int> any;
+            for (const auto& test : clause) any.push_back(fact(base + test.variable, test.value));
+            step.needs.push_back(any);
+        }
+        step.effects.push_back(fact(automaton, edge.target));
+        for (const auto& set : edge.assign) step.effects.push_back(fact(base + set.variable, set.value));
+    }
+
+    void add_step(int a, const Edge& sender, int b, const Edge* receiver) {
+        Step step{sender.id, sender.controllable && (!receiver || receiver->controllable), {}, {}};
+        add_part(step, a, sender);
+        if (receiver) add_part(step, b, *receiver);
+        steps_.push_back(std::move(step));
+    }
+
+    static bool ready(const Step& step, const std::vector<int>& layer) {
+        for (const auto& any : step.needs) {
+            bool found = false;
+            for (int fact : any) found = found || layer[fact] >= 0;
+            if (!found) return false;
+        }
+        return true;
+    }
+
+    std::vector<int> extract(int goal, const std::vector<int>& layer, const std::vector<int>& achiever) const {
+        std::vector<int> first, open{goal};
+        std::vector<bool> seen(facts_.size(), false);
+        while (!open.empty()) {
+            const int fact = open.back();
+            open.pop_back();
+            if (seen[fact] || layer[fact] == 0) continue;
+            seen[fact] = true;
+            const Step& step = steps_[achiever[fact]];
+            bool now = true;
+            for (const auto& any : step.needs) {
+                int best = -1;
+                for (int need : any)
+                    if (layer[need] >= 0 && (best < 0 || layer[need] < layer[best])) best = need;
+                now = now && layer[best] == 0;
+                open.push_back(best);
+            }
+            if (now && step.controllable && std::find(first.begin(), first.end(), step.edge) == first.end())
+                first.push_back(step.edge);
+        }
+        return first;
+    }
+
+    const Game& game_;
+    Place goal_;
+    std::map<std::pair<int, int>, int> facts_;
+    std::vector<Step> steps_;
+};
+
+}  // namespace pursue

@@ -1,0 +1,83 @@
+"""The native engine (`core/`, C++): the same game tables in, the same kind of outcome out as the Python reference."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis.dbm import INF
+from pursue_gen.synthesis.game import Action, Game, RawBlock
+
+try:
+    from pursue_gen.synthesis import _core
+except ImportError:  # no compiler when the package was installed: the Python reference serves
+    _core = None  # type: ignore[assignment]
+
+
+def available() -> bool:
+    """True if the native engine was built with the package and the game's zones fit it."""
+    return _core is not None
+
+
+def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Tuple[bool, Tuple[RawBlock, ...], Dict[str, int]]:
+    """Whether the controller wins, the strategy if so, and counts (discrete_states, zones, evaluations).
+
+    `seconds` and `states` (discrete ones) are limits, 0 for none; a limit that is hit raises PursueError with exit
+    status 5. Ctrl-C raises KeyboardInterrupt at once.
+    """
+    try:
+        result = _core.solve(_tables(game), seconds, states)
+    except _core.LimitReached as limit:
+        what = f"{seconds:g} seconds" if str(limit) == "seconds" else f"{states} discrete states"
+        hint = "allow more, or make the scenario smaller: fewer agents, POIs or events"
+        raise PursueError([error("SYN010", f"no verdict within the limit of {what}", hint=hint)], exit_status=5) from None
+    count = len(game.automata)
+    blocks: List[RawBlock] = [
+        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges in actions))
+        for d, actions in result["states"]
+    ]
+    counts = {key: int(result[key]) for key in ("discrete_states", "zones", "evaluations")}
+    return bool(result["won"]), tuple(blocks), counts
+
+
+def _matrix(bounds: List[int]) -> Tuple[int, ...]:
+    return tuple(INF if bound >= _core.INF else bound for bound in bounds)
+
+
+def _action(edges: Any) -> Action:
+    return None if edges is None else tuple(edges)
+
+
+def _tables(game: Game) -> Dict[str, Any]:
+    def edge(k: int) -> Dict[str, Any]:
+        e = game.edges[k]
+        return {
+            "id": k,
+            "source": e.source,
+            "target": e.target,
+            "guard": e.bounds,
+            "clauses": e.clauses,
+            "channel": e.channel,
+            "sends": e.sends,
+            "assign": e.assignments,
+            "resets": e.resets,
+            "controllable": e.controllable,
+        }
+
+    return {
+        "kind": game.kind.value,
+        "clocks": len(game.clocks),
+        "delta": game.delta,
+        "max": list(game.max_constants),
+        "variables": list(game.initial_values),
+        "goal": game.goal,
+        "bad": game.bad,
+        "automata": [
+            {
+                "initial": automaton.initial,
+                "invariants": [[(clock, 0, bound) for clock, bound in location] for location in automaton.invariants],
+                "edges": [edge(k) for k in automaton.edges],
+            }
+            for automaton in game.automata
+        ],
+    }

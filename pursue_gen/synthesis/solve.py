@@ -1,0 +1,59 @@
+"""One function in front of the engines: who wins, and with which strategy."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Optional
+
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis.strategy_from import to_strategy
+from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.reference import solve_reference
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Network, Objective
+
+
+@dataclass(frozen=True)
+class Stats:
+    """What it took: the engine (native or python), discrete states, zones of the result, seconds."""
+
+    engine: str
+    discrete_states: int
+    zones: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`)."""
+
+    won: bool
+    strategy: Optional[Strategy]
+    stats: Stats
+
+
+def solve(
+    network: Network,
+    objective: Objective,
+    reaction: Fraction = Fraction(0),
+    engine: Optional[str] = None,
+    seconds: float = 0.0,
+) -> Verdict:
+    """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
+
+    `reaction` is the delay of a command in time units, `engine` "native" or "python" (default: native where it was
+    built), `seconds` a limit of the native engine (0: none). Raises PursueError for networks that the game does not
+    support, and, with exit status 5, at the limit.
+    """
+    game = compile_game(network, objective, reaction)
+    start = time.perf_counter()
+    if engine == "native" or (engine is None and native.available()):
+        won, blocks, counts = native.solve_native(game, seconds)
+        stats = Stats("native", counts["discrete_states"], counts["zones"], time.perf_counter() - start)
+    else:
+        outcome = solve_reference(game)
+        won, blocks = outcome.won, outcome.raw_blocks()
+        stats = Stats("python", outcome.stats.states, outcome.stats.zones, time.perf_counter() - start)
+    return Verdict(won, to_strategy(game, blocks) if won else None, stats)
