@@ -8,7 +8,7 @@ A template that asks for anything else is an error (jinja2's StrictUndefined). E
 - `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (nobody controls it);
 - `free_agents`, the names of those that nobody controls; `robots`, those of the robots;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
-- `reported`, the agents whose ends come from the world: all of them, but for the robots of a `general` controller;
+- `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
 - `reaches`: the mission has a goal to reach; `bringup`: the name of the package with the launch files;
 - `time_unit`: the default length of a time unit in seconds;
 - `plays`: the arguments of each launch test.
@@ -24,8 +24,8 @@ from typing import Any, Dict, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.scenario import Agent, Scenario
-from pursue_gen.partition import GENERAL
-from pursue_gen.tga.network import Kind, Objective
+from pursue_gen.partition import SubStrategy
+from pursue_gen.tga.network import Kind, Objective, is_end
 
 
 @dataclass(frozen=True)
@@ -59,11 +59,13 @@ def kind_of(agent: Agent) -> str:
     return "human" if agent.human else "robot"
 
 
-def common(scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[str]) -> Dict[str, Any]:
+def common(
+    scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[SubStrategy]
+) -> Dict[str, Any]:
     """The values that every template of a workspace knows (but for `package` and `summary`)."""
     agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
-    robots = [agent.name for agent in scenario.agents if agent.is_robot]
-    decided = robots if options.controllers == GENERAL else []
+    first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
+    decided = {move.automaton for move in first_moves if is_end(move.edge)}
     return {
         "scenario": scenario.name,
         "generator": __version__,
@@ -72,9 +74,9 @@ def common(scenario: Scenario, objective: Objective, options: Options, controlle
         "maintainer_email": options.maintainer_email,
         "license": options.license,
         "agents": agents,
-        "robots": robots,
+        "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
-        "controllers": list(controllers),
+        "controllers": [sub.controller for sub in controllers],
         "reported": [agent.name for agent in scenario.agents if agent.name not in decided],
         "reaches": objective.kind is not Kind.SAFETY,
         "bringup": bringup_of(scenario),

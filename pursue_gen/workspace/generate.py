@@ -46,7 +46,7 @@ def generate(
     templates = templates_dir()
     jinja = environment(templates)
     trace = expected.first_report(network)
-    values = context.common(scenario, objective, options, [sub.controller for sub in controllers])
+    values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
     data = {
         "poses": _poses(scenario, where, computed),

@@ -14,6 +14,7 @@ from typing import Dict, List, Set
 
 import pytest
 import yaml
+from worlds import REACTION, SCENARIOS, files, world
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
@@ -21,7 +22,6 @@ from pursue_gen.partition import partition
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
-from worlds import REACTION, SCENARIOS, files, world
 
 SHAPES = [
     ("thesis/scenario_1", "distributed", "dedicated"),
@@ -134,8 +134,9 @@ def test_python_passes_the_linter(generated: Dict[str, bytes], tmp_path: Path) -
         folder = tmp_path / str(number)  # alone: ruff tells first-party modules by their neighbours
         folder.mkdir()
         (folder / (Path(path).stem + ".py")).write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--target-version", "py38", "--line-length", "120"]
-    done = subprocess.run([*command, "--select", "E4,E7,E9,F,W,B", str(tmp_path)], capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--target-version", "py38"]
+    command += ["--select", "E4,E7,E9,F,W,B", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
 
 
@@ -270,6 +271,13 @@ def test_each_command_of_the_strategy_reaches_a_package() -> None:
     for sub in partition(strategy, network, scenario.agents):
         data = yaml.safe_load(generated[f"src/{sub.controller}/config/strategy.yaml"])
         assert sum(len(entry["commands"]) for entry in data["strategy"]) == sub.commands
+
+
+def test_the_simulator_tells_the_ends_that_no_controller_decides() -> None:
+    settings = yaml.safe_load(files("thesis/scenario_1")["src/UI/config/ui.yaml"])
+    assert settings["reports"] == ["bot1", "bot2"]
+    assert settings["nodes"] == ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator"]
+    assert yaml.safe_load(files("thesis/scenario_1", "general")["src/UI/config/ui.yaml"])["reports"] == []
 
 
 def paths_in(readme: str) -> List[str]:

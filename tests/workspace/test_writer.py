@@ -14,7 +14,11 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace import writer
 
-FILES = {"README.md": b"read me\n", "src/a/scripts/node": b"#!/usr/bin/env python3\n", "src/a/package.xml": b"<package/>\n"}
+FILES = {
+    "README.md": b"read me\n",
+    "src/a/package.xml": b"<package/>\n",
+    "src/a/scripts/node": b"#!/usr/bin/env python3\n",
+}
 
 
 def tree(folder: Path) -> Dict[str, bytes]:
@@ -95,7 +99,7 @@ def test_what_is_in_the_way_as_a_folder_or_as_a_file_is_named(tmp_path: Path) ->
 def test_build_folders_and_the_users_packages_stay(tmp_path: Path, force: bool) -> None:
     ws = tmp_path / "ws"
     writer.write_tree(FILES, ws)
-    foreign = {"src/mine/package.xml": b"mine", "build/x": b"1", "devel/setup.sh": b"2", "install/y": b"3", "src/a/note": b"n"}
+    foreign = {f"{folder}/x": b"mine" for folder in ("src/mine", "src/a", "build", "devel", "install")}
     for path, content in foreign.items():
         (ws / path).parent.mkdir(parents=True, exist_ok=True)
         (ws / path).write_bytes(content)

@@ -21,16 +21,18 @@ World = Tuple[Scenario, Network, Objective, Strategy]
 
 
 @functools.lru_cache(maxsize=None)
-def world(name: str) -> World:
-    """The scenario `scenarios/<name>.pur` in the default game, and a strategy that wins it."""
+def world(name: str, ideal: bool = False) -> World:
+    """The scenario `scenarios/<name>.pur` in the default game (or the ideal one), and a strategy that wins it."""
     scenario = load(str(SCENARIOS / f"{name}.pur"))
     objective = scenario_objective(scenario)
-    network = ends_reported(translate(scenario), {})
-    verdict = solve(network, objective, REACTION)
+    network = translate(scenario) if ideal else ends_reported(translate(scenario), {})
+    verdict = solve(network, objective, Fraction(0) if ideal else REACTION)
     assert verdict.strategy is not None, f"{name} is lost"
     return scenario, network, objective, verdict.strategy
 
 
 def files(name: str, controllers: str = "distributed", reach_obj: str = "dedicated") -> Dict[str, bytes]:
-    """The workspace of the scenario, in memory."""
-    return generate(*world(name), Options(controllers=controllers, reach_obj=reach_obj, reaction=REACTION))
+    """The workspace of the scenario, in memory; a general controller plays the ideal game, as the original's does."""
+    ideal = controllers == "general"
+    reaction = Fraction(0) if ideal else REACTION
+    return generate(*world(name, ideal), Options(controllers=controllers, reach_obj=reach_obj, reaction=reaction))

@@ -139,7 +139,7 @@ class MissionTest(unittest.TestCase):
         if cls.expected["reach"]:
             cls.record.wait(cls.record.ended, rospy.get_param("~patience", 120.0))
         else:
-            cls.play_on(rospy.get_param("~units", 200.0) * rospy.get_param("~time_unit", 1.0))
+            cls.play_on(rospy.get_param("~units", 120.0) * rospy.get_param("~time_unit", 1.0))
 
     @classmethod
     def play_on(cls, seconds):
