@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import List, Sequence, Tuple
 
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from pursue_gen.synthesis.dbm import Dbm, raw
@@ -25,7 +26,14 @@ def _constraints() -> st.SearchStrategy[List[Tuple[int, int, int]]]:
     return st.lists(one.map(lambda c: (c[0], c[1], raw(c[2], c[3]))), max_size=5)
 
 
-zones: st.SearchStrategy[Dbm] = _constraints().map(lambda c: Dbm.of(DIM, c)).filter(lambda z: z is not None)
+def _zone(constraints: List[Tuple[int, int, int]]) -> Dbm:
+    zone = Dbm.of(DIM, constraints)
+    assume(zone is not None)
+    assert zone is not None
+    return zone
+
+
+zones: st.SearchStrategy[Dbm] = _constraints().map(_zone)
 federations: st.SearchStrategy[Federation] = st.lists(zones, max_size=3).map(lambda z: Federation(tuple(z)))
 points: st.SearchStrategy[Point] = st.tuples(
     *[st.integers(0, 6 * (LARGEST + 1)).map(lambda n: Fraction(n, 6)) for _ in range(CLOCKS)]

@@ -1,0 +1,60 @@
+"""Random small games, for engines to agree on."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import List, Tuple
+
+from hypothesis import strategies as st
+
+from pursue_gen.synthesis.game import Game, compile_game
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
+
+PLACES = ("l0", "l1", "l2")
+
+
+@st.composite
+def games(draw: st.DrawFn, kinds: Tuple[Kind, ...], delays: Tuple[int, ...]) -> Game:
+    """Two automata over one or two clocks, a channel and a variable; small constants, a delay of so many units.
+
+    The first automaton has most of the controller's edges, the second most of the environment's; a game that is a little
+    loaded like this is won about as often as it is lost.
+    """
+    clocks = ("x", "y")[: draw(st.integers(1, 2))]
+    network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
+    kind = draw(st.sampled_from(kinds))
+    objective = Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+    return compile_game(network, objective, Fraction(draw(st.sampled_from(delays))))
+
+
+def _automaton(draw: st.DrawFn, clocks: Tuple[str, ...], number: int) -> Automaton:
+    locations = []
+    for place in PLACES:
+        bounded = draw(st.integers(0, 2)) == 0
+        bound = ClockBound(draw(st.sampled_from(clocks)), "<=", draw(st.integers(1, 4)))
+        locations.append(Location(place, (bound,) if bounded else ()))
+    count = draw(st.integers(3, 6) if number == 0 else st.integers(1, 4))
+    edges = tuple(_edge(draw, clocks, mostly=number == 0, source=PLACES[k % 2]) for k in range(count))
+    return Automaton(f"A{number}", tuple(locations), "l0", edges)
+
+
+def _edge(draw: st.DrawFn, clocks: Tuple[str, ...], mostly: bool, source: str) -> Edge:
+    role = draw(st.sampled_from(("tau", "a!", "a?", "tau")))
+    bounds: List[ClockBound] = []
+    if role != "a?":
+        if draw(st.booleans()):
+            lower = draw(st.sampled_from((">", ">=")))
+            bounds.append(ClockBound(draw(st.sampled_from(clocks)), lower, draw(st.integers(0, 2))))
+        if draw(st.integers(0, 2)) == 0:
+            upper = draw(st.sampled_from(("<", "<=", "==")))
+            bounds.append(ClockBound(draw(st.sampled_from(clocks)), upper, draw(st.integers(1, 4))))
+    clauses = ((Test("v", draw(st.integers(0, 1))),),) if draw(st.integers(0, 3)) == 0 else ()
+    return Edge(
+        source=source,
+        target=draw(st.sampled_from(PLACES)),
+        guard=Guard(tuple(bounds), clauses),
+        sync=None if role == "tau" else Sync("a", role == "a!"),
+        assign=(("v", draw(st.integers(0, 1))),) if draw(st.integers(0, 3)) == 0 else (),
+        resets=tuple(clock for clock in clocks if draw(st.integers(0, 2)) == 0),
+        controllable=draw(st.integers(0, 3)) > 0 if mostly else draw(st.integers(0, 3)) == 0,
+    )

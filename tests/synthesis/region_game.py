@@ -1,0 +1,169 @@
+"""The rules of the game once more, by brute force on regions, for networks with few clocks and small constants.
+
+A region is kept as one of its points: whole parts (capped above the largest constant) and equally spaced fractions. Time
+takes a region through a finite sequence of regions, so the timed predecessor is a walk along it.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Dict, Iterator, List, Optional, Set, Tuple
+
+from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.game import (
+    Bound,
+    Game,
+    JointMove,
+    State,
+    initial_state,
+    invariant,
+    is_bad,
+    is_goal,
+    joint_moves,
+)
+from pursue_gen.tga.network import Kind
+
+Region = Tuple[Fraction, ...]
+Position = Tuple[State, Region]
+
+
+class RegionGame:
+    """All reachable positions of a game, and who wins in each."""
+
+    def __init__(self, game: Game) -> None:
+        self.game = game
+        self._beyond = max(game.max_constants) + game.delta + 1
+        self._moves: Dict[State, List[JointMove]] = {}
+        self.start: Position = (initial_state(game), self._representative((Fraction(0),) * len(game.clocks)))
+        self.positions = self._reachable()
+
+    def winning(self) -> Set[Position]:
+        """The positions from which the controller wins."""
+        won: Set[Position] = set() if self.game.kind is not Kind.SAFETY else set(self.positions)
+        step = self._safe if self.game.kind is Kind.SAFETY else self._wins
+        while True:
+            after = {position for position in self.positions if step(position, won)}
+            if after == won:
+                return won
+            won = after
+
+    def _wins(self, position: Position, won: Set[Position]) -> bool:
+        if is_goal(self.game, position[0]):
+            return True
+        if is_bad(self.game, position[0]):
+            return False
+        for later in self.path(position):
+            if self._spoils(later, won):
+                return False
+            forced = any(self._own(later, owner) for owner in self._expiring(later))
+            if later in won or self._can_command(later, won) or forced:
+                return True
+        return False
+
+    def _safe(self, position: Position, safe: Set[Position]) -> bool:
+        if is_bad(self.game, position[0]):
+            return False
+        for later in self.path(position):
+            command = self._can_command(later, safe)
+            stuck = not command and any(not self._own(later, owner) for owner in self._expiring(later))
+            if later not in safe or self._spoils(later, safe) or stuck:
+                return False
+            if command:
+                return True
+        return True
+
+    def path(self, position: Position) -> Iterator[Position]:
+        """The positions that time leads to, as long as the invariants hold, the given one first."""
+        state, region = position
+        while self._holds(region, invariant(self.game, state)):
+            yield state, region
+            after = self._next(region)
+            if after == region:
+                return
+            region = after
+
+    def _can_command(self, position: Position, targets: Set[Position]) -> bool:
+        return any(self.usable(position, move, targets) for move in self.moves(position[0]) if move.controllable)
+
+    def usable(self, position: Position, move: JointMove, targets: Set[Position]) -> bool:
+        """True if the move leads into the targets at every time of the delay and nothing spoils it meanwhile."""
+        last = self._representative(tuple(x + self.game.delta for x in position[1]))
+        delay = self.game.delta
+        for later in self.path(position):
+            if self._after(later, move) not in targets or (delay and self._spoils(later, targets)):
+                return False
+            if later[1] == last:
+                return True
+        return False
+
+    def _spoils(self, position: Position, good: Set[Position]) -> bool:
+        afters = (self._after(position, move) for move in self.moves(position[0]) if not move.controllable)
+        return any(after is not None and after not in good for after in afters)
+
+    def _own(self, position: Position, owner: int) -> bool:
+        return any(
+            not move.controllable and move.owner == owner and self._after(position, move) is not None
+            for move in self.moves(position[0])
+        )
+
+    def _expiring(self, position: Position) -> List[int]:
+        state, region = position
+        return [
+            k
+            for k, automaton in enumerate(self.game.automata)
+            if any(region[clock - 1] == bound >> 1 for clock, bound in automaton.invariants[state.locations[k]])
+        ]
+
+    def _after(self, position: Position, move: JointMove) -> Optional[Position]:
+        if not self._holds(position[1], move.bounds):
+            return None
+        reset = tuple(Fraction(0) if k + 1 in move.resets else x for k, x in enumerate(position[1]))
+        if not self._holds(reset, invariant(self.game, move.target)):
+            return None
+        return move.target, self._representative(reset)
+
+    def moves(self, state: State) -> List[JointMove]:
+        """The joint moves of the state."""
+        if state not in self._moves:
+            self._moves[state] = list(joint_moves(self.game, state))
+        return self._moves[state]
+
+    def _holds(self, region: Region, bounds: Tuple[Bound, ...]) -> bool:
+        zone = Dbm.of(self.game.dim, bounds)
+        return zone is not None and zone.contains(region)
+
+    def _representative(self, point: Region) -> Region:
+        """The same point for all points of a region: fractions 1/(n+1), 2/(n+1), … in their order."""
+        fractions = sorted({x % 1 for x in point if x < self._beyond and x % 1})
+        rank = {f: Fraction(k + 1, len(point) + 1) for k, f in enumerate(fractions)}
+        return tuple(
+            Fraction(self._beyond) if x >= self._beyond else Fraction(x // 1) + rank.get(x % 1, 0) for x in point
+        )
+
+    def _next(self, region: Region) -> Region:
+        """The next region in time; the same if all clocks are beyond the constants."""
+        live = [x for x in region if x < self._beyond]
+        if not live:
+            return region
+        largest = max(x % 1 for x in live)
+        if any(x % 1 == 0 for x in live):
+            return self._representative(self._shift(region, (1 - largest) / 2))
+        return self._representative(self._shift(region, 1 - largest))
+
+    def _shift(self, region: Region, time: Fraction) -> Region:
+        return tuple(x if x >= self._beyond else x + time for x in region)
+
+    def _reachable(self) -> Set[Position]:
+        met: Set[Position] = {self.start}
+        waiting = [self.start]
+        while waiting:
+            position = waiting.pop()
+            followers = list(self.path(position))
+            if not (is_goal(self.game, position[0]) or is_bad(self.game, position[0])):
+                afters = (self._after(position, move) for move in self.moves(position[0]))
+                followers += [after for after in afters if after is not None]
+            for follower in followers:
+                if follower not in met:
+                    met.add(follower)
+                    waiting.append(follower)
+        return met
