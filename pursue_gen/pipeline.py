@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Mapping, Optional
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -51,16 +51,18 @@ def played(network: Network, rules: Rules) -> Network:
     return ends_reported(network, rules.slack) if rules.ends == REPORTED else network
 
 
-def solution(network: Network, objective: Objective, rules: Rules, seconds: float = 0.0) -> Solution:
-    """Solves the game and proves the strategy with the independent checker.
+def solution(
+    network: Network, objective: Objective, rules: Rules, seconds: float = 0.0, engine: Optional[str] = None
+) -> Solution:
+    """Solves the game and proves the strategy with the independent checker (`seconds` and `engine` as in `solve`).
 
     Raises PursueError with exit status 4 when the objective cannot be met under these rules; it says so plainly when the
     ideal game, which no robot can play, would be won. With exit status 5 at a limit.
     """
     game = played(network, rules)
-    verdict = solve(game, objective, rules.reaction, seconds=seconds)
+    verdict = solve(game, objective, rules.reaction, engine, seconds)
     if verdict.strategy is None:
-        raise PursueError([_cannot_be_met(network, objective, rules, seconds)], exit_status=4)
+        raise PursueError([_cannot_be_met(network, objective, rules, seconds, engine)], exit_status=4)
     strategy = prove(game, objective, verdict.strategy, rules.reaction)
     return Solution(game, objective, strategy, rules.reaction, verdict.stats)
 
@@ -78,18 +80,30 @@ def prove(network: Network, objective: Objective, strategy: Strategy, reaction: 
     return pruned(strategy, report)
 
 
-def solve_scenario(scenario: Scenario, rules: Rules, seconds: float = 0.0) -> Solution:
+def solve_scenario(
+    scenario: Scenario, rules: Rules, seconds: float = 0.0, engine: Optional[str] = None
+) -> Solution:
     """The proven strategy of a scenario. Raises as `solution` does."""
-    return solution(translate(scenario), scenario_objective(scenario), rules, seconds)
+    return solution(translate(scenario), scenario_objective(scenario), rules, seconds, engine)
 
 
-def _cannot_be_met(network: Network, objective: Objective, rules: Rules, seconds: float):  # type: ignore[no-untyped-def]
+def _cannot_be_met(
+    network: Network, objective: Objective, rules: Rules, seconds: float, engine: Optional[str]
+) -> Diagnostic:
     message = f"the objective cannot be met with ends {rules.ends} and a reaction of {_decimal(rules.reaction)} time units"
     hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
-    if rules != IDEAL and solve(network, objective, seconds=seconds).won:
+    if rules != IDEAL and _won_ideally(network, objective, seconds, engine):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
     return error("SYN021", message, hint=hint)
+
+
+def _won_ideally(network: Network, objective: Objective, seconds: float, engine: Optional[str]) -> bool:
+    """True if the ideal game is known to be won; that it is not decided within the limit takes nothing from the verdict."""
+    try:
+        return solve(network, objective, engine=engine, seconds=seconds).won
+    except PursueError:
+        return False
 
 
 def _decimal(value: Fraction) -> str:
