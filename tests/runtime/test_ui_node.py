@@ -1,0 +1,132 @@
+"""The UI as a program: help, wrong options, missing nodes, an end. With a roscore of its own, where ROS is installed."""
+
+from __future__ import annotations
+
+import os
+import py_compile
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Dict, Iterator
+
+import pytest
+import yaml
+from ui_package import SCRIPTS, model_data, mover
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A package UI with a small model."""
+    folder = tmp_path_factory.mktemp("UI")
+    shutil.copytree(str(SCRIPTS), str(folder / "scripts"))
+    (folder / "config").mkdir()
+    model = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
+    (folder / "config" / "model.yaml").write_text(yaml.safe_dump(model))
+    (folder / "config" / "ui.yaml").write_text("format: 1\nnodes: [observer, controller_bot]\n")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dict[str, str]]:
+    """The environment of a roscore on a free port."""
+    if shutil.which("roscore") is None:
+        pytest.skip("there is no roscore")
+    with socket.socket() as free:
+        free.bind(("localhost", 0))
+        port = free.getsockname()[1]
+    home = str(tmp_path_factory.mktemp("ros"))
+    clean = os.pathsep.join(["/usr/bin", "/bin", "/usr/sbin", "/sbin"])
+    environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
+                   "ROS_HOME": home, "ROS_LOG_DIR": home}
+    core = subprocess.Popen(["roscore", "-p", str(port)], env={**environment, "PATH": clean},
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        deadline = time.monotonic() + 30
+        while socket.socket().connect_ex(("localhost", port)) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        yield environment
+    finally:
+        core.terminate()
+        core.wait(20)
+
+
+def run(package: Path, environment: Dict[str, str], *arguments: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, str(package / "scripts" / "UI"), *arguments]
+    return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, universal_newlines=True, timeout=60)
+
+
+@pytest.mark.parametrize("script", ["UI", "simulator", "sim_clock"])
+def test_the_scripts_are_python(script: str, tmp_path: Path) -> None:
+    py_compile.compile(str(SCRIPTS / script), cfile=str(tmp_path / "compiled"), doraise=True)
+
+
+def test_help_needs_no_roscore(package: Path) -> None:
+    done = run(package, {**os.environ, "ROS_MASTER_URI": "http://localhost:1"}, "--help")
+    assert done.returncode == 0
+    assert "--trace" in done.stdout
+
+
+def test_missing_nodes_are_named_and_nothing_is_started(package: Path, ros: Dict[str, str]) -> None:
+    done = run(package, ros, "--wait", "0.5")
+    assert done.returncode == 1
+    assert "Not ready after 0.5 s: observer, controller_bot. The mission was not started." in done.stdout
+
+
+# parameters stay with the master under the node's name
+@pytest.mark.parametrize("arguments, says", [
+    (["--mode", "quick"], "expected one of ask, still, random, trace"),
+    (["--trace", "/nowhere/trace.yaml"], "cannot read the trace /nowhere/trace.yaml"),
+    (["_pace:=soon", "__name:=hasty"], "pace is 'soon'; expected a number"),
+    (["_config:=/nowhere", "__name:=lost"], "no model.yaml in /nowhere"),
+])
+def test_a_wrong_start_is_refused_in_one_line(package: Path, ros: Dict[str, str], arguments: list, says: str) -> None:
+    done = run(package, ros, *arguments)
+    assert done.returncode == 2
+    assert says in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_wrong_trace_is_refused_with_its_place(package: Path, ros: Dict[str, str], tmp_path: Path) -> None:
+    trace = tmp_path / "trace.yaml"
+    trace.write_text("- {at: 1, do: thief_a2b}\n- {at: 2, do: thief_a2c}\n")
+    done = run(package, ros, "--trace", str(trace))
+    assert done.returncode == 2
+    assert f"{trace}:2: step 2" in done.stderr
+
+
+class Stage:
+    """Plays the rest of the mission: whoever the UI waits for, and the observer's states."""
+
+    def __init__(self, environment: Dict[str, str]) -> None:
+        code = (Path(__file__).parent / "ui_stage.py").read_text()
+        self.process = subprocess.Popen([sys.executable, "-c", code], env={**environment, "PYTHONPATH": str(SCRIPTS)})
+
+    def __enter__(self) -> "Stage":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.terminate()
+        self.process.wait(20)
+
+
+@pytest.mark.parametrize("status, code, says", [
+    ("won", 0, "The goal is reached, after 3.0 time units."),
+    ("lost", 1, "The mission is lost, after 3.0 time units: for a reason."),
+])
+def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
+    package: Path, ros: Dict[str, str], tmp_path: Path, status: str, code: int, says: str
+) -> None:
+    trace = tmp_path / "trace.yaml"
+    trace.write_text("- {at: 2, do: thief_a2b}\n")
+    with Stage({**ros, "STAGE_STATUS": status}):
+        done = run(package, ros, "--trace", str(trace))
+    assert done.returncode == code, done.stderr
+    lines = [line.strip() for line in done.stdout.splitlines()]
+    assert lines[0] == "example: waiting for observer, controller_bot"
+    assert lines[-2:] == ["3.0  thief_a2b", says]

@@ -1,0 +1,43 @@
+"""A node for test_ui_node: is `observer` and `controller_bot` in one, answers `_start_`, ends with the first event."""
+
+import os
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from pursue_library import EVENTS, LOST, RUNNING, START, SYSTEM_STATE, WAITING, SystemState, format_state
+from std_msgs.msg import String
+
+UNIT = 0.1
+begun = []
+
+
+def publish(seq: int, passed: float, status: str, event: str = "", agent: str = "") -> None:
+    where = {"bot": "a", "thief": "a", "reachObj": "unlocked"}
+    clocks = dict.fromkeys(("Cbot", "Cthief", "Creach"), passed)
+    reason = "for a reason" if status == LOST else ""
+    stamp = (begun[0] if begun else rospy.get_time()) + passed * UNIT
+    values = {"Prule": 0, "Pbot": 1, "Pthief": 1}
+    states.publish(format_state(SystemState(seq, stamp, where, values, clocks, event, agent, status, reason, UNIT)))
+
+
+def hear(message: String) -> None:
+    if message.data == START and not begun:
+        begun.append(rospy.get_time())
+        publish(1, 0.0, RUNNING)
+    elif message.data == "thief_a2b":
+        publish(2, 3.0, os.environ["STAGE_STATUS"], "thief_a2b", "thief")
+
+
+def diagnose(_: object) -> None:
+    ready = [KeyValue("ready", "true")]
+    nodes = ("observer", "controller_bot")
+    diagnostics.publish(DiagnosticArray(status=[DiagnosticStatus(hardware_id=node, values=ready) for node in nodes]))
+
+
+rospy.init_node("observer")
+states = rospy.Publisher(SYSTEM_STATE, String, queue_size=10, latch=True)
+diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
+publish(0, 0.0, WAITING)
+rospy.Subscriber(EVENTS, String, hear)
+rospy.Timer(rospy.Duration(0.2), diagnose)
+rospy.spin()
