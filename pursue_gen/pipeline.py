@@ -90,7 +90,8 @@ def solve_scenario(
 def _cannot_be_met(
     network: Network, objective: Objective, rules: Rules, seconds: float, engine: Optional[str]
 ) -> Diagnostic:
-    message = f"the objective cannot be met with ends {rules.ends} and a reaction of {_decimal(rules.reaction)} time units"
+    reaction = _decimal(rules.reaction)
+    message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
     hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
     if rules != IDEAL and _won_ideally(network, objective, seconds, engine):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
@@ -99,7 +100,7 @@ def _cannot_be_met(
 
 
 def _won_ideally(network: Network, objective: Objective, seconds: float, engine: Optional[str]) -> bool:
-    """True if the ideal game is known to be won; that it is not decided within the limit takes nothing from the verdict."""
+    """True if the ideal game is known to be won; that it is not decided in time takes nothing from the verdict."""
     try:
         return solve(network, objective, engine=engine, seconds=seconds).won
     except PursueError:

@@ -1,0 +1,467 @@
+"""The commands: each parses its arguments, calls one function, prints. What a command needs is imported when it runs."""
+
+from __future__ import annotations
+
+import json
+import sys
+from enum import Enum
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+
+import typer
+
+from pursue_gen import __version__
+from pursue_gen.console import guarded, show, suggest, tell
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, error, in_order, warning
+
+if TYPE_CHECKING:
+    from pursue_gen.language.scenario import Scenario
+    from pursue_gen.pipeline import Rules, Solution
+    from pursue_gen.tga.network import Network, Objective
+
+
+class Ends(str, Enum):
+    """Who controls the ends of the controlled agents' movements and actions."""
+
+    REPORTED = "reported"
+    CONTROLLABLE = "controllable"
+
+
+class Controllers(str, Enum):
+    """How the commands are shared out."""
+
+    DISTRIBUTED = "distributed"
+    CENTRALIZED = "centralized"
+    GENERAL = "general"
+
+
+class Engine(str, Enum):
+    """Which solver."""
+
+    NATIVE = "native"
+    PYTHON = "python"
+
+
+_SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
+_GAME = "SCENARIO | TGA.xml TCTL.q"
+_ENDS = typer.Option(
+    None,
+    help="Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
+    "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
+)
+_REACTION = typer.Option(
+    None, metavar="UNITS", help="How late a command may take effect, in time units: 0.1 (the default), 1/20, 0 …"
+)
+_SLACK = typer.Option(
+    [],
+    metavar="[AGENT=]UNITS",
+    help="A robot, or with AGENT= this one, may end so much later than the model; repeatable.",
+)
+_REACH_OBJ = typer.Option(
+    "dedicated",
+    metavar="dedicated|all|ROBOT",
+    help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
+)
+_JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
+
+app = typer.Typer(
+    name="pursue-gen",
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="From a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot.",
+    epilog="Data goes to stdout, everything else to stderr. Exit status: 0 well; 2 the command line or a file is wrong; "
+    "3 the scenario has errors; 4 the objective cannot be met, or a plan does not win; 5 a limit was hit; 6 something "
+    "that is needed is missing; 130 interrupted.",
+)
+
+
+def main() -> None:
+    """The program `pursue-gen`."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a terminal that cannot show a letter gets its code
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        app(prog_name="pursue-gen")
+    except KeyboardInterrupt:  # before or after the command itself
+        sys.exit(130)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"pursue-gen {__version__}")
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    version: bool = typer.Option(
+        False, "--version", callback=_version, is_eager=True, help="Print the version and exit."
+    ),
+) -> None:
+    pass
+
+
+@app.command(epilog="For example: pursue-gen check my_floor.pur")
+@guarded
+def check(
+    files: List[Path] = typer.Argument(..., metavar="FILE...", help="Scenarios."),
+    as_json_: bool = typer.Option(False, "--json", help="Print the findings as a JSON list."),
+) -> None:
+    """Tell everything that is wrong with scenarios, with line and column.
+
+    Findings go to stdout; the exit status is 3 where there are errors.
+    """
+    findings = [finding for file in files for finding in _findings(file)]
+    if as_json_:
+        print(json.dumps([as_json(finding) for finding in findings], indent=1))
+    else:
+        show(findings, sys.stdout)
+    errors = sum(finding.severity is Severity.ERROR for finding in findings)
+    tell(f"{_count(len(files), 'file')}: {_count(errors, 'error')}, {_count(len(findings) - errors, 'warning')}")
+    if errors:
+        raise typer.Exit(3)
+    suggest(f"pursue-gen ws {files[0]}")
+
+
+@app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
+@guarded
+def tga(
+    scenario: Path = _SCENARIO,
+    folder: Path = typer.Option(Path("."), "-o", "--output", metavar="DIR", help="Where to write; here by default."),
+    ends: Ends = typer.Option(
+        Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
+    ),
+    slack: List[str] = _SLACK,
+) -> None:
+    """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
+    from pursue_gen.files import write_texts
+    from pursue_gen.pipeline import played
+    from pursue_gen.tga.uppaal import write_network, write_query
+
+    network, objective = _game_of(_scenario(scenario))
+    network = played(network, _rules(network, ends, "0", slack))
+    model, query = folder / "TGA.xml", folder / "TCTL.q"
+    write_texts({model: write_network(network, objective), query: write_query(objective)})
+    print(model, query, sep="\n")
+    suggest(f"pursue-gen solve {model} {query}")
+
+
+@app.command(
+    epilog="For example: pursue-gen solve my_floor.pur -o plan.txt; "
+    "as UPPAAL-TIGA plays: pursue-gen solve TGA.xml TCTL.q --ends controllable --reaction 0"
+)
+@guarded
+def solve(
+    files: List[Path] = typer.Argument(..., metavar=_GAME, help="A scenario, or UPPAAL's files for a timed game."),
+    ends: Optional[Ends] = _ENDS,
+    reaction: Optional[str] = _REACTION,
+    slack: List[str] = _SLACK,
+    output: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
+    ),
+    engine: Optional[Engine] = typer.Option(None, help="The solver; native where it was built, by default."),
+    limit: float = typer.Option(
+        0.0, metavar="SECONDS", min=0.0, help="Give up after so long (native engine; 0: never)."
+    ),
+    as_json_: bool = typer.Option(
+        False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
+    ),
+) -> None:
+    """Find out whether the objective can be met whatever the others do, and print the plan that meets it.
+
+    The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
+    where the objective cannot be met.
+    """
+    from pursue_gen.files import write_texts
+    from pursue_gen.pipeline import solution
+    from pursue_gen.synthesis.plan import write_plan
+
+    network, objective = _game(files)
+    rules = _rules(network, ends, reaction, slack)
+    try:
+        won = solution(network, objective, rules, limit, engine.value if engine else None)
+    except PursueError as problem:
+        if as_json_ and problem.exit_status in (4, 5):
+            print(json.dumps(_verdict_json(rules, None, problem.diagnostics), indent=1))
+        raise
+    plan = write_plan(won.strategy, won.network, objective)
+    if output is not None:
+        write_texts({output: plan})
+    if as_json_:
+        print(json.dumps(_verdict_json(rules, won, ()), indent=1))
+    elif output is None:
+        print(plan, end="")
+    tell(_verdict_text(rules, won))
+    if len(files) == 1:
+        suggest(f"pursue-gen ws {files[0]}")
+
+
+@app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
+@guarded
+def verify(
+    files: List[Path] = typer.Argument(..., metavar=f"({_GAME}) PLAN", help="A game as for solve, and a plan for it."),
+    ends: Optional[Ends] = _ENDS,
+    reaction: Optional[str] = _REACTION,
+    slack: List[str] = _SLACK,
+) -> None:
+    """Prove that a plan wins, or show a play in which it does not.
+
+    Without --ends, --reaction and --slack the default game is tried, then UPPAAL-TIGA's (ends controllable, reaction
+    0). The exit status is 4 where the plan wins in neither.
+    """
+    if len(files) < 2:
+        raise _usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
+    network, objective = _game(files[:-1])
+    tried = _trials(files[-1], network, objective, _games(network, ends, reaction, slack))
+    for trial in tried:
+        print(f"{_in_words(trial.rules)}: {'the plan wins' if trial.solution else 'the plan does not win'}")
+        if trial.problem:
+            show(trial.problem.diagnostics)
+    if tried[-1].solution is None:
+        raise typer.Exit(4)
+
+
+@app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur")
+@guarded
+def report(
+    scenario: Path = _SCENARIO,
+    reach_obj: Optional[str] = typer.Option(
+        None,
+        metavar="dedicated|all|ROBOT",
+        help="Who gets the objective's commands; by default dedicated, and for the thesis's scenarios as the thesis has it.",
+    ),
+    as_json_: bool = _JSON,
+) -> None:
+    """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios."""
+    from pursue_gen.pipeline import IDEAL, Rules, solution
+    from pursue_gen.report import commands
+
+    read = _scenario(scenario)
+    network, objective = _game_of(read)
+    game, ideal = (
+        commands.Game(won.network, won.strategy, won.reaction)
+        for won in (solution(network, objective, rules) for rules in (Rules(), IDEAL))
+    )
+    table = commands.commands_table(read.name, read.agents, game, ideal, reach_obj)
+    if as_json_:
+        print(json.dumps(commands.as_json(table), indent=1))
+    else:
+        print(commands.render_table(table), end="")
+
+
+@app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")
+@guarded
+def ws(
+    scenario: Path = _SCENARIO,
+    folder: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="DIR", help="Where the workspace goes; workspace_out/<scenario> by default."
+    ),
+    controllers: Controllers = typer.Option(
+        Controllers.DISTRIBUTED,
+        help="distributed: one per robot; centralized: one; general: one that also decides the ends, as the original's.",
+    ),
+    reach_obj: str = _REACH_OBJ,
+    ends: Optional[Ends] = _ENDS,
+    reaction: Optional[str] = _REACTION,
+    slack: List[str] = _SLACK,
+    plan: Optional[Path] = typer.Option(
+        None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving."
+    ),
+    force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
+) -> None:
+    """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, launch files.
+
+    The folder is printed on stdout.
+    """
+    from pursue_gen.pipeline import solution
+    from pursue_gen.workspace import Options, write_workspace
+
+    read = _scenario(scenario)
+    network, objective = _game_of(read)
+    if controllers is Controllers.GENERAL and ends is None:
+        ends = Ends.CONTROLLABLE
+        tell("ends: controllable, since a general controller decides them itself (--ends reported for the other game)")
+    if plan is None:
+        won = solution(network, objective, _rules(network, ends, reaction, slack))
+        tell(_verdict_text(_rules(network, ends, reaction, slack), won))
+    else:
+        won = _planned(plan, network, objective, _games(network, ends, reaction, slack))
+    options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction)
+    place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
+    print(place)
+    tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
+    suggest(f"cd {place} && catkin_make", "source devel/setup.bash", f"roslaunch {read.name}_bringup mission.launch")
+
+
+# What the commands share ------------------------------------------------------------------------------------------------
+
+
+def _findings(file: Path) -> Tuple[Diagnostic, ...]:
+    """Everything there is to say about a scenario file."""
+    from pursue_gen.language.checks import check_reading
+    from pursue_gen.language.parser import read, read_text
+    from pursue_gen.tga import translation_notes
+
+    try:
+        reading = read(read_text(str(file)), str(file))
+    except PursueError as problem:
+        return problem.diagnostics
+    findings = check_reading(reading)
+    if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
+        return findings
+    return in_order((*findings, *translation_notes(reading.scenario)))
+
+
+def _scenario(file: Path) -> Scenario:
+    """The scenario in a file; its warnings are told."""
+    from pursue_gen.language import load
+
+    if file.suffix == ".xml":
+        raise _usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
+    scenario = load(file)
+    show(_findings(file))
+    return scenario
+
+
+def _game_of(scenario: Scenario) -> Tuple[Network, Objective]:
+    from pursue_gen.tga import scenario_objective, translate
+
+    return translate(scenario), scenario_objective(scenario)
+
+
+def _game(files: Sequence[Path]) -> Tuple[Network, Objective]:
+    """The ideal game of a scenario, or of UPPAAL's two files."""
+    from pursue_gen.files import read_text
+    from pursue_gen.tga.uppaal import read_network, read_query
+
+    if len(files) == 1 and files[0].suffix != ".xml":
+        return _game_of(_scenario(files[0]))
+    if len(files) != 2:
+        raise _usage("expected one scenario, or a network and its query", f"pursue-gen solve {_GAME}")
+    model, query = files
+    network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
+    return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))
+
+
+def _rules(network: Network, ends: Optional[Ends], reaction: Optional[str], slack: Sequence[str]) -> Rules:
+    """The game that the options ask for; the defaults are those of Rules."""
+    from pursue_gen.pipeline import CONTROLLABLE, Rules
+
+    default = Rules()
+    rules = Rules(
+        ends.value if ends else default.ends,
+        default.reaction if reaction is None else _fraction(reaction),
+        _slack(network, slack),
+    )
+    if rules.slack and rules.ends == CONTROLLABLE:
+        raise _usage("slack has no meaning where the plan decides the ends", "use it with --ends reported")
+    return rules
+
+
+def _games(network: Network, ends: Optional[Ends], reaction: Optional[str], slack: Sequence[str]) -> List[Rules]:
+    """The games to try a plan in: what was asked for; where nothing was, the default game and then the ideal one."""
+    from pursue_gen.pipeline import IDEAL
+
+    rules = _rules(network, ends, reaction, slack)
+    asked = reaction is not None or bool(slack) or ends is Ends.REPORTED
+    return [rules] if asked or rules == IDEAL else [rules, IDEAL]
+
+
+def _fraction(text: str) -> Fraction:
+    hint = "a number of time units from 0 on, such as 0.1, 1/20 or 0"
+    try:
+        value = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise _usage(f"the reaction is '{text}'", hint) from None
+    if value < 0 or value > 1000 or value.denominator > 1000:
+        raise _usage(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
+    return value
+
+
+def _slack(network: Network, options: Sequence[str]) -> Dict[str, int]:
+    """The slack per agent; a number alone is for every agent that the plan controls."""
+    from pursue_gen.tga.network import is_end
+
+    slack: Dict[str, int] = {}
+    for option in options:
+        agent, named, number = option.rpartition("=")
+        if not (number.isascii() and number.isdigit()) or (named and not agent):
+            raise _usage(
+                f"the slack is '{option}'", "a natural number of time units, such as 2, or for one agent bot1=2"
+            )
+        controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
+        slack.update((name, int(number)) for name in ([agent] if named else controlled))
+    return slack
+
+
+def _trials(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Tuple[Any, ...]:
+    from pursue_gen.files import read_text
+    from pursue_gen.plans import trials
+
+    return trials(read_text(plan, "a plan, such as UPPAAL_plan.txt"), str(plan), network, objective, games)
+
+
+def _planned(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Solution:
+    """A plan of the user's, proven; one that wins in the ideal game only is taken with a warning."""
+    tried = _trials(plan, network, objective, games)
+    won: Optional[Solution] = tried[-1].solution
+    if won is None:
+        raise PursueError([finding for trial in tried for finding in trial.problem.diagnostics], exit_status=4)
+    if len(tried) > 1:
+        message = (
+            f"{plan} wins in the ideal game only ({_in_words(tried[-1].rules)}), not with {_in_words(tried[0].rules)}"
+        )
+        hint = "it may lose when a message is late or a robot needs longer; leave --plan away for a plan that wins then too"
+        show([warning("CLI010", message, hint=hint)])
+    else:
+        tell(f"{plan} wins: {_in_words(tried[0].rules)}")
+    return won
+
+
+def _verdict_text(rules: Rules, won: Solution) -> str:
+    stats = won.stats
+    took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
+    return f"won: {_in_words(rules)}{took}; {_count(_commands(won), 'command')}, proven"
+
+
+def _verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagnostic]) -> Dict[str, Any]:
+    """`won` is null where a limit was hit."""
+    result: Dict[str, Any] = {
+        "won": True if won else None if any(f.code == "SYN010" for f in findings) else False,
+        "ends": rules.ends,
+        "reaction": str(rules.reaction),
+        "slack": dict(rules.slack),
+    }
+    if won and won.stats:
+        stats = won.stats
+        result.update(
+            engine=stats.engine, states=stats.discrete_states, zones=stats.zones, seconds=round(stats.seconds, 6)
+        )
+    if won:
+        result.update(blocks=len(won.strategy.blocks), commands=_commands(won))
+    result["diagnostics"] = [as_json(finding) for finding in findings]
+    return result
+
+
+def _commands(won: Solution) -> int:
+    return sum(len(block.commands) for block in won.strategy.blocks)
+
+
+def _in_words(rules: Rules) -> str:
+    slack = "".join(f", {agent} late by {units}" for agent, units in rules.slack.items())
+    return f"ends {rules.ends}, reaction {float(rules.reaction):g}{slack}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _usage(message: str, hint: str) -> PursueError:
+    return PursueError([error("CLI004", message, hint=hint)], exit_status=2)
+
+
+if __name__ == "__main__":
+    main()

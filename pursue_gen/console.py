@@ -1,0 +1,97 @@
+"""How the commands talk: data on stdout, everything else on stderr, and never a traceback."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterable, Optional, TextIO
+
+import typer
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
+
+INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
+"""Exit statuses beside those of PursueError: a fault of ours; Ctrl-C; nobody reads what we print."""
+
+_COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33"}
+
+
+def tell(text: str) -> None:
+    """A line for the person, on stderr."""
+    print(text, file=sys.stderr)
+
+
+def suggest(*commands: str) -> None:
+    """What the person may want to do next."""
+    for number, command in enumerate(commands):
+        tell(f"{'next:' if number == 0 else '     '} {command}")
+
+
+def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> None:
+    """The diagnostics with their source lines; on stderr unless another stream is given."""
+    out = sys.stderr if stream is None else stream
+    sources: Dict[str, Optional[str]] = {}
+    for diagnostic in diagnostics:
+        source = None
+        if diagnostic.span is not None:
+            file = diagnostic.span.file
+            if file not in sources:
+                sources[file] = _source(file)
+            source = sources[file]
+        print(_painted(diagnostic, render(diagnostic, source), out), file=out)
+
+
+def guarded(command: Callable[..., None]) -> Callable[..., None]:
+    """The command, with its exceptions as messages and exit statuses."""
+
+    @functools.wraps(command)
+    def run(*args: Any, **kwargs: Any) -> None:
+        try:
+            command(*args, **kwargs)
+            sys.stdout.flush()
+        except (typer.Exit, typer.Abort):
+            raise
+        except KeyboardInterrupt:
+            tell("interrupted")
+            status = INTERRUPTED
+        except PursueError as problem:
+            show(problem.diagnostics)
+            status = problem.exit_status
+        except BrokenPipeError:
+            # What is still buffered would fail once more when the interpreter ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            status = BROKEN_PIPE
+        except Exception as problem:
+            status = _internal(problem)
+        else:
+            return
+        raise typer.Exit(status)
+
+    return run
+
+
+def _internal(problem: Exception) -> int:
+    """A fault of ours, in a sentence; with PURSUE_DEBUG set, with its traceback."""
+    if os.environ.get("PURSUE_DEBUG"):
+        raise problem
+    tell(f"error: pursue-gen has a fault of its own: {type(problem).__name__}: {problem}")
+    tell("    help: please report it, with the file and with what PURSUE_DEBUG=1 prints")
+    return INTERNAL
+
+
+def _source(file: str) -> Optional[str]:
+    """The text that a place is in; None where it cannot be shown."""
+    try:
+        return Path(file).read_text(encoding="utf-8-sig")
+    except (OSError, ValueError):
+        return None
+
+
+def _painted(diagnostic: Diagnostic, text: str, stream: TextIO) -> str:
+    """The text with its severity in colour, on a terminal whose owner has not set NO_COLOR."""
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb" or not stream.isatty():
+        return text
+    word = f"{diagnostic.severity.value} {diagnostic.code}"
+    return text.replace(word, f"\033[{_COLOURS[diagnostic.severity]};1m{word}\033[0m", 1)
