@@ -137,9 +137,9 @@ class MissionTest(unittest.TestCase):
             raise AssertionError(f"not ready after {CONNECTED} s: {sorted(nodes - cls.record.ready)}")
         cls.voice.publish("_start_")
         if cls.expected["reach"]:
-            cls.record.wait(cls.record.ended, rospy.get_param("~patience", 120.0))
+            cls.record.wait(cls.record.ended, rospy.get_param("~patience"))
         else:
-            cls.play_on(rospy.get_param("~units", 120.0) * rospy.get_param("~time_unit", 1.0))
+            cls.play_on(rospy.get_param("~units") * rospy.get_param("~time_unit"))
 
     @classmethod
     def play_on(cls, seconds):

@@ -1,0 +1,107 @@
+"""The nodes of a generated workspace as a person starts them: by hand and by launch file, from devel and install space."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+from typing import Callable, Dict, List, Tuple
+
+import pytest
+from ros_world import Ros, end, generated, make
+
+Build = Callable[..., Path]
+
+NODES = ("observer", "controller_bot1", "controller_bot2", "controllerObj")
+
+
+@pytest.fixture(scope="module")
+def installed(ros: Ros, built: Build, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the workspace of which nothing but the install space is left."""
+    workspace = tmp_path_factory.mktemp("installed") / "ws"
+    shutil.copytree(built("thesis/scenario_1") / "src", workspace / "src", symlinks=True)
+    make(ros, workspace, "install")
+    for folder in ("src", "build", "devel"):
+        shutil.rmtree(workspace / folder)
+    return workspace
+
+
+@pytest.fixture(params=["devel", "install"])
+def sourced(request: pytest.FixtureRequest, built: Build) -> Tuple[Path, str]:
+    """A workspace, and what to source in it."""
+    if request.param == "install":
+        return request.getfixturevalue("installed"), "source install/setup.bash; "
+    return built("thesis/scenario_1"), "source devel/setup.bash; "
+
+
+def test_nodes_started_by_hand_reach_the_goal_and_end_with_status_0(
+    ros: Ros, sourced: Tuple[Path, str], tmp_path: Path
+) -> None:
+    workspace, source = sourced
+    with ros.master() as there:
+        ros.run("rosparam set /use_sim_time true", workspace, 30, **there)
+        clock = ros.start(f"{source}exec rosrun UI sim_clock _speed:=20", workspace, tmp_path / "clock", **there)
+        try:
+            commands = {node: f"rosrun {node} {node}" for node in NODES}
+            commands["simulator"] = "rosrun UI simulator"
+            commands["UI"] = "rosrun UI UI --autostart"
+            assert ended(ros, workspace, source, commands, tmp_path, there) == dict.fromkeys(commands, 0)
+        finally:
+            end(clock)
+    assert "The goal is reached" in (tmp_path / "UI").read_text()
+
+
+def ended(
+    ros: Ros, workspace: Path, source: str, commands: Dict[str, str], logs: Path, there: Dict[str, str]
+) -> Dict[str, object]:
+    """Starts the nodes, waits for their ends; their exit statuses, or what a node said that did not end well."""
+    nodes = {
+        name: ros.start(f"{source}exec {command}", workspace, logs / name, **there) for name, command in commands.items()
+    }
+    deadline = time.monotonic() + 120
+    try:
+        while any(node.poll() is None for node in nodes.values()) and time.monotonic() < deadline:
+            time.sleep(0.1)
+    finally:
+        found = {name: node.poll() for name, node in nodes.items()}
+        for node in nodes.values():
+            end(node)
+    return {name: status if status == 0 else (status, (logs / name).read_text()) for name, status in found.items()}
+
+
+def test_the_launch_file_plays_the_mission_and_ends(ros: Ros, sourced: Tuple[Path, str]) -> None:
+    workspace, source = sourced
+    with ros.master() as there:
+        command = f"{source}roslaunch scenario_1_bringup mission.launch use_sim_time:=true speed:=20"
+        done = ros.run(command, workspace, 120, **there)
+    assert "The goal is reached" in done.stdout, done.stdout
+    assert "Traceback" not in done.stdout, done.stdout
+
+
+def test_each_package_builds_alone(ros: Ros, built: Build, tmp_path: Path) -> None:
+    packages: List[Path] = [p.parent for p in (built("thesis/scenario_1") / "src").glob("*/package.xml")]
+    assert len(packages) == 6
+    for package in packages:
+        shutil.copytree(package, tmp_path / package.name / "src" / package.name)
+        make(ros, tmp_path / package.name)
+
+
+def test_a_mission_that_does_not_reach_its_goal_fails_its_test(ros: Ros, built: Build) -> None:
+    """One robot's part of the strategy is taken away: the launch test must see it."""
+    workspace = built("thesis/scenario_1")
+    part = workspace / "src/controller_bot1/config/strategy.yaml"
+    kept = part.read_text()
+    part.write_text(kept[: kept.index("strategy:")] + "strategy: []\n")
+    try:
+        done = ros.run("source devel/setup.bash; rostest scenario_1_bringup mission.test patience:=5", workspace, 120)
+    finally:
+        part.write_text(kept)
+    assert done.returncode != 0
+    assert "test_mission_ends_well][FAILURE]" in done.stdout and "[passed]" in done.stdout
+
+
+def test_regeneration_keeps_what_was_built(ros: Ros, built: Build) -> None:
+    workspace = built("thesis/scenario_1")
+    generated("thesis/scenario_1", workspace)
+    assert (workspace / "devel" / "setup.bash").is_file()
+    assert (workspace / "src" / "CMakeLists.txt").is_symlink()

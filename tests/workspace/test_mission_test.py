@@ -1,0 +1,79 @@
+"""The judge that every workspace carries: it accepts the steps of the model and no others."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import sys
+import unittest.mock
+from typing import Any, Dict
+
+import pytest
+from worlds import files
+
+from pursue_gen.workspace import templates_dir
+
+STUBS = ("rospkg", "rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg")
+
+
+@pytest.fixture(scope="module")
+def judge() -> Any:
+    """mission_test.py, without ROS."""
+    path = templates_dir() / "bringup" / "test" / "mission_test.py"
+    spec = importlib.util.spec_from_file_location("mission_test", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    with unittest.mock.patch.dict(sys.modules, {name: unittest.mock.MagicMock() for name in STUBS}):
+        spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def automata() -> Dict[str, Any]:
+    expected = json.loads(files("thesis/scenario_1")["src/scenario_1_bringup/test/expected.json"])
+    found: Dict[str, Any] = expected["automata"]
+    return found
+
+
+def state(**places: str) -> Dict[str, str]:
+    at = {"bot1": "b", "bot2": "a", "reachObj": "unlocked", "rule1": "rule1_initial_location"}
+    values = {"Pbot1": "2", "Pbot2": "1", "Prule1": "0"}
+    return {**values, **at, **places}
+
+
+def test_a_step_of_one_agent_is_accepted(judge: Any, automata: Dict[str, Any]) -> None:
+    assert judge.explained(automata, state(), state(bot2="going_a_to_c"))
+    assert judge.explained(automata, state(bot2="going_a_to_c"), state(bot2="c"))
+
+
+def test_two_steps_at_once_and_steps_that_are_not_there_are_found(judge: Any, automata: Dict[str, Any]) -> None:
+    assert not judge.explained(automata, state(), state(bot2="c"))
+    assert not judge.explained(automata, state(), state(bot1="going_b_to_c", bot2="going_a_to_c"))
+    assert not judge.explained(automata, state(), state())
+
+
+WORKING = {"bot1": "doing_bot1_inb_in_b", "rule1": "rule10f_doing_bot1_inb"}
+
+
+def test_an_event_before_its_turn_is_found(judge: Any, automata: Dict[str, Any]) -> None:
+    """The rule: bot1_inb before bot2_ina."""
+    assert judge.explained(automata, state(), state(**WORKING))
+    assert not judge.explained(automata, state(), state(bot2="doing_bot2_ina_in_a"))
+
+
+def test_an_automaton_that_does_not_hear_what_concerns_it_is_found(judge: Any, automata: Dict[str, Any]) -> None:
+    assert not judge.explained(automata, state(), state(bot1=WORKING["bot1"]))
+    assert not judge.explained(automata, state(), state(rule1=WORKING["rule1"]))
+
+
+@pytest.mark.parametrize(
+    "word, event", [("catch", "catch"), ("polBot2:catch@7", "catch"), ("bot1_a2b@12", "bot1_a2b"), ("x:e", "e")]
+)
+def test_events_of_words(judge: Any, word: str, event: str) -> None:
+    assert judge.event_of(word) == event
+
+
+def test_the_system_state_is_read_up_to_its_clocks(judge: Any) -> None:
+    head, values = judge.read_state("seq=3 stamp=1.5 status=running\nbot1=going_a_to_b\nPbot1=-12\n\nCbot1=0.5")
+    assert head == {"seq": "3", "stamp": "1.5", "status": "running"}
+    assert values == {"bot1": "going_a_to_b", "Pbot1": "-12"}
