@@ -3,8 +3,8 @@
 With X the positions won so far, `cPre` and `uPre` the discrete predecessors by the controller's and by uncontrollable
 moves, and Predt the timed predecessor (a tie is lost):
 
-- reach: the least X with X = Goal + Predt(X + cPre(X) + F, uPre(not X)), F where an automaton at its bound must move and
-  the environment can move it, into X whatever it does;
+- reach: the least X with X = Goal + Predt(X + cPre(X) + F, uPre(not X)), F where an automaton at its bound must move
+  and the environment can move it, into X whatever it does;
 - safety: the complement of the least L with L = Bad + (past(E) - Predt(cPre(not L), E)), E = L + uPre(L) + Stuck, Stuck
   where an automaton is at its bound, the environment cannot move it and the controller has no safe move.
 
@@ -57,8 +57,8 @@ class Outcome:
 def solve_reference(game: Game, directed: bool = True) -> Outcome:
     """Who wins from the initial position, and how.
 
-    `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan, or
-    none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
+    `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan,
+    or none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
     """
     if game.kind is Kind.SAFETY:
         return _Safety(game).solve()
@@ -151,6 +151,17 @@ def _assign(region: Federation, usable: Iterable[Tuple[Move, Federation]]) -> Li
     return pieces + [(zone, None) for zone in _disjoint(region)]
 
 
+def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
+    """The same advice with fewer zones to wait in.
+
+    Commands stay as they were found: time may take a command's zone into one that was found later, and a controller
+    that is slow to act must not drift there and lose what it had gained.
+    """
+    commands = tuple(piece for piece in pieces if piece[1] is not None)
+    waits = Federation(tuple(zone for zone, action in pieces if action is None))
+    return commands + tuple((zone, None) for zone in _disjoint(waits))
+
+
 def _disjoint(federation: Federation) -> Tuple[Dbm, ...]:
     zones: List[Dbm] = []
     for zone in federation.reduced().zones:
@@ -181,8 +192,8 @@ class _Reach(_Fixpoint):
             self.push(narrow)
             self._run()
         won = self.has_start()
-        blocks = [(self.arena.nodes[k].state, tuple(pieces)) for k, pieces in sorted(self._pieces.items())]
-        return Outcome(won, tuple(blocks) if won else (), self.stats())
+        found = sorted(self._pieces.items()) if won else []
+        return Outcome(won, tuple((self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in found), self.stats())
 
     def _refresh(self, changed: Set[int]) -> None:
         """Take in new nodes, and those in which more is reached: what was won there stays won."""

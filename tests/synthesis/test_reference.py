@@ -13,6 +13,8 @@ from pursue_gen.language import load
 from pursue_gen.synthesis.federation import Federation
 from pursue_gen.synthesis.game import Game, compile_game, joint_moves
 from pursue_gen.synthesis.reference import Outcome, solve_reference
+from pursue_gen.synthesis.strategy_from import followed, to_strategy
+from pursue_gen.synthesis.verify import verify
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import (
     Automaton,
@@ -32,10 +34,10 @@ from tests.synthesis.region_game import RegionGame
 DEFAULT = Fraction(1, 10)
 
 
-def _published(folder: Path, name: str, default: bool) -> Game:
+def _published(folder: Path, name: str, default: bool) -> Tuple[Network, Objective, Fraction]:
     network = read_network((folder / name / "TGA.xml").read_text(), "TGA.xml")
     objective = read_query((folder / name / "TCTL.q").read_text(), "TCTL.q")
-    return compile_game(ends_reported(network, {}), objective, DEFAULT) if default else compile_game(network, objective)
+    return (ends_reported(network, {}), objective, DEFAULT) if default else (network, objective, Fraction(0))
 
 
 @pytest.mark.parametrize(
@@ -54,9 +56,14 @@ def _published(folder: Path, name: str, default: bool) -> Game:
     ],
 )
 def test_verdicts_of_published_scenarios(reference_dir: Path, name: str, default: bool, won: bool) -> None:
-    outcome = solve_reference(_published(reference_dir, name, default))
+    network, objective, reaction = _published(reference_dir, name, default)
+    game = compile_game(network, objective, reaction)
+    outcome = solve_reference(game)
     assert outcome.won == won
     assert bool(outcome.blocks) == won
+    if won:
+        report = verify(network, objective, to_strategy(game, outcome.raw_blocks()), reaction)
+        assert report.ok, report.reason
 
 
 @pytest.mark.parametrize("number", ["1", "2", "3", "4"])
@@ -73,10 +80,14 @@ def test_the_thesis_scenarios_are_won_and_few_states_are_looked_at(number: str, 
     assert outcome.won
     # Scenario 4 has 69,741 discrete states in the default game.
     assert outcome.stats.states < 150
+    strategy = to_strategy(game, followed(game, outcome.raw_blocks()))
+    played = ends_reported(network, {}) if default else network
+    report = verify(played, scenario_objective(scenario), strategy, DEFAULT if default else Fraction(0))
+    assert report.ok, report.reason
 
 
 def test_exhaustive_and_directed_agree_on_a_published_scenario(reference_dir: Path) -> None:
-    game = _published(reference_dir, "CT1", False)
+    game = compile_game(*_published(reference_dir, "CT1", False))
     everything = solve_reference(game, directed=False)
     assert everything.won
     assert everything.stats.states == 300, "as many discrete states as other solvers count"
@@ -154,7 +165,7 @@ def test_a_late_command_needs_room() -> None:
 
 def test_the_zones_of_a_strategy_are_disjoint_and_commands_are_moves(reference_dir: Path) -> None:
     for name in ("CT1", "WC1"):
-        game = _published(reference_dir, name, False)
+        game = compile_game(*_published(reference_dir, name, False))
         outcome = solve_reference(game)
         for state, pieces in outcome.blocks:
             moves = {move.edges for move in joint_moves(game, state) if move.controllable}
