@@ -1,28 +1,46 @@
-"""Installs the generator; builds the native solver where a C++17 compiler is found, and says so where not."""
+"""Installs the generator with its templates; builds the native solver where a C++17 compiler is found, else says so."""
 
 from __future__ import annotations
 
+import shutil
+import sys
+from pathlib import Path
+from typing import Any, List
+
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
+from setuptools.command.build_py import build_py
+
+TEMPLATES = "templates/catkin"
 
 
-def native_modules():  # type: ignore[no-untyped-def]
+def native_modules() -> List[Any]:
     """The extension, or nothing where pybind11 is missing."""
     try:
         from pybind11.setup_helpers import Pybind11Extension
     except ImportError:
-        print("pursue-gen: pybind11 is missing, the native solver is not built; the slower Python solver serves")
+        excuse("pybind11 is missing")
         return []
-    core = "pursue_gen/synthesis/core"
-    headers = [f"{core}/{name}.hpp" for name in ("dbm", "federation", "game", "relaxed", "solver")]
+    core = Path("pursue_gen/synthesis/core")
     module = Pybind11Extension(
         "pursue_gen.synthesis._core",
-        [f"{core}/module.cpp"],
-        depends=headers,
+        [(core / "module.cpp").as_posix()],
+        depends=sorted(header.as_posix() for header in core.glob("*.hpp")),
         cxx_std=17,
         extra_compile_args=["-O2", "-g0"],
     )
+    module.optional = True  # setuptools then goes on without it
     return [module]
+
+
+def excuse(reason: object) -> None:
+    """Why there is no native solver, and what to do."""
+    print(
+        f"pursue-gen: the native solver was not built ({reason}).\n"
+        "pursue-gen: install a C++17 compiler (Debian: g++ python3-dev) and install again; until then the slower\n"
+        "pursue-gen: Python solver serves.",
+        file=sys.stderr,
+    )
 
 
 class OptionalBuild(build_ext):
@@ -33,20 +51,27 @@ class OptionalBuild(build_ext):
         try:
             super().run()
         except Exception as problem:  # whatever the compiler or its absence raises
-            self._excuse(problem)
+            excuse(problem)
 
-    def build_extension(self, ext) -> None:  # type: ignore[no-untyped-def]
+    def build_extension(self, ext: Any) -> None:
         """Never fails the installation."""
         try:
             super().build_extension(ext)
         except Exception as problem:  # as above
-            self._excuse(problem)
-
-    @staticmethod
-    def _excuse(problem: Exception) -> None:
-        print(f"pursue-gen: the native solver was not built ({problem}).")
-        print("pursue-gen: install a C++17 compiler (Debian: g++ python3-dev) and install again; until then the slower")
-        print("pursue-gen: Python solver serves.")
+            excuse(problem)
 
 
-setup(ext_modules=native_modules(), cmdclass={"build_ext": OptionalBuild})
+class WithTemplates(build_py):
+    """Puts the templates of catkin packages beside the modules; an editable installation finds them in the checkout."""
+
+    def run(self) -> None:
+        """Copies what pursue_gen.workspace.templates_dir looks for."""
+        super().run()
+        if getattr(self, "editable_mode", False):
+            return
+        target = Path(self.build_lib) / "pursue_gen" / "_templates"
+        shutil.rmtree(target, ignore_errors=True)  # nothing of an earlier build stays
+        shutil.copytree(TEMPLATES, str(target), ignore=shutil.ignore_patterns("__pycache__", ".*"))
+
+
+setup(ext_modules=native_modules(), cmdclass={"build_ext": OptionalBuild, "build_py": WithTemplates})

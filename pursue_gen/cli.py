@@ -1,23 +1,24 @@
-"""The commands: each parses its arguments, calls one function, prints. What a command needs is imported when it runs."""
+"""The commands: each parses its arguments, calls one function, prints. Its needs are imported when it runs."""
 
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from enum import Enum
-from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
 
 import typer
 
 from pursue_gen import __version__
-from pursue_gen.console import guarded, show, suggest, tell
-from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, error, in_order, warning
+from pursue_gen.console import count, guarded, show, suggest, tell, usage
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, in_order, warning
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.pipeline import Rules, Solution
+    from pursue_gen.plans import Trial
     from pursue_gen.tga.network import Network, Objective
 
 
@@ -120,10 +121,10 @@ def check(
     else:
         show(findings, sys.stdout)
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
-    tell(f"{_count(len(files), 'file')}: {_count(errors, 'error')}, {_count(len(findings) - errors, 'warning')}")
+    tell(f"{count(len(files), 'file')}: {count(errors, 'error')}, {count(len(findings) - errors, 'warning')}")
     if errors:
         raise typer.Exit(3)
-    suggest(f"pursue-gen ws {files[0]}")
+    suggest(f"pursue-gen ws {_quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
@@ -138,15 +139,16 @@ def tga(
 ) -> None:
     """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
     from pursue_gen.files import write_texts
+    from pursue_gen.game_options import asked_rules
     from pursue_gen.pipeline import played
     from pursue_gen.tga.uppaal import write_network, write_query
 
     network, objective = _game_of(_scenario(scenario))
-    network = played(network, _rules(network, ends, "0", slack))
+    network = played(network, asked_rules(network, ends.value, "0", slack))
     model, query = folder / "TGA.xml", folder / "TCTL.q"
     write_texts({model: write_network(network, objective), query: write_query(objective)})
     print(model, query, sep="\n")
-    suggest(f"pursue-gen solve {model} {query}")
+    suggest(f"pursue-gen solve {_quoted(model)} {_quoted(query)}")
 
 
 @app.command(
@@ -176,27 +178,28 @@ def solve(
     where the objective cannot be met.
     """
     from pursue_gen.files import write_texts
+    from pursue_gen.game_options import asked_rules, verdict_json, verdict_text
     from pursue_gen.pipeline import solution
     from pursue_gen.synthesis.plan import write_plan
 
     network, objective = _game(files)
-    rules = _rules(network, ends, reaction, slack)
+    rules = asked_rules(network, _value(ends), reaction, slack)
     try:
-        won = solution(network, objective, rules, limit, engine.value if engine else None)
+        won = solution(network, objective, rules, limit, _value(engine))
     except PursueError as problem:
         if as_json_ and problem.exit_status in (4, 5):
-            print(json.dumps(_verdict_json(rules, None, problem.diagnostics), indent=1))
+            print(json.dumps(verdict_json(rules, None, problem.diagnostics), indent=1))
         raise
     plan = write_plan(won.strategy, won.network, objective)
     if output is not None:
         write_texts({output: plan})
     if as_json_:
-        print(json.dumps(_verdict_json(rules, won, ()), indent=1))
+        print(json.dumps(verdict_json(rules, won, ()), indent=1))
     elif output is None:
         print(plan, end="")
-    tell(_verdict_text(rules, won))
+    tell(verdict_text(rules, won))
     if len(files) == 1:
-        suggest(f"pursue-gen ws {files[0]}")
+        suggest(f"pursue-gen ws {_quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
@@ -212,14 +215,15 @@ def verify(
     Without --ends, --reaction and --slack the default game is tried, then UPPAAL-TIGA's (ends controllable, reaction
     0). The exit status is 4 where the plan wins in neither.
     """
+    from pursue_gen.game_options import games_to_try, in_words
+
     if len(files) < 2:
-        raise _usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
+        raise usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
     network, objective = _game(files[:-1])
-    tried = _trials(files[-1], network, objective, _games(network, ends, reaction, slack))
+    tried = _trials(files[-1], network, objective, games_to_try(network, _value(ends), reaction, slack))
     for trial in tried:
-        print(f"{_in_words(trial.rules)}: {'the plan wins' if trial.solution else 'the plan does not win'}")
-        if trial.problem:
-            show(trial.problem.diagnostics)
+        print(f"{in_words(trial.rules)}: {'the plan wins' if trial.solution else 'the plan does not win'}")
+        show(trial.findings)
     if tried[-1].solution is None:
         raise typer.Exit(4)
 
@@ -261,7 +265,7 @@ def ws(
     ),
     controllers: Controllers = typer.Option(
         Controllers.DISTRIBUTED,
-        help="distributed: one per robot; centralized: one; general: one that also decides the ends, as the original's.",
+        help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
     ),
     reach_obj: str = _REACH_OBJ,
     ends: Optional[Ends] = _ENDS,
@@ -276,6 +280,7 @@ def ws(
 
     The folder is printed on stdout.
     """
+    from pursue_gen.game_options import asked_rules, games_to_try, verdict_text
     from pursue_gen.pipeline import solution
     from pursue_gen.workspace import Options, write_workspace
 
@@ -283,17 +288,22 @@ def ws(
     network, objective = _game_of(read)
     if controllers is Controllers.GENERAL and ends is None:
         ends = Ends.CONTROLLABLE
-        tell("ends: controllable, since a general controller decides them itself (--ends reported for the other game)")
+        tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     if plan is None:
-        won = solution(network, objective, _rules(network, ends, reaction, slack))
-        tell(_verdict_text(_rules(network, ends, reaction, slack), won))
+        rules = asked_rules(network, _value(ends), reaction, slack)
+        won = solution(network, objective, rules)
+        tell(verdict_text(rules, won))
     else:
-        won = _planned(plan, network, objective, _games(network, ends, reaction, slack))
+        won = _planned(plan, network, objective, games_to_try(network, _value(ends), reaction, slack))
     options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction)
     place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
     print(place)
     tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
-    suggest(f"cd {place} && catkin_make", "source devel/setup.bash", f"roslaunch {read.name}_bringup mission.launch")
+    suggest(
+        f"cd {_quoted(place)} && catkin_make",
+        "source devel/setup.bash",
+        f"roslaunch {read.name}_bringup mission.launch",
+    )
 
 
 # What the commands share ------------------------------------------------------------------------------------------------
@@ -320,7 +330,7 @@ def _scenario(file: Path) -> Scenario:
     from pursue_gen.language import load
 
     if file.suffix == ".xml":
-        raise _usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
+        raise usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
     scenario = load(file)
     show(_findings(file))
     return scenario
@@ -340,64 +350,21 @@ def _game(files: Sequence[Path]) -> Tuple[Network, Objective]:
     if len(files) == 1 and files[0].suffix != ".xml":
         return _game_of(_scenario(files[0]))
     if len(files) != 2:
-        raise _usage("expected one scenario, or a network and its query", f"pursue-gen solve {_GAME}")
+        raise usage("expected one scenario, or a network and its query", f"pursue-gen solve {_GAME}")
     model, query = files
     network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))
 
 
-def _rules(network: Network, ends: Optional[Ends], reaction: Optional[str], slack: Sequence[str]) -> Rules:
-    """The game that the options ask for; the defaults are those of Rules."""
-    from pursue_gen.pipeline import CONTROLLABLE, Rules
-
-    default = Rules()
-    rules = Rules(
-        ends.value if ends else default.ends,
-        default.reaction if reaction is None else _fraction(reaction),
-        _slack(network, slack),
-    )
-    if rules.slack and rules.ends == CONTROLLABLE:
-        raise _usage("slack has no meaning where the plan decides the ends", "use it with --ends reported")
-    return rules
+def _quoted(path: Path) -> str:
+    return shlex.quote(str(path))
 
 
-def _games(network: Network, ends: Optional[Ends], reaction: Optional[str], slack: Sequence[str]) -> List[Rules]:
-    """The games to try a plan in: what was asked for; where nothing was, the default game and then the ideal one."""
-    from pursue_gen.pipeline import IDEAL
-
-    rules = _rules(network, ends, reaction, slack)
-    asked = reaction is not None or bool(slack) or ends is Ends.REPORTED
-    return [rules] if asked or rules == IDEAL else [rules, IDEAL]
+def _value(choice: Optional[Enum]) -> Optional[str]:
+    return None if choice is None else str(choice.value)
 
 
-def _fraction(text: str) -> Fraction:
-    hint = "a number of time units from 0 on, such as 0.1, 1/20 or 0"
-    try:
-        value = Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        raise _usage(f"the reaction is '{text}'", hint) from None
-    if value < 0 or value > 1000 or value.denominator > 1000:
-        raise _usage(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
-    return value
-
-
-def _slack(network: Network, options: Sequence[str]) -> Dict[str, int]:
-    """The slack per agent; a number alone is for every agent that the plan controls."""
-    from pursue_gen.tga.network import is_end
-
-    slack: Dict[str, int] = {}
-    for option in options:
-        agent, named, number = option.rpartition("=")
-        if not (number.isascii() and number.isdigit()) or (named and not agent):
-            raise _usage(
-                f"the slack is '{option}'", "a natural number of time units, such as 2, or for one agent bot1=2"
-            )
-        controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
-        slack.update((name, int(number)) for name in ([agent] if named else controlled))
-    return slack
-
-
-def _trials(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Tuple[Any, ...]:
+def _trials(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Tuple[Trial, ...]:
     from pursue_gen.files import read_text
     from pursue_gen.plans import trials
 
@@ -406,61 +373,21 @@ def _trials(plan: Path, network: Network, objective: Objective, games: Sequence[
 
 def _planned(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Solution:
     """A plan of the user's, proven; one that wins in the ideal game only is taken with a warning."""
+    from pursue_gen.game_options import in_words
+
     tried = _trials(plan, network, objective, games)
-    won: Optional[Solution] = tried[-1].solution
+    won = tried[-1].solution
     if won is None:
-        raise PursueError([finding for trial in tried for finding in trial.problem.diagnostics], exit_status=4)
+        raise PursueError([finding for trial in tried for finding in trial.findings], exit_status=4)
     if len(tried) > 1:
         message = (
-            f"{plan} wins in the ideal game only ({_in_words(tried[-1].rules)}), not with {_in_words(tried[0].rules)}"
+            f"{plan} wins in the ideal game only ({in_words(tried[-1].rules)}), not with {in_words(tried[0].rules)}"
         )
         hint = "it may lose when a message is late or a robot needs longer; leave --plan away for a plan that wins then too"
         show([warning("CLI010", message, hint=hint)])
     else:
-        tell(f"{plan} wins: {_in_words(tried[0].rules)}")
+        tell(f"{plan} wins: {in_words(tried[0].rules)}")
     return won
-
-
-def _verdict_text(rules: Rules, won: Solution) -> str:
-    stats = won.stats
-    took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    return f"won: {_in_words(rules)}{took}; {_count(_commands(won), 'command')}, proven"
-
-
-def _verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagnostic]) -> Dict[str, Any]:
-    """`won` is null where a limit was hit."""
-    result: Dict[str, Any] = {
-        "won": True if won else None if any(f.code == "SYN010" for f in findings) else False,
-        "ends": rules.ends,
-        "reaction": str(rules.reaction),
-        "slack": dict(rules.slack),
-    }
-    if won and won.stats:
-        stats = won.stats
-        result.update(
-            engine=stats.engine, states=stats.discrete_states, zones=stats.zones, seconds=round(stats.seconds, 6)
-        )
-    if won:
-        result.update(blocks=len(won.strategy.blocks), commands=_commands(won))
-    result["diagnostics"] = [as_json(finding) for finding in findings]
-    return result
-
-
-def _commands(won: Solution) -> int:
-    return sum(len(block.commands) for block in won.strategy.blocks)
-
-
-def _in_words(rules: Rules) -> str:
-    slack = "".join(f", {agent} late by {units}" for agent, units in rules.slack.items())
-    return f"ends {rules.ends}, reaction {float(rules.reaction):g}{slack}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
-
-
-def _usage(message: str, hint: str) -> PursueError:
-    return PursueError([error("CLI004", message, hint=hint)], exit_status=2)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The whole chain from a scenario to a proven strategy, as one value: what the commands and the workspace start from."""
+"""The chain from a scenario to a proven strategy, as one value: what the commands and the workspace start from."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ def solution(
 ) -> Solution:
     """Solves the game and proves the strategy with the independent checker (`seconds` and `engine` as in `solve`).
 
-    Raises PursueError with exit status 4 when the objective cannot be met under these rules; it says so plainly when the
-    ideal game, which no robot can play, would be won. With exit status 5 at a limit.
+    Raises PursueError with exit status 4 when the objective cannot be met under these rules; it says so plainly when
+    the ideal game, which no robot can play, would be won. With exit status 5 at a limit.
     """
     game = played(network, rules)
     verdict = solve(game, objective, rules.reaction, engine, seconds)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.pipeline import Rules, Solution, played, prove
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.network import Network, Objective
@@ -13,11 +13,11 @@ from pursue_gen.tga.network import Network, Objective
 
 @dataclass(frozen=True)
 class Trial:
-    """A plan in one game: the proven solution, or why it does not win there."""
+    """A plan in one game: the proven solution, or what was found why it does not win there."""
 
     rules: Rules
     solution: Optional[Solution]
-    problem: Optional[PursueError] = None
+    findings: Tuple[Diagnostic, ...] = ()
 
 
 def trials(text: str, file: str, network: Network, objective: Objective, games: Sequence[Rules]) -> Tuple[Trial, ...]:
@@ -33,7 +33,7 @@ def trials(text: str, file: str, network: Network, objective: Objective, games: 
         try:
             proven = prove(game, objective, strategy, rules.reaction)
         except PursueError as problem:
-            done.append(Trial(rules, None, problem))
+            done.append(Trial(rules, None, problem.diagnostics))
             continue
         done.append(Trial(rules, Solution(game, objective, proven, rules.reaction)))
         break
