@@ -2,8 +2,8 @@
 
 A bound `x_i - x_j < c` or `<= c` is one integer, its *raw* form: `2*c + 1` for `<=`, `2*c` for `<`. So a smaller raw
 bound is a tighter one, and the bound that says the opposite, seen from the other side, is `1 - raw`. Index 0 is the
-constant 0, indices from 1 are clocks. Every zone lies in the valuations with all clocks >= 0, is canonical (all bounds as
-tight as they can be) and holds at least one point: operations that may leave nothing return None.
+constant 0, indices from 1 are clocks. Every zone lies in the valuations with all clocks >= 0, is canonical (all bounds
+as tight as they can be) and holds at least one point: operations that may leave nothing return None.
 """
 
 from __future__ import annotations

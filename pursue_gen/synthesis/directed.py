@@ -1,8 +1,8 @@
 """Which move to try first: the first step of a relaxed plan to the goal (delete relaxation, Hoffmann and Nebel 2001).
 
 The relaxed problem: automata that are at a location stay there as well when they move on, variables keep their old
-values beside the new ones, clocks do not matter but for how long a guard makes one wait. Its plan is found fast and says
-which moves are worth a try; it proves nothing.
+values beside the new ones, clocks do not matter but for how long a guard makes one wait. Its plan is found fast and
+says which moves are worth a try; it proves nothing.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class RelaxedPlanner:
         return plan
 
     def _achievers(self, state: State, goal: Fact) -> Tuple[Dict[Fact, int], Dict[int, List[Fact]]]:
-        """For each fact the edge that gives it soonest (-1: it holds), and for each edge the facts that made it possible.
+        """For each fact the edge that gives it soonest (-1: it holds), for each edge the facts that made it possible.
 
         Dijkstra's algorithm over facts; an edge is possible once the last of its needs is met. Stops at the goal.
         """

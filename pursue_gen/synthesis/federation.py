@@ -1,7 +1,7 @@
 """Federations: finite unions of zones, and the operators of timed games on them.
 
-The timed predecessor is that of Cassez, David, Fleury, Larsen and Lime (Efficient on-the-fly algorithms for the analysis
-of timed games, CONCUR 2005), here with a closed interval: a tie is lost.
+The timed predecessor is that of Cassez, David, Fleury, Larsen and Lime (Efficient on-the-fly algorithms for the
+analysis of timed games, CONCUR 2005), here with a closed interval: a tie is lost.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pursue_gen.synthesis.dbm import Dbm, Number
 
 @dataclass(frozen=True)
 class Federation:
-    """The union of its zones, all of one dimension. They may overlap; none of them is the empty set; no zone: no point."""
+    """The union of its zones, all of one dimension. They may overlap; none of them is empty; no zone: no point."""
 
     zones: Tuple[Dbm, ...] = ()
 
@@ -133,7 +133,7 @@ def predt(good: Federation, bad: Federation) -> Federation:
 
 
 def _predt_convex(target: Dbm, past: Dbm, obstacle: Dbm) -> List[Dbm]:
-    """The timed predecessor for convex sets: (G's past minus B's past), and the past of (G within B's past, minus B)."""
+    """The timed predecessor of convex sets: (G's past minus B's past), and the past of (G within B's past, minus B)."""
     danger = obstacle.down()
     zones = list(past.minus(danger))
     threatened = target.intersect(danger)

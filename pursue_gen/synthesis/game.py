@@ -27,16 +27,16 @@ Action = Optional[Tuple[int, ...]]
 """What to do: a joint move by its edges, the sender's (or tau) first, or None: wait."""
 
 RawBlock = Tuple[Tuple[int, ...], Tuple[int, ...], Sequence[Tuple[Tuple[int, ...], Action]]]
-"""A discrete state's part of a strategy as engines hand it over: locations, values, (matrix of a zone, action) …."""
+"""A discrete state's part of a strategy as engines hand it over: locations, values, (matrix of a zone, action)s."""
 
 
 @dataclass(frozen=True)
 class GameEdge:
     """An edge of an automaton.
 
-    `bounds` are the clock guard, `clauses` the integer guard (all of them hold), `channel` is NO_CHANNEL for a step of its
-    own (then `sends` is true as well: the edge moves by itself), `assignments` are (variable, value), `resets` clocks.
-    `duration` is the largest lower bound of the guard: how long the edge makes one wait.
+    `bounds` are the clock guard, `clauses` the integer guard (all of them hold), `channel` is NO_CHANNEL for a step of
+    its own (then `sends` is true as well: the edge moves by itself), `assignments` are (variable, value), `resets` are
+    clocks. `duration` is the largest lower bound of the guard: how long the edge makes one wait.
     """
 
     automaton: int
@@ -54,7 +54,7 @@ class GameEdge:
 
 @dataclass(frozen=True)
 class GameAutomaton:
-    """An automaton: `invariants[location]` are upper bounds on clocks, (clock, raw); `edges` are indices into the game's."""
+    """An automaton: `invariants[location]` are upper bounds (clock, raw); `edges` are indices into the game's."""
 
     name: str
     locations: Tuple[str, ...]

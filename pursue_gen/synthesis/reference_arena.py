@@ -1,4 +1,4 @@
-"""The forward half of the reference engine: discrete states, their moves, and one zone that bounds what is reached in each.
+"""The forward half of the reference engine: discrete states, their moves, one zone that bounds what is reached in each.
 
 The zone of a state is the convex hull of all that is forward reachable there, extrapolated. It may hold more than that:
 a position's value depends on its successors only, so bounding with too much changes no verdict.
@@ -28,7 +28,7 @@ class Move:
 
 @dataclass
 class Node:
-    """A discrete state in the making: what is reached in it, its moves (`omitted`: not followed yet), where it is come from."""
+    """A discrete state in the making: what is reached in it, its moves (`omitted`: not followed yet), its sources."""
 
     state: State
     within: Dbm
@@ -125,7 +125,7 @@ class Arena:
                     self.nodes[target].sources.add(number)
 
     def _enter(self, state: State, zone: Dbm) -> Optional[int]:
-        """The node of the state, with this zone (if it satisfies the invariant) and its future among what is reached."""
+        """The node of the state, with this zone (as far as the invariant holds) and its future in what is reached."""
         number = self._index.get(state)
         if number is None:
             within = Dbm.universe(self.game.dim).constrained_all(invariant(self.game, state))

@@ -17,8 +17,8 @@ PLACES = ("l0", "l1", "l2")
 def games(draw: st.DrawFn, kinds: Tuple[Kind, ...], delays: Tuple[int, ...]) -> Game:
     """Two automata over one or two clocks, a channel and a variable; small constants, a delay of so many units.
 
-    The first automaton has most of the controller's edges, the second most of the environment's; a game that is a little
-    loaded like this is won about as often as it is lost.
+    The first automaton has most of the controller's edges, the second most of the environment's; so that a fair part of
+    the games is won.
     """
     clocks = ("x", "y")[: draw(st.integers(1, 2))]
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))

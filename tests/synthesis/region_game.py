@@ -1,7 +1,7 @@
 """The rules of the game once more, by brute force on regions, for networks with few clocks and small constants.
 
-A region is kept as one of its points: whole parts (capped above the largest constant) and equally spaced fractions. Time
-takes a region through a finite sequence of regions, so the timed predecessor is a walk along it.
+A region is kept as one of its points: whole parts (capped above the largest constant) and equally spaced fractions.
+Time takes a region through a finite sequence of regions, so the timed predecessor is a walk along it.
 """
 
 from __future__ import annotations
