@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.dbm import INF
@@ -19,8 +20,21 @@ def available() -> bool:
     return _core is not None
 
 
-def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Tuple[bool, Tuple[RawBlock, ...], Dict[str, int]]:
-    """Whether the controller wins, the strategy if so, and counts (discrete_states, zones, evaluations).
+@dataclass(frozen=True)
+class Outcome:
+    """Whether the controller wins, and how: per block the ranks of its pieces (reach: each step leads to lower ranks).
+
+    `counts`: discrete_states, zones, evaluations.
+    """
+
+    won: bool
+    blocks: Tuple[RawBlock, ...]
+    ranks: Tuple[Tuple[int, ...], ...]
+    counts: Mapping[str, int]
+
+
+def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Outcome:
+    """Decides the game.
 
     `seconds` and `states` (discrete ones) are limits, 0 for none; a limit that is hit raises PursueError with exit
     status 5. Ctrl-C raises KeyboardInterrupt at once.
@@ -33,11 +47,12 @@ def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Tuple[boo
         raise PursueError([error("SYN010", f"no verdict within the limit of {what}", hint=hint)], exit_status=5) from None
     count = len(game.automata)
     blocks: List[RawBlock] = [
-        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges in actions))
-        for d, actions in result["states"]
+        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))
+        for d, pieces in result["states"]
     ]
+    ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in result["states"])
     counts = {key: int(result[key]) for key in ("discrete_states", "zones", "evaluations")}
-    return bool(result["won"]), tuple(blocks), counts
+    return Outcome(bool(result["won"]), tuple(blocks), ranks, counts)
 
 
 def _matrix(bounds: List[int]) -> Tuple[int, ...]:
@@ -68,7 +83,6 @@ def _tables(game: Game) -> Dict[str, Any]:
         "kind": game.kind.value,
         "clocks": len(game.clocks),
         "delta": game.delta,
-        "max": list(game.max_constants),
         "variables": list(game.initial_values),
         "goal": game.goal,
         "bad": game.bad,

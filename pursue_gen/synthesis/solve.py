@@ -50,8 +50,9 @@ def solve(
     game = compile_game(network, objective, reaction)
     start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
-        won, blocks, counts = native.solve_native(game, seconds)
-        stats = Stats("native", counts["discrete_states"], counts["zones"], time.perf_counter() - start)
+        found = native.solve_native(game, seconds)
+        won, blocks = found.won, found.blocks
+        stats = Stats("native", found.counts["discrete_states"], found.counts["zones"], time.perf_counter() - start)
     else:
         outcome = solve_reference(game)
         won, blocks = outcome.won, outcome.raw_blocks()

@@ -174,18 +174,20 @@ void free_clock(Dbm<N>& z, int i) {
     }
 }
 
-// Forgets what lies above the largest constants (Extra_M); `max` is raw-free, scaled, index 0 unused.
+// Forgets what lies above the largest constants (Extra_M), scaled; index 0 is unused, a clock with -1 is freed.
 template <int N>
 void extrapolate(Dbm<N>& z, const std::vector<raw_t>& max) {
     bool changed = false;
+    for (int x = 1; x < N; ++x)
+        if (max[x] < 0) free_clock(z, x);
     for (int i = 0; i < N; ++i)
         for (int j = 0; j < N; ++j) {
             if (i == j) continue;
             raw_t& b = z.at(i, j);
-            if (i > 0 && b < INF && b > 2 * max[i] + 1) {
+            if (i > 0 && max[i] >= 0 && b < INF && b > 2 * max[i] + 1) {
                 b = INF;
                 changed = true;
-            } else if (j > 0 && b < -2 * max[j]) {
+            } else if (j > 0 && max[j] >= 0 && b < -2 * max[j]) {
                 b = -2 * max[j];
                 changed = true;
             }

@@ -48,7 +48,6 @@ struct Game {
     Kind kind;
     int clocks;
     raw_t delta;
-    std::vector<raw_t> max;  // per clock, index 0 unused
     std::vector<int> variables;
     std::vector<Automaton> automata;
     Place goal, bad;
@@ -68,6 +67,47 @@ inline bool holds(const Game& game, const Discrete& d, const std::vector<Clause>
     }
     return true;
 }
+
+// For each automaton, location and clock the largest constant that the automaton may compare the clock with before it
+// resets it, -1: none (Behrmann et al. 2003). Clocks that no automaton asks for do not matter in a discrete state.
+class Horizon {
+  public:
+    explicit Horizon(const Game& game) : clocks_(game.clocks) {
+        for (const auto& automaton : game.automata) {
+            auto& table = largest_.emplace_back(automaton.invariants.size(), std::vector<raw_t>(clocks_ + 1, -1));
+            const auto note = [&](int location, const std::vector<Bound>& bounds) {
+                for (const Bound& b : bounds) {
+                    raw_t& largest = table[location][b.i ? b.i : b.j];
+                    largest = std::max(largest, b.i ? b.raw >> 1 : -(b.raw >> 1));
+                }
+            };
+            for (std::size_t l = 0; l < automaton.invariants.size(); ++l) note(static_cast<int>(l), automaton.invariants[l]);
+            for (const Edge& edge : automaton.edges) note(edge.source, edge.guard);
+            for (bool changed = true; changed;) {
+                changed = false;
+                for (const Edge& edge : automaton.edges)
+                    for (int x = 1; x <= clocks_; ++x) {
+                        if (std::find(edge.resets.begin(), edge.resets.end(), x) != edge.resets.end()) continue;
+                        if (table[edge.target][x] <= table[edge.source][x]) continue;
+                        table[edge.source][x] = table[edge.target][x];
+                        changed = true;
+                    }
+            }
+        }
+    }
+
+    // Per clock (index 0 unused) for a discrete state, padded with -1 to `size`.
+    std::vector<raw_t> at(const Discrete& d, int size) const {
+        std::vector<raw_t> out(size, -1);
+        for (std::size_t a = 0; a < largest_.size(); ++a)
+            for (int x = 1; x <= clocks_; ++x) out[x] = std::max(out[x], largest_[a][d[a]][x]);
+        return out;
+    }
+
+  private:
+    int clocks_;
+    std::vector<std::vector<std::vector<raw_t>>> largest_;
+};
 
 struct Move {
     std::vector<int> edges;  // ids, sender first

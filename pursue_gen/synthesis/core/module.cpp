@@ -34,7 +34,6 @@ Game read_game(const py::dict& in) {
     game.kind = kind == "reach" ? Kind::reach : kind == "safety" ? Kind::safety : Kind::reach_while_safe;
     game.clocks = in["clocks"].cast<int>();
     game.delta = in["delta"].cast<raw_t>();
-    game.max = in["max"].cast<std::vector<raw_t>>();
     game.variables = in["variables"].cast<std::vector<int>>();
     game.goal = place(in["goal"]);
     game.bad = place(in["bad"]);
@@ -62,8 +61,7 @@ Game read_game(const py::dict& in) {
 }
 
 template <int N>
-py::dict solve_with(Game game, const Limits& limits) {
-    game.max.resize(N, 0);
+py::dict solve_with(const Game& game, const Limits& limits) {
     Solver<N> solver(game, limits);
     const bool won = solver.run();
     py::dict out;
@@ -81,7 +79,8 @@ py::dict solve_with(Game game, const Limits& limits) {
             for (int i = 0; i < dim; ++i)
                 for (int j = 0; j < dim; ++j) matrix.push_back(action.zone.at(i, j));
             actions.append(py::make_tuple(matrix, action.move < 0 ? py::object(py::none())
-                                                                   : py::cast(node.moves[action.move].edges)));
+                                                                   : py::cast(node.moves[action.move].edges),
+                                           action.rank));
         }
         if (!actions.empty()) states.append(py::make_tuple(node.d, actions));
     }

@@ -31,11 +31,13 @@ class Solver {
     struct Action {
         Dbm<N> zone;
         int move;  // index into Node::moves, -1: wait
+        int rank;  // reach: every step from here leads to lower ranks
     };
 
     struct Node {
         Discrete d;
         Dbm<N> hull{};
+        std::vector<raw_t> max;      // the largest constants that matter here
         bool reached = false, full = false, queued = false;
         std::vector<Move> moves;
         std::vector<int> targets;    // node per move, -1: not followed
@@ -45,14 +47,14 @@ class Solver {
     };
 
     Solver(const Game& game, const Limits& limits)
-        : game_(game), limits_(limits), start_(std::chrono::steady_clock::now()), planner_(game, wish(game)) {}
+        : game_(game), limits_(limits), start_(std::chrono::steady_clock::now()), planner_(game, wish(game)), horizon_(game) {}
 
     bool run() {
         initial_ = node(first());
         Node& n = nodes_[initial_];
         n.reached = invariant(n.d, n.hull = origin<N>(game_.clocks));
         if (!n.reached) return false;
-        elapse(n.d, n.hull);
+        elapse(n, n.hull);
         expand(initial_, game_.kind == Kind::safety);
         explore();
         if (game_.kind == Kind::safety) return !fixpoint();
@@ -92,6 +94,7 @@ class Solver {
             check();
             nodes_.emplace_back();
             nodes_.back().d = d;
+            nodes_.back().max = horizon_.at(d, N);
         }
         return it->second;
     }
@@ -111,11 +114,15 @@ class Solver {
         return true;
     }
 
-    void elapse(const Discrete& d, Dbm<N>& z) const {
+    void elapse(const Node& n, Dbm<N>& z) const {
         up(z);
-        invariant(d, z);
-        extrapolate(z, game_.max);
-        invariant(d, z);
+        invariant(n.d, z);
+        forget(n, z);
+    }
+
+    void forget(const Node& n, Dbm<N>& z) const {
+        extrapolate(z, n.max);
+        invariant(n.d, z);
     }
 
     // Decides which moves of a state are followed: all, or every uncontrollable one and one controllable one.
@@ -159,12 +166,11 @@ class Solver {
                 for (int x : move.resets) reset(z, x);
                 Node& target = nodes_[t];
                 if (!invariant(target.d, z)) continue;
-                elapse(target.d, z);
+                elapse(target, z);
                 if (target.reached && includes(target.hull, z)) continue;
                 if (target.reached) {
                     z = hull(target.hull, z);
-                    extrapolate(z, game_.max);
-                    invariant(target.d, z);
+                    forget(target, z);
                 }
                 const bool fresh = !target.reached;
                 target.hull = z;
@@ -311,10 +317,11 @@ class Solver {
         if (fresh.empty()) return false;
         Federation<N> rest = fresh;
         for (const auto& [move, zones] : usable) {
-            for (const auto& z : reduced(intersection(rest, minus(zones, harmful)))) n.plan.push_back({z, move});
+            for (const auto& z : reduced(intersection(rest, minus(zones, harmful)))) n.plan.push_back({z, move, rank_});
             rest = minus(rest, minus(zones, harmful));
         }
-        for (const auto& z : reduced(rest)) n.plan.push_back({z, -1});
+        for (const auto& z : reduced(rest)) n.plan.push_back({z, -1, rank_});
+        ++rank_;
         return grow(n, fresh);
     }
 
@@ -378,11 +385,11 @@ class Solver {
         Federation<N> urgent = reduced(intersection(view.duty, safe));
         for (const auto& [move, zones] : view.usable) {
             const Federation<N> here = minus(zones, view.harmful);
-            for (const auto& z : reduced(intersection(urgent, here))) out.push_back({z, move});
+            for (const auto& z : reduced(intersection(urgent, here))) out.push_back({z, move, 0});
             urgent = minus(urgent, here);
             safe = minus(safe, intersection(view.duty, here));
         }
-        for (const auto& z : reduced(safe)) out.push_back({z, -1});
+        for (const auto& z : reduced(safe)) out.push_back({z, -1, 0});
         return out;
     }
 
@@ -390,10 +397,11 @@ class Solver {
     const Limits& limits_;
     std::chrono::steady_clock::time_point start_;
     RelaxedPlanner planner_;
+    Horizon horizon_;
     std::deque<Node> nodes_;
     std::map<Discrete, int> index_;
     std::deque<int> touched_, waiting_;
-    int initial_ = 0;
+    int initial_ = 0, rank_ = 1;
     std::size_t evaluations_ = 0, checks_ = 0;
 };
 
