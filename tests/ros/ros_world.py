@@ -99,7 +99,7 @@ def end(process: "subprocess.Popen[bytes]") -> None:
 
 
 def generated(name: str, folder: Path, controllers: str = "distributed") -> Path:
-    """Writes the workspace of scenarios/<name>.pur; a general controller plays the ideal game, as the original's does."""
+    """Writes the workspace of scenarios/<name>.pur; a general controller plays the ideal game, as in the original."""
     scenario = load(str(SCENARIOS / f"{name}.pur"))
     rules = IDEAL if controllers == "general" else Rules()
     won = solve_scenario(scenario, rules)

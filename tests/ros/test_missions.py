@@ -18,7 +18,9 @@ from pursue_gen.workspace import Options, write_workspace
 Build = Callable[..., Path]
 
 ALONE = ["scenario_1", "scenario_2", "scenario_3", "scenario_4"]
-"""The thesis's scenarios in which every agent is a robot; in the others some stand still, act at random, or by a trace."""
+"""The thesis's scenarios in which every agent is a robot; in the others some do as they like, or what a trace says."""
+
+pytestmark = pytest.mark.ros
 
 
 def missions(results: List[str]) -> int:

@@ -1,4 +1,4 @@
-"""The nodes of a generated workspace as a person starts them: by hand and by launch file, from devel and install space."""
+"""The nodes of a generated workspace as a person starts them: by hand, by launch file, from devel and install space."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import pytest
 from ros_world import Ros, end, generated, make
 
 Build = Callable[..., Path]
+
+pytestmark = pytest.mark.ros
 
 NODES = ("observer", "controller_bot1", "controller_bot2", "controllerObj")
 
@@ -30,7 +32,8 @@ def installed(ros: Ros, built: Build, tmp_path_factory: pytest.TempPathFactory) 
 def sourced(request: pytest.FixtureRequest, built: Build) -> Tuple[Path, str]:
     """A workspace, and what to source in it."""
     if request.param == "install":
-        return request.getfixturevalue("installed"), "source install/setup.bash; "
+        place: Path = request.getfixturevalue("installed")
+        return place, "source install/setup.bash; "
     return built("thesis/scenario_1"), "source devel/setup.bash; "
 
 
@@ -56,7 +59,8 @@ def ended(
 ) -> Dict[str, object]:
     """Starts the nodes, waits for their ends; their exit statuses, or what a node said that did not end well."""
     nodes = {
-        name: ros.start(f"{source}exec {command}", workspace, logs / name, **there) for name, command in commands.items()
+        name: ros.start(f"{source}exec {command}", workspace, logs / name, **there)
+        for name, command in commands.items()
     }
     deadline = time.monotonic() + 120
     try:

@@ -14,7 +14,7 @@ from typing import Dict, List, Set
 
 import pytest
 import yaml
-from worlds import REACTION, SCENARIOS, files, world
+from worlds import SCENARIOS, files, world
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
@@ -44,7 +44,8 @@ def python(generated: Dict[str, bytes]) -> Dict[str, str]:
 
 @pytest.fixture(scope="module", params=SHAPES, ids="-".join)
 def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
-    return files(*request.param)
+    name, controllers, reach_obj = request.param
+    return files(name, controllers, reach_obj)
 
 
 def test_one_package_for_each_node() -> None:
@@ -142,7 +143,7 @@ def test_python_passes_the_linter(generated: Dict[str, bytes], tmp_path: Path) -
 
 def test_data_and_launch_files_can_be_read(generated: Dict[str, bytes]) -> None:
     for path, text in generated.items():
-        if path.endswith(".yaml"):
+        if path.endswith((".yaml", ".rviz")):
             assert yaml.safe_load(text) is not None, path
         elif path.endswith((".xml", ".launch", ".test", ".svg")):
             ElementTree.fromstring(text)
@@ -163,7 +164,7 @@ def test_the_launch_file_starts_every_node_and_no_other(generated: Dict[str, byt
     (launch,) = [text for path, text in generated.items() if path.endswith("mission.launch")]
     nodes = {(n.attrib["pkg"], n.attrib["type"]) for n in ElementTree.fromstring(launch).iter("node")}
     there = {(p.split("/")[1], p.split("/")[3]) for p in generated if "/scripts/" in p and not p.endswith(".py")}
-    assert nodes == there
+    assert nodes - {("rviz", "rviz")} == there
 
 
 def test_the_same_scenario_gives_the_same_bytes() -> None:
@@ -194,7 +195,7 @@ def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:
     assert given["poses"]["a"] == pytest.approx([3.0, 1.54, 0.0, 0.0, 0.0, 0.67, 0.73], abs=0.01)
     computed = files("thesis/scenario_1")["src/UI/config/poses.yaml"]
     assert yaml.safe_load(computed)["computed"] is True and b"Computed from the distances" in computed
-    assert "computed from the\ndistances" in files("thesis/scenario_1")["README.md"].decode()
+    assert "computed from the distances" in files("thesis/scenario_1")["README.md"].decode()
 
 
 def test_expectations_of_the_launch_tests() -> None:
@@ -216,17 +217,18 @@ def test_a_trace_is_something_that_can_happen() -> None:
 
 @pytest.mark.parametrize("name", ["2fast", "my scenario", "a-b", "ä", ""])
 def test_a_name_that_no_package_can_have_is_told(name: str) -> None:
-    scenario, *rest = world("thesis/scenario_1")
+    scenario, network, objective, strategy = world("thesis/scenario_1")
     with pytest.raises(PursueError) as caught:
-        generate(dataclasses.replace(scenario, name=name), *rest, Options(reaction=REACTION))
+        generate(dataclasses.replace(scenario, name=name), network, objective, strategy, Options())
     (finding,) = caught.value.diagnostics
     assert finding.code == "WSP005" and "rename" in finding.hint
 
 
 def test_two_packages_of_one_name_are_told() -> None:
-    scenario, *rest = world("thesis/scenario_1")
+    scenario, network, objective, strategy = world("thesis/scenario_1")
     renamed = dataclasses.replace(scenario, name="controller_bot1")
-    assert "src/controller_bot1_bringup/package.xml" in generate(renamed, *rest, Options(reaction=REACTION))
+    there = generate(renamed, network, objective, strategy, Options())
+    assert "src/controller_bot1_bringup/package.xml" in there
     text = scenario.text.replace("bot1", "x_bringup")
     with pytest.raises(PursueError, match="same name"):
         generate_text(text, "controller_x")
@@ -254,11 +256,12 @@ def test_people_get_instructions_and_no_controller() -> None:
 
 def test_writing_puts_the_folder_where_it_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    given = world("thesis/scenario_1")
-    assert write_workspace(*given) == Path("workspace_out/scenario_1")
+    scenario, network, objective, strategy = world("thesis/scenario_1")
+    assert write_workspace(scenario, network, objective, strategy) == Path("workspace_out/scenario_1")
     assert (tmp_path / "workspace_out/scenario_1/src/observer/package.xml").is_file()
-    assert write_workspace(*given, folder=tmp_path / "there") == tmp_path / "there"
-    assert (tmp_path / "there/scenario_1.pur").read_text() == given[0].text
+    there = tmp_path / "there"
+    assert write_workspace(scenario, network, objective, strategy, folder=there) == there
+    assert (there / "scenario_1.pur").read_text() == scenario.text
 
 
 def test_templates_are_found() -> None:

@@ -67,7 +67,7 @@ def test_an_edited_file_stops_everything_before_anything_changes(tmp_path: Path,
     writer.write_tree(FILES, ws)
     (ws / path).write_bytes(b"edited by hand")
     before = tree(ws)
-    new = {name: b"new" for name in FILES if still_part or name != path}
+    new = dict.fromkeys((name for name in FILES if still_part or name != path), b"new")
     with pytest.raises(PursueError) as caught:
         writer.write_tree(new, ws)
     assert tree(ws) == before
@@ -115,7 +115,7 @@ def test_a_failure_leaves_nothing_half(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(Path, "write_bytes", full)
     for folder in (tmp_path / "old", tmp_path / "new"):
         with pytest.raises(PursueError, match="No space left"):
-            writer.write_tree({name: b"other" for name in FILES}, folder)
+            writer.write_tree(dict.fromkeys(FILES, b"other"), folder)
     monkeypatch.undo()
     assert [p.name for p in tmp_path.iterdir()] == ["old"]
     assert tree(tmp_path / "old") == FILES
