@@ -73,9 +73,9 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     help="From a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot.",
-    epilog="Data goes to stdout, everything else to stderr. Exit status: 0 well; 2 the command line or a file is wrong; "
-    "3 the scenario has errors; 4 the objective cannot be met, or a plan does not win; 5 a limit was hit; 6 something "
-    "that is needed is missing; 130 interrupted.",
+    epilog="Data goes to stdout, everything else to stderr. Exit status: 0 well; 2 the command line or a file is "
+    "wrong; 3 the scenario has errors; 4 the objective cannot be met, or a plan does not win; 5 a limit was hit; 6 "
+    "something that is needed is missing; 130 interrupted.",
 )
 
 
@@ -235,7 +235,7 @@ def report(
     reach_obj: Optional[str] = typer.Option(
         None,
         metavar="dedicated|all|ROBOT",
-        help="Who gets the objective's commands; by default dedicated, and for the thesis's scenarios as the thesis has it.",
+        help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
     ),
     as_json_: bool = _JSON,
 ) -> None:
@@ -276,7 +276,7 @@ def ws(
     ),
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
-    """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, launch files.
+    """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
 
     The folder is printed on stdout.
     """
@@ -299,14 +299,11 @@ def ws(
     place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
     print(place)
     tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
-    suggest(
-        f"cd {_quoted(place)} && catkin_make",
-        "source devel/setup.bash",
-        f"roslaunch {read.name}_bringup mission.launch",
-    )
+    launch = f"roslaunch {read.name}_bringup mission.launch"
+    suggest(f"cd {_quoted(place)} && catkin_make", "source devel/setup.bash", launch)
 
 
-# What the commands share ------------------------------------------------------------------------------------------------
+# What the commands share ----------------------------------------------------------------------------------------------
 
 
 def _findings(file: Path) -> Tuple[Diagnostic, ...]:
@@ -380,10 +377,9 @@ def _planned(plan: Path, network: Network, objective: Objective, games: Sequence
     if won is None:
         raise PursueError([finding for trial in tried for finding in trial.findings], exit_status=4)
     if len(tried) > 1:
-        message = (
-            f"{plan} wins in the ideal game only ({in_words(tried[-1].rules)}), not with {in_words(tried[0].rules)}"
-        )
-        hint = "it may lose when a message is late or a robot needs longer; leave --plan away for a plan that wins then too"
+        ideal, default = in_words(tried[-1].rules), in_words(tried[0].rules)
+        message = f"{plan} wins in the ideal game only ({ideal}), not with {default}"
+        hint = "it may lose when a message is late or a robot needs longer; without --plan a better one is looked for"
         show([warning("CLI010", message, hint=hint)])
     else:
         tell(f"{plan} wins: {in_words(tried[0].rules)}")

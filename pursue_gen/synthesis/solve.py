@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Optional
 
+from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis import native
-from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.reference import solve_reference
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.tga.network import Network, Objective
 
 
@@ -45,8 +46,11 @@ def solve(
 
     `reaction` is the delay of a command in time units, `engine` "native" or "python" (default: native where it was
     built), `seconds` a limit of the native engine (0: none). Raises PursueError for networks that the game does not
-    support, and, with exit status 5, at the limit.
+    support, with exit status 5 at the limit, and with 6 where the native engine is asked for and was not built.
     """
+    if engine == "native" and not native.available():
+        hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
+        raise PursueError([error("SYN011", "the native engine was not built", hint=hint)], exit_status=6)
     game = compile_game(network, objective, reaction)
     start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
