@@ -1,0 +1,75 @@
+"""The native engine against brute force on regions, and against the Python reference, on small random games."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import load
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.federation import Federation
+from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
+from pursue_gen.synthesis.reference import solve_reference
+from pursue_gen.tga import ends_reported, scenario_objective, translate
+from pursue_gen.tga.network import Kind
+from tests.conftest import thesis_scenario
+from tests.synthesis.random_games import games
+from tests.synthesis.region_game import RegionGame
+
+pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
+
+EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(games(EVERY_KIND, (0, 0, 1)))
+def test_it_agrees_with_brute_force(game: Game) -> None:
+    regions = RegionGame(game)
+    winning = regions.winning()
+    outcome = native.solve_native(game)
+    assert outcome.won == (regions.start in winning)
+    for locations, values, pieces in outcome.blocks:
+        state = State(locations, values)
+        zones = [(Dbm(game.dim, matrix), action) for matrix, action in pieces]
+        whole = Federation(tuple(zone for zone, _ in zones))
+        moves = {move.edges: move for move in joint_moves(game, state)}
+        for position in (p for p in regions.positions if p[0] == state):
+            if whole.contains(position[1]):
+                assert position in winning, "nothing that is lost is called won"
+            for zone, action in zones:
+                if action is not None and zone.contains(position[1]):
+                    assert regions.usable(position, moves[action], winning)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(games(EVERY_KIND, (0, 1)))
+def test_it_agrees_with_the_python_reference(game: Game) -> None:
+    assert native.solve_native(game).won == solve_reference(game).won
+
+
+
+def test_ranks_fall_with_every_command() -> None:
+    scenario = load(thesis_scenario("catch_the_thief"))
+    game = compile_game(ends_reported(translate(scenario), {}), scenario_objective(scenario))
+    outcome = native.solve_native(game)
+    assert outcome.won
+    lowest = {
+        State(locations, values): min(ranks)
+        for (locations, values, _), ranks in zip(outcome.blocks, outcome.ranks)
+    }
+    for (locations, values, pieces), ranks in zip(outcome.blocks, outcome.ranks):
+        moves = {move.edges: move for move in joint_moves(game, State(locations, values))}
+        for (_, action), rank in zip(pieces, ranks):
+            if action is not None and moves[action].target in lowest:
+                assert lowest[moves[action].target] < rank
+
+
+def test_a_limit_ends_with_a_message_and_status_five() -> None:
+    scenario = load(thesis_scenario("catch_the_thief"))
+    game = compile_game(translate(scenario), scenario_objective(scenario))
+    with pytest.raises(PursueError) as failure:
+        native.solve_native(game, states=300)
+    assert failure.value.exit_status == 5
+    assert "300 discrete states" in str(failure.value)
