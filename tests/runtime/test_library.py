@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from node_modules import library, read
 
@@ -44,25 +44,26 @@ zone_texts = st.lists(comparisons(), min_size=1, max_size=4).map(" && ".join)
 
 def true_at(text: str, clocks: dict, delay: float) -> bool:
     """The zone's text as Python reads it, so to speak: an evaluation that shares nothing with the library."""
-    moved = {clock: Fraction(value) + Fraction(delay) for clock, value in clocks.items()}
+    moved = {clock: value + delay for clock, value in clocks.items()}  # exact: eighths
     python = text.replace("&&", "and")
     for clock in CLOCKS:
         python = python.replace(clock, f"c['{clock}']")
-    # fractions like 3/4 are exact here: the operands are quarters
     return bool(eval(python, {"c": moved}))
 
 
+@settings(deadline=None)
 @given(zone_texts, valuations)
 def test_a_zone_holds_where_its_text_says(text: str, clocks: dict) -> None:
     assert library.holds(library.parse_zone(text), clocks) == true_at(text, clocks, 0.0)
 
 
+@settings(deadline=None)  # a busy machine is no failure
 @given(st.lists(zone_texts, min_size=1, max_size=3), valuations)
 def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> None:
     zones = [library.parse_zone(text) for text in texts]
     delay = library.due(zones, clocks, MARGIN)
     # Bounds and clocks are quarters: between two quarters nothing changes, so quarters and what lies between suffice.
-    steps = [step / 8 for step in range(0, 8 * 40)]
+    steps = [step / 8 for step in range(8 * 13)]
     first = next((s for s in steps if any(true_at(text, clocks, s) for text in texts)), None)
     if first is None:
         assert delay is None
@@ -73,6 +74,7 @@ def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> Non
     assert delay == pytest.approx(first - 1 / 8 + MARGIN if opens else first, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(zone_texts, valuations, quarters)
 def test_what_is_due_stays_due_while_time_passes(text: str, clocks: dict, passed: float) -> None:
     zones = [library.parse_zone(text)]
@@ -121,6 +123,7 @@ def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
 # Words and states
 
 
+@settings(deadline=None)
 @given(st.one_of(st.just(""), names), names, st.none() | st.integers(0, 10**6))
 def test_words_come_back(agent: str, event: str, seq: object) -> None:
     word = library.Word(agent, event, seq)
@@ -145,6 +148,7 @@ def test_what_is_no_word_is_none(text: str) -> None:
     assert library.parse_word(text) is None
 
 
+@settings(deadline=None)
 @given(
     st.integers(0, 10**6),
     st.floats(0, 2e9),

@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Tuple
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from node_modules import library, model, observer_core, read
 
@@ -202,6 +202,7 @@ def test_an_end_that_is_told_twice_counts_once(chase: Journey) -> None:
     assert chase.hear("bot_going_a_to_b2b", 105.5) is None
 
 
+@settings(deadline=None)
 @given(st.lists(st.text(max_size=12) | st.sampled_from(("bot_a2b", "catch@1", "x:catch", "_ping_")), max_size=8))
 def test_no_text_harms_the_state(texts: List[str]) -> None:
     journey = Journey()
