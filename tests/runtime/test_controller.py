@@ -134,3 +134,10 @@ def test_one_that_comes_late_or_missed_states_tells_the_robot_where_it_should_be
     missed = player()
     missed.see(state(1, 90.0), 90.0)
     assert missed.see(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "c", place)]
+
+
+def test_a_robot_gets_no_order_that_the_strategy_does_not_hold() -> None:
+    bot = player()
+    bot.see(state(1, 100.0), 100.0)
+    assert bot.see(state(2, 102.0, bot="going_c_to_a", event="bot_c2a"), 102.0) == []
+    assert bot.counts["not_ours"] == 1
