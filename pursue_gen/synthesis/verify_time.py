@@ -1,0 +1,329 @@
+"""What one discrete state's part of a strategy means while time passes: where it waits, where it acts, where it breaks.
+
+All sets are exact unions of zones. A controller may act anywhere in a command's zone on its way, not only at the first
+instant, but it acts before time leaves that zone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple, Union
+
+from pursue_gen.synthesis.dbm import INF, Dbm, is_strict, raw
+from pursue_gen.synthesis.strategy import ZoneKey
+from pursue_gen.synthesis.verify_moves import JointMove, Situation
+
+class Broken(Exception):
+    """The strategy fails here: why, and the points at which it does."""
+
+    def __init__(self, reason: str, zone: Dbm) -> None:
+        super().__init__(reason)
+        self.reason, self.zone = reason, zone
+
+
+@dataclass(frozen=True)
+class Act:
+    """A command in one of its zones. `move` None: it is no joint move of the controller, and `fault` says why."""
+
+    zone: Dbm
+    key: ZoneKey
+    move: Optional[JointMove]
+    fault: str
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What the strategy says in one discrete state, every zone within the invariant."""
+
+    wait: Tuple[Tuple[Dbm, ZoneKey], ...]
+    acts: Tuple[Act, ...]
+    near: Tuple[Tuple[int, ...], ...]
+    """For each act the others whose zones are met while it may be decided or be on its way."""
+    disputed: Tuple[Tuple[Dbm, ...], ...]
+    """For each act the points at which the strategy says to wait as well."""
+
+    def zones(self) -> Iterator[Tuple[Dbm, ZoneKey]]:
+        """All zones of the advice."""
+        yield from self.wait
+        yield from ((act.zone, act.key) for act in self.acts)
+
+    @staticmethod
+    def of(wait: Sequence[Tuple[Dbm, ZoneKey]], acts: Sequence[Act], reaction: int) -> Advice:
+        """The advice from its zones, for commands that may be late by `reaction`."""
+        near, disputed = [], []
+        for act in acts:
+            flight = act.zone.up_within(reaction) if reaction else act.zone
+            met = (k for k, other in enumerate(acts) if other is not act and flight.intersect(other.zone) is not None)
+            near.append(tuple(met))
+            both = (act.zone.intersect(zone) for zone, _ in wait)
+            disputed.append(tuple(zone for zone in both if zone is not None))
+        return Advice(tuple(wait), tuple(acts), tuple(near), tuple(disputed))
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What may happen from an entry: all points at which the game may be, and where which command may take effect."""
+
+    active: Tuple[Dbm, ...]
+    taken: Tuple[Tuple[JointMove, Dbm], ...]
+    used: Tuple[ZoneKey, ...]
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How the strategy is played.
+
+    `reaction`: the longest delay of a command, in scaled time units. `prompt`: the controller acts before anything that
+    the environment could not do when the command's zone was entered becomes possible to it; otherwise it may act anywhere
+    in the zone on its way. `must_end`: waiting has to come to an end (reach), otherwise it may last for ever (safety).
+    """
+
+    reaction: int
+    prompt: bool
+    must_end: bool
+
+
+def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) -> Passage:
+    """Follow the strategy from the points of the entry until a discrete step. Raises Broken where the strategy fails."""
+    assert situation.invariant is not None
+    acts = advice.acts
+    decided: Dict[int, List[Dbm]] = {}
+    pieces: List[Dbm] = [entry]
+    for k, act in enumerate(acts):
+        common = entry.intersect(act.zone)
+        if common is not None:
+            _insert(decided, k, common if rules.prompt else _future_in(common, act.zone))
+            pieces = without(pieces, act.zone)
+    waiting: List[Dbm] = []
+    used: List[ZoneKey] = []
+    for piece in pieces:
+        waiting += _wait(piece, situation, advice, rules, decided)
+    for zone, key in advice.wait:
+        if any(not zone.is_disjoint(part) and zone.intersect(part) is not None for part in waiting):
+            used.append(key)
+    taken: List[Tuple[JointMove, Dbm]] = []
+    for k, zones in sorted(decided.items()):
+        used.append(acts[k].key)
+        taken += _flights(acts[k], zones, advice.disputed[k], rules.reaction)
+        for other, effect in _met_in_flight(k, zones, advice, rules.reaction):
+            used.append(acts[other].key)
+            taken += _effects(acts[other], effect)
+    return Passage(tuple(merged(waiting + [flight for _, flight in taken])), tuple(taken), tuple(used))
+
+
+def _wait(
+    piece: Dbm, situation: Situation, advice: Advice, rules: Rules, decided: Dict[int, List[Dbm]]
+) -> List[Dbm]:
+    """Let time pass from points outside all commands' zones. Adds to `decided`; the points that are waited in."""
+    assert situation.invariant is not None
+    future = piece.up().intersect(situation.invariant)
+    assert future is not None
+    met: List[Tuple[int, Dbm]] = []
+    for k, act in enumerate(advice.acts):
+        common = future.intersect(act.zone)
+        if common is not None:
+            met.append((k, common))
+    # The piece shares no point with a command's zone, so what is at or after a point of one on the way is not waited in.
+    waited: List[Dbm] = [future]
+    for _, common in met:
+        waited = without(waited, common.up())
+    uncovered = waited
+    for zone, _ in advice.wait:
+        uncovered = without(uncovered, zone)
+    if uncovered:
+        raise Broken("not covered: the strategy does not say what to do here", uncovered[0])
+    for k, common in met:
+        first: List[Dbm] = [common]
+        for other, others in met:
+            if other != k:
+                for earlier in others.minus(common.up()):
+                    first = without(first, earlier.up())
+        for zone in first:
+            for part in _promptly(zone, situation) if rules.prompt else [zone]:
+                _insert(decided, k, part)
+    never = [piece]
+    for _, common in met:
+        never = without(never, common.down())
+    for part in never:
+        _check_end(part, situation, rules.must_end)
+    return waited
+
+
+def _promptly(zone: Dbm, situation: Situation) -> List[Dbm]:
+    """Of a command's zone, which lines of time enter from outside: the first instants, where they exist; where the zone is
+    open, the way up to the next time at which a clock reaches a constant or a new move becomes possible to the environment.
+
+    All instants so soon after the entry are equivalent to an ideal player, who may choose among them.
+    """
+    result: List[Dbm] = []
+    for start in _entrances(zone):
+        at_once = start.intersect(zone)
+        if at_once is not None:
+            result.append(at_once)
+        for late in [start] if at_once is None else start.minus(at_once):
+            soon = _soon_after(late).intersect(zone)
+            result += [] if soon is None else _before_news(soon, situation)
+    return result
+
+
+def _entrances(zone: Dbm) -> List[Dbm]:
+    """The points through which time enters the zone: in it, or just before it where its lower bounds are strict."""
+    dim, past = zone.dim, zone.down()
+    m = list(zone.m)
+    m[1:dim] = [bound | 1 for bound in m[1:dim]]
+    closed = past.constrained_all((0, i, m[i]) for i in range(1, dim))
+    result: List[Dbm] = []
+    for i in range(1, dim):
+        face = None if closed is None else closed.constrained(i, 0, raw(-(m[i] >> 1), strict=False))
+        if face is not None:
+            result.append(face)
+    return merged(result)
+
+
+def _soon_after(zone: Dbm) -> Dbm:
+    """What time reaches from the zone before any clock gets to a new constant (a hull of it)."""
+    dim, m = zone.dim, list(zone.m)
+    for i in range(1, dim):
+        m[i] &= ~1
+        if m[i * dim] < INF:
+            m[i * dim] = (m[i * dim] + 1) & ~1
+    later = Dbm.universe(dim).constrained_all((i, j, m[i * dim + j]) for i in range(dim) for j in range(dim) if i != j)
+    assert later is not None
+    return later
+
+
+def _before_news(zone: Dbm, situation: Situation) -> List[Dbm]:
+    """The points of the zone before a new move becomes possible to the environment."""
+    result = [zone]
+    for enabled in {move.enabled for move in situation.moves if not move.controllable and move.enabled is not None}:
+        common = zone.intersect(enabled)
+        if common is not None:
+            for before in zone.minus(common.up()):
+                later = before.up().intersect(common)
+                result = result if later is None else without(result, later.up())
+    return result
+
+
+def _check_end(part: Dbm, situation: Situation, must_end: bool) -> None:
+    """The points of `part` meet no command: whoever is at the bound of an invariant must be able to move by itself."""
+    if not situation.bounds:
+        if must_end:
+            raise Broken("waits for ever: no command comes and nothing obliges anyone to move", part)
+        return
+    if any(is_strict(bound) for _, _, bound in situation.bounds):
+        raise Broken("time is blocked: it cannot reach the end of a strict invariant", part)
+    assert situation.invariant is not None
+    future = part.up().intersect(situation.invariant)
+    assert future is not None
+    ends: List[Tuple[int, Dbm]] = []
+    for owner, clock, bound in situation.bounds:
+        last = future.constrained(0, clock, raw(-(bound >> 1), strict=False))
+        if last is not None:
+            ends.append((owner, last))
+    for owner, last in ends:
+        # In a reach game one that must move is enough: it will, whoever else is at a bound as well.
+        obliged = ends if must_end else [(owner, last)]
+        rest: List[Dbm] = [last]
+        for move in situation.moves:
+            if move.controllable or move.enabled is None:
+                continue
+            for mover, end in obliged:
+                common = end.intersect(move.enabled) if mover == move.owner else None
+                if common is not None:
+                    rest = without(rest, common)
+        if rest:
+            raise Broken("time is blocked: an invariant ends, no command comes and its owner cannot move", rest[0])
+
+
+def _met_in_flight(
+    k: int, zones: Sequence[Dbm], advice: Advice, reaction: int
+) -> List[Tuple[int, Dbm]]:
+    """Other commands that may overtake one that is decided in `zones`, and the points at which they then take effect.
+
+    The one that was decided first ends the time that passes here, so its flight bounds theirs.
+    """
+    result: List[Tuple[int, Dbm]] = []
+    for zone in zones:
+        reached = zone.up_within(reaction) if reaction else zone
+        for other in advice.near[k]:
+            if advice.acts[other].move == advice.acts[k].move:
+                continue
+            common = reached.intersect(advice.acts[other].zone)
+            if common is not None:
+                effect = (common.up_within(reaction) if reaction else common).intersect(reached)
+                assert effect is not None
+                result.append((other, effect))
+    return result
+
+
+def _flights(
+    act: Act, zones: Sequence[Dbm], disputed: Sequence[Dbm], reaction: int
+) -> List[Tuple[JointMove, Dbm]]:
+    """The points at which the command may take effect when decided in the zones."""
+    result: List[Tuple[JointMove, Dbm]] = []
+    for zone in zones:
+        for waited in disputed:
+            both = waited.intersect(zone)
+            if both is not None:
+                raise Broken("contradiction: the strategy says both to wait and to act here", both)
+        if act.move is not None and act.move.enabled is not None and not act.move.enabled.includes(zone):
+            raise Broken(_NOT_ENABLED, zone.minus(act.move.enabled)[0])
+        result += _effects(act, zone.up_within(reaction) if reaction else zone)
+    return result
+
+
+_NOT_ENABLED = "not enabled: the command's guard or an invariant does not hold here"
+
+
+def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
+    """The command taking effect at these points. Raises Broken where it cannot."""
+    if act.move is None:
+        raise Broken(act.fault, points)
+    if act.move.enabled is None:
+        raise Broken(_NOT_ENABLED, points)
+    if not act.move.enabled.includes(points):
+        late = "may come too late: the command is no longer enabled when it takes effect here"
+        raise Broken(late, points.minus(act.move.enabled)[0])
+    return [(act.move, points)]
+
+
+def without(pieces: Sequence[Dbm], zone: Dbm) -> List[Dbm]:
+    """The points of the pieces that are not in the zone."""
+    return [part for piece in pieces for part in piece.minus(zone)]
+
+
+def merged(zones: Sequence[Dbm]) -> List[Dbm]:
+    """The same points in fewer zones where two make one."""
+    result: List[Dbm] = []
+    for zone in zones:
+        k = 0
+        while k < len(result):
+            other = result[k]
+            if other.includes(zone):
+                zone = other
+            elif not zone.includes(other):
+                hull = None if zone.has_gap(other) else zone.hull(other)
+                if hull is None or without(hull.minus(zone), other):
+                    k += 1
+                    continue
+                zone = hull
+            del result[k]
+            k = 0
+        result.append(zone)
+    return result
+
+
+def _future_in(zone: Dbm, within: Dbm) -> Dbm:
+    """What time reaches from the zone inside the other, of which it is a part."""
+    future = zone.up().intersect(within)
+    assert future is not None
+    return future
+
+
+def _insert(decided: Dict[int, List[Dbm]], k: int, zone: Dbm) -> bool:
+    """Add the zone unless it is there already; true if it was added."""
+    zones = decided.setdefault(k, [])
+    if any(other.includes(zone) for other in zones):
+        return False
+    zones.append(zone)
+    return True
