@@ -9,7 +9,7 @@ from typing import Mapping, Optional
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.solve import Stats, solve
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.verify import pruned, verify
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
@@ -63,16 +63,24 @@ def solution(
     verdict = solve(game, objective, rules.reaction, engine, seconds)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, seconds, engine)], exit_status=4)
-    strategy = prove(game, objective, verdict.strategy, rules.reaction)
+    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks)
     return Solution(game, objective, strategy, rules.reaction, verdict.stats)
 
 
-def prove(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> Strategy:
-    """The part of the strategy that plays can reach, once the checker has found it winning.
+def prove(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    ranks: Optional[Mapping[ZoneKey, int]] = None,
+) -> Strategy:
+    """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
     Raises PursueError with the play that breaks it.
     """
-    report = verify(network, objective, strategy, reaction)
+    report = verify(network, objective, strategy, reaction, ranks=ranks)
+    if not report.ok and ranks is not None:
+        report = verify(network, objective, strategy, reaction)
     if not report.ok:
         play = "".join(f"\n      {step}" for step in report.play)
         hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play

@@ -5,14 +5,14 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Optional
+from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis import native
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.reference import solve_reference
-from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.synthesis.strategy_from import to_strategy
+from pursue_gen.synthesis.strategy import Strategy, ZoneKey
+from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Network, Objective
 
 
@@ -28,11 +28,16 @@ class Stats:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`)."""
+    """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`).
+
+    `ranks` (where the engine knows them): for each zone of the strategy, (block, "wait" or command, zone), a number that
+    every step of a reach game lowers.
+    """
 
     won: bool
     strategy: Optional[Strategy]
     stats: Stats
+    ranks: Optional[Mapping[ZoneKey, int]] = None
 
 
 def solve(
@@ -52,13 +57,15 @@ def solve(
         hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
         raise PursueError([error("SYN011", "the native engine was not built", hint=hint)], exit_status=6)
     game = compile_game(network, objective, reaction)
+    ranks = None
     start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
         found = native.solve_native(game, seconds)
         won, blocks = found.won, found.blocks
+        ranks = to_ranks(found.blocks, found.ranks)
         stats = Stats("native", found.counts["discrete_states"], found.counts["zones"], time.perf_counter() - start)
     else:
         outcome = solve_reference(game)
         won, blocks = outcome.won, outcome.raw_blocks()
         stats = Stats("python", outcome.stats.states, outcome.stats.zones, time.perf_counter() - start)
-    return Verdict(won, to_strategy(game, blocks) if won else None, stats)
+    return Verdict(won, to_strategy(game, blocks) if won else None, stats, ranks)

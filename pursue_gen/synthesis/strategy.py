@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import Optional, Tuple, Union
 
 from pursue_gen.tga.network import Edge
 
@@ -68,3 +68,7 @@ class Strategy:
 
     blocks: Tuple[Block, ...]
     counter: bool = False
+
+
+ZoneKey = Tuple[int, Union[str, int], int]
+"""Where a zone stands in a strategy: number of the block, "wait" or number of the command in it, number of the zone."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 from fractions import Fraction
-from typing import Deque, Dict, Iterable, List, Set, Tuple
+from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.dbm import INF, LE_ZERO, add, constant, is_strict
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
-from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 
 Matrix = Tuple[int, ...]
 
@@ -19,6 +19,21 @@ def to_strategy(game: Game, blocks: Iterable[RawBlock]) -> Strategy:
     Each zone's matrix must be canonical (raw bounds, scaled as the game's; INF or more: no bound).
     """
     return Strategy(tuple(_block(game, block) for block in blocks))
+
+
+def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict[ZoneKey, int]:
+    """The ranks of the pieces by where `to_strategy` puts them: (block, "wait" or number of the command, zone)."""
+    found: Dict[ZoneKey, int] = {}
+    for b, ((_, _, pieces), numbers) in enumerate(zip(blocks, ranks)):
+        counts: Dict[Action, int] = {}
+        actions: List[Action] = []
+        for (_, action), rank in zip(pieces, numbers):
+            key = None if action is None else tuple(action)
+            if key is not None and key not in counts:
+                actions.append(key)
+            zone = counts[key] = counts.get(key, -1) + 1
+            found[(b, "wait" if key is None else actions.index(key), zone)] = rank
+    return found
 
 
 def followed(game: Game, blocks: Iterable[RawBlock]) -> Tuple[RawBlock, ...]:
