@@ -1,7 +1,7 @@
 """What the rest of a play can still see of each clock, so that the checker may forget the rest.
 
-Per discrete state the largest constant that a clock is compared with before its next reset (Behrmann, Bouyer, Fleury and
-Larsen, TACAS 2003, with the strategy's zones as further guards). Forgetting only adds points: a strategy that passes passes.
+Per discrete state the largest constant that a clock is compared with before its next reset (Behrmann, Bouyer, Fleury
+and Larsen, TACAS 2003, with the strategy's zones as further guards). Forgetting only adds points: it hides no failure.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ Described = Tuple[Sequence[JointMove], Iterable[Tuple[int, int]]]
 
 
 class Horizon:
-    """The largest constants of every discrete state that the moves lead to; `described` None: the play is over there."""
+    """The largest constants of every discrete state that the moves lead to from the initial one.
+
+    `late` is how long after its decision a command may take effect, in scaled time units.
+    """
 
     def __init__(self, arena: Arena, described: Callable[[State], Described], late: int) -> None:
         self._arena, self._late = arena, late

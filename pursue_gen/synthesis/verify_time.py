@@ -7,11 +7,12 @@ instant, but it acts before time leaves that zone.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.synthesis.dbm import INF, Dbm, is_strict, raw
 from pursue_gen.synthesis.strategy import ZoneKey
 from pursue_gen.synthesis.verify_moves import JointMove, Situation
+
 
 class Broken(Exception):
     """The strategy fails here: why, and the points at which it does."""
@@ -74,8 +75,8 @@ class Rules:
     """How the strategy is played.
 
     `reaction`: the longest delay of a command, in scaled time units. `prompt`: the controller acts before anything that
-    the environment could not do when the command's zone was entered becomes possible to it; otherwise it may act anywhere
-    in the zone on its way. `must_end`: waiting has to come to an end (reach), otherwise it may last for ever (safety).
+    the environment could not do when the command's zone was entered becomes possible; otherwise it may act anywhere in
+    the zone on its way. `must_end`: waiting has to come to an end (reach), otherwise it may last for ever (safety).
     """
 
     reaction: int
@@ -84,7 +85,7 @@ class Rules:
 
 
 def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) -> Passage:
-    """Follow the strategy from the points of the entry until a discrete step. Raises Broken where the strategy fails."""
+    """Follow the strategy from the points of the entry until a discrete step. Raises Broken where it fails."""
     assert situation.invariant is not None
     acts = advice.acts
     decided: Dict[int, List[Dbm]] = {}
@@ -123,7 +124,7 @@ def _wait(
         common = future.intersect(act.zone)
         if common is not None:
             met.append((k, common))
-    # The piece shares no point with a command's zone, so what is at or after a point of one on the way is not waited in.
+    # The piece shares no point with a command's zone, so time meets no such point before one that is waited in.
     waited: List[Dbm] = [future]
     for _, common in met:
         waited = without(waited, common.up())
@@ -150,10 +151,10 @@ def _wait(
 
 
 def _promptly(zone: Dbm, situation: Situation) -> List[Dbm]:
-    """Of a command's zone, which lines of time enter from outside: the first instants, where they exist; where the zone is
-    open, the way up to the next time at which a clock reaches a constant or a new move becomes possible to the environment.
+    """Of a command's zone, which time enters from outside: the first instants, where there are such; where the zone is
+    open, the way up to the next time at which a clock reaches a constant or the environment gets a new move.
 
-    All instants so soon after the entry are equivalent to an ideal player, who may choose among them.
+    To an ideal player all instants so soon after the entry are equivalent. Each way into the zone keeps some of them.
     """
     result: List[Dbm] = []
     for start in _entrances(zone):
@@ -311,6 +312,19 @@ def merged(zones: Sequence[Dbm]) -> List[Dbm]:
             k = 0
         result.append(zone)
     return result
+
+
+def with_neighbours(zone: Dbm, others: Sequence[Dbm]) -> Dbm:
+    """The zone together with those of the others with which it makes one zone."""
+    grown = True
+    while grown:
+        grown = False
+        for other in others:
+            if not zone.includes(other) and not zone.has_gap(other):
+                hull = zone.hull(other)
+                if all(other.includes(part) for part in hull.minus(zone)):
+                    zone, grown = hull, True
+    return zone
 
 
 def _future_in(zone: Dbm, within: Dbm) -> Dbm:
