@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import List
 
 import pytest
 
@@ -29,3 +30,10 @@ def thesis_scenario(number: str) -> Path:
     """The path of one of the thesis's five scenarios: '1' to '4' or 'catch_the_thief'."""
     stem = number if number.startswith("catch") else f"scenario_{number}"
     return ROOT / "scenarios" / "thesis" / f"{stem}.pur"
+
+
+def pytest_collection_modifyitems(items: List[pytest.Item]) -> None:
+    """Tests on ROS share what they build, and need a processor for themselves: they run one after the other."""
+    for item in items:
+        if item.get_closest_marker("ros"):
+            item.add_marker(pytest.mark.xdist_group("ros"))

@@ -1,0 +1,268 @@
+"""How the project gets onto a machine: the wheel, the catkin package, and `./run` with its set-up."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from typing import Dict, Sequence
+from xml.etree import ElementTree
+
+import pytest
+
+from pursue_gen import __version__
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
+STAMP = ROOT / ".venv" / ".pursue_gen_stamp"
+CATKIN = shutil.which("catkin_make", path="/usr/bin:/opt/ros/noetic/bin")
+
+
+def source(folder: Path) -> Path:
+    """A copy of what the project is built from, so that the checkout stays as it is."""
+    built = shutil.ignore_patterns("*.so", "__pycache__", "*.egg-info", ".*cache")
+    for name in ("pursue_gen", "templates", "bin", "scenarios", "docs"):
+        shutil.copytree(str(ROOT / name), str(folder / name), ignore=built)
+    for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "package.xml", "CMakeLists.txt"):
+        shutil.copy(str(ROOT / name), str(folder / name))
+    shutil.copy(str(ROOT / "run"), str(folder / "run"))
+    return folder
+
+
+def called(
+    words: Sequence[object], folder: Path, environment: Dict[str, str], seconds: float = 300
+) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(
+        [str(word) for word in words],
+        cwd=str(folder),
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=seconds,
+        check=False,
+    )
+
+
+def tree(folder: Path) -> Dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+# The wheel ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The project as a wheel that was built without a compiler, unpacked."""
+    pytest.importorskip("setuptools")
+    pytest.importorskip("wheel")
+    folder = source(tmp_path_factory.mktemp("source"))
+    no_compiler = {**os.environ, "CC": "false", "CXX": "false"}
+    words = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index", "-w", "out", "."]
+    done = called(words, folder, no_compiler)
+    assert done.returncode == 0, done.stdout
+    (wheel,) = (folder / "out").glob("pursue_gen-*.whl")
+    place = tmp_path_factory.mktemp("unpacked")
+    with zipfile.ZipFile(str(wheel)) as archive:
+        archive.extractall(str(place))
+    return place
+
+
+def test_the_wheel_carries_all_templates_and_the_grammar(unpacked: Path) -> None:
+    def files(folder: Path) -> Dict[str, bytes]:
+        return {path: content for path, content in tree(folder).items() if "cache" not in path}
+
+    assert files(unpacked / "pursue_gen" / "_templates") == files(ROOT / "templates" / "catkin")
+    assert (unpacked / "pursue_gen" / "language" / "grammar.lark").is_file()
+
+
+def test_installed_without_a_compiler_it_writes_the_same_workspace(unpacked: Path, tmp_path: Path) -> None:
+    installed = {**os.environ, "PYTHONPATH": str(unpacked)}
+    words = [sys.executable, "-m", "pursue_gen", "ws", SCENARIO, "-o"]
+    done = called([*words, tmp_path / "installed"], tmp_path, installed)
+    assert done.returncode == 0, done.stdout
+    assert "python engine" in done.stdout
+    checkout = {**os.environ, "PYTHONPATH": str(ROOT)}
+    assert called([*words, tmp_path / "checkout"], tmp_path, checkout).returncode == 0
+    installed_files, files = tree(tmp_path / "installed"), tree(tmp_path / "checkout")
+    assert sorted(installed_files) == sorted(files)
+    assert installed_files["src/observer/scripts/observer"] == files["src/observer/scripts/observer"]
+
+
+# The catkin package ---------------------------------------------------------------------------------------------------
+
+
+def test_the_manifest_agrees_with_the_package() -> None:
+    manifest = ElementTree.parse(str(ROOT / "package.xml")).getroot()
+    assert manifest.findtext("version") == __version__
+    assert manifest.findtext("license") == "BSD-3-Clause"
+
+
+def test_the_manifest_is_valid_for_catkin() -> None:
+    parser = pytest.importorskip("catkin_pkg.package")
+    assert parser.parse_package(str(ROOT)).name == "pursue_gen"
+
+
+def test_the_program_names_what_is_missing() -> None:
+    nothing = ["env", "-i", sys.executable, "-I", "-S", ROOT / "bin" / "pursue-gen", "--version"]
+    done = called(nothing, ROOT, dict(os.environ))
+    assert done.returncode == 6
+    assert "python3-lark" in done.stdout and "Traceback" not in done.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
+def test_it_is_a_catkin_package(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    place = tmp_path / "src" / "pursue_gen"
+    place.mkdir()
+    source(place)
+    environment = clean_environment(tmp_path)
+    make = "catkin_make install -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON"
+    done = called(["bash", "-c", make], tmp_path, environment)
+    assert done.returncode == 0, done.stdout
+    for space in ("devel", "install"):
+        command = f"source {space}/setup.bash && rosrun pursue_gen pursue-gen"
+        told = called(["bash", "-c", f"{command} --version"], tmp_path, environment)
+        assert told.stdout == f"pursue-gen {__version__}\n"
+        folder = tmp_path / f"from_{space}"
+        told = called(["bash", "-c", f"{command} ws {SCENARIO} -o {folder}"], tmp_path, environment)
+        assert told.returncode == 0, told.stdout
+        if space == "devel":  # the installed one has to do without the source
+            shutil.rmtree(str(place))
+    assert tree(tmp_path / "from_devel") == tree(tmp_path / "from_install")
+
+
+def clean_environment(home: Path) -> Dict[str, str]:
+    """What a fresh terminal has, with the Python that runs the tests."""
+    path = f"{Path(sys.executable).parent}:/opt/ros/noetic/bin:/usr/local/bin:/usr/bin:/bin"
+    return {"PATH": path, "HOME": str(home), "LANG": "C.UTF-8"}
+
+
+# ./run ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A folder for PATH with the tools of every machine, but neither Python nor apt."""
+    folder = tmp_path / "machine"
+    folder.mkdir()
+    for name in ("bash", "dirname", "env", "uname", "sed", "grep", "mktemp", "tail", "rm", "cat", "sha256sum"):
+        found = shutil.which(name)
+        assert found is not None
+        (folder / name).symlink_to(found)
+    fake(folder, "getent", "exit 0")
+    return folder
+
+
+def fake(folder: Path, name: str, does: str) -> None:
+    program = folder / name
+    program.write_text(f"#!/bin/bash\n{does}\n", encoding="utf-8")
+    program.chmod(0o755)
+
+
+def run(machine: Path, *words: str) -> "subprocess.CompletedProcess[str]":
+    place = machine.parent / "project"
+    if not place.is_dir():
+        source(place_of(place))
+    return called(["bash", place / "run", *words], machine.parent, {"PATH": str(machine), "HOME": str(machine.parent)})
+
+
+def place_of(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
+
+
+def test_run_explains_itself() -> None:
+    for words in ([], ["help"], ["--help"]):
+        told = called([ROOT / "run", *words], ROOT, dict(os.environ))
+        assert told.returncode == 0
+        assert "./run mission" in told.stdout and "./run test" in told.stdout
+
+
+def test_run_does_not_know_other_words() -> None:
+    told = called([ROOT / "run", "away"], ROOT, dict(os.environ))
+    assert told.returncode == 2
+    assert "There is no ./run away" in told.stdout
+
+
+def test_without_apt_there_is_a_list_of_what_to_install(machine: Path) -> None:
+    told = run(machine, "setup")
+    assert told.returncode == 6
+    for word in ("catkin_make", "C++17", "rostest", "venv", "transitions"):
+        assert word in told.stdout
+
+
+def test_only_what_is_missing_is_installed_and_a_failure_is_told(machine: Path) -> None:
+    fake(machine, "dpkg-query", "echo 'ii  make'; echo 'ii  python3-rospy:all'; echo 'rc  g++'")
+    refuse = "case $* in *install*) echo E: no such package; exit 100; esac"
+    fake(machine, "apt-get", f'echo "$@" >>{machine}/told; {refuse}')
+    fake(machine, "sudo", '"$@"')
+    told = run(machine, "setup")
+    assert told.returncode == 6
+    assert "E: no such package" in told.stdout and "could not install" in told.stdout
+    update, install = (machine / "told").read_text(encoding="utf-8").splitlines()
+    assert update.endswith("update")
+    wanted = install.split()
+    assert "--no-install-recommends" in wanted and "g++" in wanted
+    assert "make" not in wanted and "python3-rospy" not in wanted
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root needs no sudo")
+def test_without_root_and_sudo_the_command_is_shown(machine: Path) -> None:
+    fake(machine, "dpkg-query", "exit 0")
+    fake(machine, "apt-get", "exit 1")
+    told = run(machine, "setup")
+    assert told.returncode == 6
+    assert "apt-get install --no-install-recommends" in told.stdout
+
+
+def test_a_machine_that_does_not_know_its_name_is_told_what_to_do(machine: Path) -> None:
+    fake(machine, "getent", '[[ $2 == localhost ]]')
+    for name in ("tee", "sudo"):  # /etc/hosts cannot be written
+        fake(machine, name, "exit 1")
+    told = run(machine, "setup")
+    assert told.returncode == 6
+    assert "/etc/hosts" in told.stdout and "127.0.0.1" in told.stdout
+
+
+@pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
+def test_set_up_again_does_nothing(tmp_path: Path) -> None:
+    for name in ("apt-get", "sudo", "pip"):
+        fake(tmp_path, name, f"touch {tmp_path}/{name}.used")
+    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    before = STAMP.stat().st_mtime_ns
+    told = called([ROOT / "run", "setup"], ROOT, environment)
+    assert told.returncode == 0, told.stdout
+    assert told.stdout == "Everything is set up. Next: ./run mission\n"
+    assert STAMP.stat().st_mtime_ns == before
+    assert not list(tmp_path.glob("*.used"))
+
+
+@pytest.mark.ros
+@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
+@pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
+def test_another_python_first_on_path_does_not_matter(tmp_path: Path) -> None:
+    for name in ("python", "python3", "cmake"):
+        fake(tmp_path, name, "echo a foreign program >&2; exit 1")
+    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    environment.update(PYTHONPATH=str(tmp_path), PYTHONHOME=str(tmp_path), CMAKE_PREFIX_PATH=str(tmp_path))
+    words = [ROOT / "run", "mission", SCENARIO, "-o", tmp_path / "ws", "use_sim_time:=true"]
+    told = called(words, tmp_path, environment)
+    assert told.returncode == 0, told.stdout
+    assert "The goal is reached" in told.stdout
+    assert "foreign" not in told.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
+@pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
+def test_a_mission_that_fails_fails_the_command(tmp_path: Path) -> None:
+    words = [ROOT / "run", "mission", SCENARIO, "-o", tmp_path / "ws", "mode:=trace", f"trace:={tmp_path}/none.yaml"]
+    told = called(words, tmp_path, dict(os.environ))
+    assert told.returncode == 1, told.stdout
+    assert "did not reach its goal" in told.stdout and "cannot read the trace" in told.stdout
