@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import List
+from typing import Any
 
 import pytest
 
@@ -32,8 +32,16 @@ def thesis_scenario(number: str) -> Path:
     return ROOT / "scenarios" / "thesis" / f"{stem}.pur"
 
 
-def pytest_collection_modifyitems(items: List[pytest.Item]) -> None:
-    """Tests on ROS share what they build, and need a processor for themselves: they run one after the other."""
-    for item in items:
-        if item.get_closest_marker("ros"):
-            item.add_marker(pytest.mark.xdist_group("ros"))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """With pytest-xdist all tests on ROS run on one worker: they share what they build, and answers must not be late.
+
+    (`--dist loadgroup` is made for this, but does not group anything with pytest 9.)
+    """
+    from xdist.scheduler import LoadScopeScheduling
+
+    class OneWorkerForRos(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return "ros" if "tests/ros/" in nodeid else nodeid
+
+    return OneWorkerForRos(config, log)

@@ -18,7 +18,6 @@ from pursue_gen import __version__
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
 STAMP = ROOT / ".venv" / ".pursue_gen_stamp"
-CATKIN = shutil.which("catkin_make", path="/usr/bin:/opt/ros/noetic/bin")
 
 
 def source(folder: Path) -> Path:
@@ -112,35 +111,6 @@ def test_the_program_names_what_is_missing() -> None:
     done = called(nothing, ROOT, dict(os.environ))
     assert done.returncode == 6
     assert "python3-lark" in done.stdout and "Traceback" not in done.stdout
-
-
-@pytest.mark.ros
-@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
-def test_it_is_a_catkin_package(tmp_path: Path) -> None:
-    (tmp_path / "src").mkdir()
-    place = tmp_path / "src" / "pursue_gen"
-    place.mkdir()
-    source(place)
-    environment = clean_environment(tmp_path)
-    make = "catkin_make install -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON"
-    done = called(["bash", "-c", make], tmp_path, environment)
-    assert done.returncode == 0, done.stdout
-    for space in ("devel", "install"):
-        command = f"source {space}/setup.bash && rosrun pursue_gen pursue-gen"
-        told = called(["bash", "-c", f"{command} --version"], tmp_path, environment)
-        assert told.stdout == f"pursue-gen {__version__}\n"
-        folder = tmp_path / f"from_{space}"
-        told = called(["bash", "-c", f"{command} ws {SCENARIO} -o {folder}"], tmp_path, environment)
-        assert told.returncode == 0, told.stdout
-        if space == "devel":  # the installed one has to do without the source
-            shutil.rmtree(str(place))
-    assert tree(tmp_path / "from_devel") == tree(tmp_path / "from_install")
-
-
-def clean_environment(home: Path) -> Dict[str, str]:
-    """What a fresh terminal has, with the Python that runs the tests."""
-    path = f"{Path(sys.executable).parent}:/opt/ros/noetic/bin:/usr/local/bin:/usr/bin:/bin"
-    return {"PATH": path, "HOME": str(home), "LANG": "C.UTF-8"}
 
 
 # ./run ----------------------------------------------------------------------------------------------------------------
@@ -241,28 +211,3 @@ def test_set_up_again_does_nothing(tmp_path: Path) -> None:
     assert told.stdout == "Everything is set up. Next: ./run mission\n"
     assert STAMP.stat().st_mtime_ns == before
     assert not list(tmp_path.glob("*.used"))
-
-
-@pytest.mark.ros
-@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
-@pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
-def test_another_python_first_on_path_does_not_matter(tmp_path: Path) -> None:
-    for name in ("python", "python3", "cmake"):
-        fake(tmp_path, name, "echo a foreign program >&2; exit 1")
-    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    environment.update(PYTHONPATH=str(tmp_path), PYTHONHOME=str(tmp_path), CMAKE_PREFIX_PATH=str(tmp_path))
-    words = [ROOT / "run", "mission", SCENARIO, "-o", tmp_path / "ws", "use_sim_time:=true"]
-    told = called(words, tmp_path, environment)
-    assert told.returncode == 0, told.stdout
-    assert "The goal is reached" in told.stdout
-    assert "foreign" not in told.stdout
-
-
-@pytest.mark.ros
-@pytest.mark.skipif(CATKIN is None, reason="catkin is not here")
-@pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
-def test_a_mission_that_fails_fails_the_command(tmp_path: Path) -> None:
-    words = [ROOT / "run", "mission", SCENARIO, "-o", tmp_path / "ws", "mode:=trace", f"trace:={tmp_path}/none.yaml"]
-    told = called(words, tmp_path, dict(os.environ))
-    assert told.returncode == 1, told.stdout
-    assert "did not reach its goal" in told.stdout and "cannot read the trace" in told.stdout

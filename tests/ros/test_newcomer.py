@@ -1,0 +1,83 @@
+"""What a newcomer does first: `./run mission`, and the checkout in a catkin workspace."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from ros_world import Ros
+
+from pursue_gen import __version__
+
+pytestmark = pytest.mark.ros
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
+STAMP = ROOT / ".venv" / ".pursue_gen_stamp"
+needs_setup = pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
+
+
+def test_the_checkout_is_a_catkin_package(ros: Ros, tmp_path: Path) -> None:
+    place = tmp_path / "src" / "pursue_gen"
+    ignored = shutil.ignore_patterns("*.so", "__pycache__", ".*cache")
+    for name in ("pursue_gen", "templates", "bin"):
+        shutil.copytree(str(ROOT / name), str(place / name), ignore=ignored)
+    for name in ("package.xml", "CMakeLists.txt"):
+        shutil.copy(str(ROOT / name), str(place / name))
+    done = ros.run("catkin_make install -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON", tmp_path, 300)
+    assert done.returncode == 0, done.stdout
+    for space in ("devel", "install"):
+        program = f"source {space}/setup.bash && rosrun pursue_gen pursue-gen"
+        assert ros.run(f"{program} --version", tmp_path, 60).stdout == f"pursue-gen {__version__}\n"
+        told = ros.run(f"{program} ws {SCENARIO} -o from_{space}", tmp_path, 60)
+        assert told.returncode == 0, told.stdout
+        shutil.rmtree(str(place), ignore_errors=True)  # the installed one has to do without the source
+    same = ros.run("diff -r from_devel from_install", tmp_path, 60)
+    assert same.returncode == 0, same.stdout
+
+
+def run_mission(*words: object, **environment: str) -> "subprocess.CompletedProcess[str]":
+    """`./run mission` as a person calls it."""
+    return subprocess.run(
+        [str(ROOT / "run"), "mission", *map(str, words)],
+        env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+@needs_setup
+def test_a_mission_with_another_python_first_on_path(ros: Ros, tmp_path: Path) -> None:
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    for name in ("python", "python3", "cmake"):
+        program = foreign / name
+        program.write_text("#!/bin/bash\necho a foreign program >&2\nexit 1\n", encoding="utf-8")
+        program.chmod(0o755)
+    told = run_mission(
+        SCENARIO,
+        "-o",
+        tmp_path / "ws",
+        "use_sim_time:=true",
+        PATH=f"{foreign}:{os.environ['PATH']}",
+        PYTHONPATH=str(foreign),
+        PYTHONHOME=str(foreign),
+        CMAKE_PREFIX_PATH=str(foreign),
+    )
+    assert told.returncode == 0, told.stdout
+    assert "The goal is reached" in told.stdout
+    assert "foreign" not in told.stdout.replace(str(foreign), "")
+
+
+@needs_setup
+def test_a_mission_that_fails_fails_the_command(ros: Ros, tmp_path: Path) -> None:
+    told = run_mission(SCENARIO, "-o", tmp_path / "ws", "mode:=trace", f"trace:={tmp_path}/none.yaml")
+    assert told.returncode == 1, told.stdout
+    assert "did not reach its goal" in told.stdout and "cannot read the trace" in told.stdout
