@@ -24,7 +24,7 @@ from pursue_gen.tga.network import Network, Objective
 LIMIT = 300_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000."""
 
-_EXACT = 10_000
+_EXACT = 3_000
 """So many states, and four times those of the first look, the second look with exact clock values may take."""
 
 _OFTEN = 8
@@ -201,8 +201,8 @@ def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int) -> Repo
 def _comes_back(on_path: Sequence[Dbm], zone: Dbm, horizon: Horizon, state: State) -> bool:
     """True if a play may go round for ever.
 
-    With exact zones each point of the zone has a predecessor in the earlier one on the path. When the zone includes that
-    one, there are plays of every length, and so endless ones; likewise if it changes only in what no guard sees.
+    With exact zones each point of the zone has a predecessor in the earlier one on the path. When the zone includes
+    that one, there are plays of every length, and so endless ones; likewise if it changes only in what no guard sees.
     """
     if any(zone.includes(other) for other in on_path):
         return True

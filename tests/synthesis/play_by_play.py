@@ -1,0 +1,201 @@
+"""Strategies played point by point on a grid of quarter time units: whatever breaks here is a real play that breaks.
+
+A deliberately naive reading of the same rules, to hold against the symbolic checker.
+"""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+from typing import Dict, Iterator, List, Optional, Tuple
+
+from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
+
+STEP = Fraction(1, 4)
+
+Values = Dict[str, Fraction]
+Entry = Tuple[Tuple[str, ...], Tuple[int, ...], Tuple[Fraction, ...]]
+
+
+class Broken(Exception):
+    """The play fails, and why."""
+
+
+def holds(bound: ClockBound, clocks: Values) -> bool:
+    """The bound, looked up."""
+    x, c = clocks[bound.clock], bound.bound
+    return {"<": x < c, "<=": x <= c, ">": x > c, ">=": x >= c, "==": x == c}[bound.op]
+
+
+def inside(zone: Zone, clocks: Values) -> bool:
+    """True if the valuation is in the strategy's zone."""
+    for c in zone:
+        difference = (clocks[c.left] if c.left else 0) - (clocks[c.right] if c.right else 0)
+        if difference > c.bound or (c.strict and difference == c.bound):
+            return False
+    return True
+
+
+class PlayByPlay:
+    """All plays of a strategy whose delays are multiples of a quarter, as far as `entries` reach."""
+
+    def __init__(self, network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> None:
+        self.network, self.objective, self.reaction = network, objective, reaction
+        self.blocks: Dict[Tuple[Tuple[str, ...], Tuple[int, ...]], Block] = {
+            (tuple(p for _, p in b.state.locations), tuple(v for _, v in b.state.values)): b for b in strategy.blocks
+        }
+        bounds = [b.bound for a in network.automata for e in a.edges for b in e.guard.clocks]
+        bounds += [b.bound for a in network.automata for loc in a.locations for b in loc.invariant]
+        self.longest = 2 * max([3, *bounds]) + 3
+
+    def broken(self, entries: int = 400) -> Optional[str]:
+        """Why a play fails, or None if none is found within so many entries."""
+        start: Entry = (
+            tuple(a.initial for a in self.network.automata),
+            tuple(v for _, v in self.network.variables),
+            tuple(Fraction(0) for _ in self.network.clocks),
+        )
+        after: Dict[Entry, List[Entry]] = {}
+        pending = [start]
+        try:
+            while pending and len(after) < entries:
+                entry = pending.pop(0)
+                if entry not in after:
+                    after[entry] = sorted(set(self.followers(entry)))
+                    pending += after[entry]
+        except Broken as broken:
+            return str(broken)
+        return "cycle" if self.objective.kind is not Kind.SAFETY and _has_cycle(after) else None
+
+    def at(self, entry: Entry, place: Optional[Tuple[str, str]]) -> bool:
+        """True if the automaton is at that location."""
+        return place is not None and place in zip((a.name for a in self.network.automata), entry[0])
+
+    def followers(self, entry: Entry) -> Iterator[Entry]:
+        """The entries after one step. Raises Broken."""
+        if self.objective.kind is not Kind.SAFETY and self.at(entry, self.objective.goal):
+            return
+        if self.objective.kind is not Kind.REACH and self.at(entry, self.objective.bad):
+            raise Broken("bad")
+        block = self.blocks.get(entry[:2])
+        if block is None:
+            raise Broken("no block")
+        entered: Optional[List[Tuple[Command, Zone]]] = None
+        for n in itertools.count():
+            now = self.later(entry, n * STEP)
+            clocks = self.clocks(now)
+            ready = [(c, z) for c in block.commands for z in c.zones if inside(z, clocks)]
+            waits = any(inside(z, clocks) for z in block.wait)
+            entered = ready if entered is None and ready else entered
+            if entered is not None:
+                entered = [one for one in entered if one in ready]
+                if not entered:
+                    return
+            yield from self.environment(now)
+            if entered is not None:
+                if waits:
+                    raise Broken("contradiction")
+                for command, _ in entered:
+                    yield from self.act(now, command)
+            elif not waits:
+                raise Broken("not covered")
+            if not self.lasts(self.later(now, STEP)):
+                if entered is None:
+                    self.check_obliged(now)
+                return
+            if n * STEP > self.longest:
+                waits_on = entered is None and not self.invariants(now)
+                if waits_on and self.objective.kind is not Kind.SAFETY:
+                    raise Broken("waits for ever")
+                return
+
+    def act(self, now: Entry, command: Command) -> Iterator[Entry]:
+        """The command takes effect at any time within the reaction."""
+        for n in range(int(self.reaction / STEP) + 1):
+            then = self.later(now, n * STEP)
+            moves = [m for m in self.moves(then) if {(x.automaton, x.edge) for x in command.moves} == set(m)]
+            if not moves or not all(edge.controllable for _, edge in moves[0]):
+                raise Broken("not enabled")
+            yield self.after(then, moves[0])
+            yield from self.environment(then)
+
+    def environment(self, now: Entry) -> Iterator[Entry]:
+        """What the environment may make of this point."""
+        for move in self.moves(now):
+            if not all(edge.controllable for _, edge in move):
+                yield self.after(now, move)
+
+    def moves(self, now: Entry) -> Iterator[Tuple[Tuple[str, Edge], ...]]:
+        """The joint moves that are enabled at a point."""
+        values = dict(zip((name for name, _ in self.network.variables), now[1]))
+
+        def open_to(edge: Edge) -> bool:
+            fits = all(any(values[t.variable] == t.value for t in clause) for clause in edge.guard.integers)
+            return fits and all(holds(b, self.clocks(now)) for b in edge.guard.clocks)
+
+        for automaton, place in zip(self.network.automata, now[0]):
+            for edge in automaton.edges:
+                if edge.source != place or (edge.sync and not edge.sync.sends) or not open_to(edge):
+                    continue
+                choices = []
+                for other, there in zip(self.network.automata, now[0]):
+                    hears = [
+                        (other.name, e)
+                        for e in other.edges
+                        if other is not automaton and edge.sync and e.source == there and e.sync and open_to(e)
+                        and not e.sync.sends and e.sync.channel == edge.sync.channel
+                    ]
+                    choices += [hears] if hears else []
+                for receivers in itertools.product(*choices):
+                    move = ((automaton.name, edge), *receivers)
+                    if self.lasts(now) and self.lasts(self.after(now, move)):
+                        yield move
+
+    def after(self, now: Entry, move: Tuple[Tuple[str, Edge], ...]) -> Entry:
+        """The point after a joint move."""
+        places = dict(zip((a.name for a in self.network.automata), now[0]))
+        values = dict(zip((name for name, _ in self.network.variables), now[1]))
+        clocks = self.clocks(now)
+        for name, edge in move:
+            places[name] = edge.target
+            values.update(edge.assign)
+            clocks.update({x: Fraction(0) for x in edge.resets})
+        return tuple(places.values()), tuple(values.values()), tuple(clocks.values())
+
+    def clocks(self, now: Entry) -> Values:
+        """The clocks by name."""
+        return dict(zip(self.network.clocks, now[2]))
+
+    @staticmethod
+    def later(now: Entry, time: Fraction) -> Entry:
+        """The point after that time."""
+        return now[0], now[1], tuple(x + time for x in now[2])
+
+    def invariants(self, now: Entry) -> List[Tuple[Automaton, ClockBound]]:
+        """The bounds of the locations."""
+        here: List[Tuple[Automaton, Location]] = [
+            (a, loc) for a, place in zip(self.network.automata, now[0]) for loc in a.locations if loc.name == place
+        ]
+        return [(a, b) for a, loc in here for b in loc.invariant]
+
+    def lasts(self, now: Entry) -> bool:
+        """True within all invariants."""
+        return all(holds(b, self.clocks(now)) for _, b in self.invariants(now))
+
+    def check_obliged(self, now: Entry) -> None:
+        """At the end of an invariant while waiting. Raises Broken unless someone is obliged to move."""
+        at_bound = {a.name for a, b in self.invariants(now) if self.clocks(now)[b.clock] == b.bound}
+        able = {m[0][0] for m in self.moves(now) if not all(edge.controllable for _, edge in m)}
+        if not (at_bound <= able if self.objective.kind is Kind.SAFETY else at_bound & able):
+            raise Broken("time is blocked")
+
+
+def _has_cycle(after: Dict[Entry, List[Entry]]) -> bool:
+    """True if entries follow each other round; the rest, which nothing cyclic follows, is taken away first."""
+    left = {entry: {e for e in following if e in after} for entry, following in after.items()}
+    while True:
+        ends = {entry for entry, following in left.items() if not following & left.keys()}
+        if not ends:
+            return bool(left)
+        left = {entry: following for entry, following in left.items() if entry not in ends}
