@@ -44,6 +44,12 @@ class Engine(str, Enum):
     PYTHON = "python"
 
 
+class Solver(str, Enum):
+    """Whose solver, instead of the built-in one."""
+
+    VERIFYTGA = "verifytga"
+
+
 _SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 _GAME = "SCENARIO | TGA.xml TCTL.q"
 _ENDS = typer.Option(
@@ -64,6 +70,10 @@ _REACH_OBJ = typer.Option(
     metavar="dedicated|all|ROBOT",
     help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
 )
+_SOLVER = typer.Option(
+    None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
+)
+_VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
 _JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 
 app = typer.Typer(
@@ -166,8 +176,10 @@ def solve(
     ),
     engine: Optional[Engine] = typer.Option(None, help="The solver; native where it was built, by default."),
     limit: float = typer.Option(
-        0.0, metavar="SECONDS", min=0.0, help="Give up after so long (native engine; 0: never)."
+        0.0, metavar="SECONDS", min=0.0, help="Give up after so long (native engine and verifytga; 0: never)."
     ),
+    solver: Optional[Solver] = _SOLVER,
+    verifytga: Optional[Path] = _VERIFYTGA,
     as_json_: bool = typer.Option(
         False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
     ),
@@ -179,14 +191,15 @@ def solve(
     """
     from pursue_gen.files import write_texts
     from pursue_gen.game_options import asked_rules, verdict_json, verdict_text
-    from pursue_gen.pipeline import solution
+    from pursue_gen.solvers import keep_counter, solved
     from pursue_gen.synthesis.plan import write_plan
 
     network, objective = _game(files)
     rules = asked_rules(network, _value(ends), reaction, slack)
     try:
-        won = solution(network, objective, rules, limit, _value(engine))
+        won = solved(network, objective, rules, _value(solver), verifytga, limit, _value(engine))
     except PursueError as problem:
+        keep_counter(problem, network, objective, output)
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps(verdict_json(rules, None, problem.diagnostics), indent=1))
         raise
@@ -274,6 +287,8 @@ def ws(
     plan: Optional[Path] = typer.Option(
         None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving."
     ),
+    solver: Optional[Solver] = _SOLVER,
+    verifytga: Optional[Path] = _VERIFYTGA,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
     """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
@@ -281,7 +296,7 @@ def ws(
     The folder is printed on stdout.
     """
     from pursue_gen.game_options import asked_rules, games_to_try, verdict_text
-    from pursue_gen.pipeline import solution
+    from pursue_gen.solvers import solved
     from pursue_gen.workspace import Options, write_workspace
 
     read = _scenario(scenario)
@@ -291,8 +306,10 @@ def ws(
         tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     if plan is None:
         rules = asked_rules(network, _value(ends), reaction, slack)
-        won = solution(network, objective, rules)
+        won = solved(network, objective, rules, _value(solver), verifytga)
         tell(verdict_text(rules, won))
+    elif solver is not None or verifytga is not None:
+        raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")
     else:
         won = _planned(plan, network, objective, games_to_try(network, _value(ends), reaction, slack))
     options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction)

@@ -63,9 +63,12 @@ def verdict_text(rules: Rules, won: Solution) -> str:
 
 
 def verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagnostic]) -> Dict[str, Any]:
-    """The outcome as a JSON object; `won` is null where a limit was hit, `findings` say why it is not true."""
+    """The outcome as a JSON object; `findings` say why `won` is not true.
+
+    It is null where nobody knows: a limit was hit, or the strategy of another tool does not win.
+    """
     result: Dict[str, Any] = {
-        "won": True if won else None if any(f.code == "SYN010" for f in findings) else False,
+        "won": True if won else None if any(f.code in ("SYN010", "SYN035") for f in findings) else False,
         "ends": rules.ends,
         "reaction": str(rules.reaction),
         "slack": dict(rules.slack),

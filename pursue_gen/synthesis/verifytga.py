@@ -246,7 +246,7 @@ def _strategy(run: Run, network: Network) -> Strategy:
         raise ToolError([error("SYN034", message, hint=hint), *problem.diagnostics], _UNUSABLE, run) from None
     if strategy.counter:
         message = f"{TOOL} finds that the objective cannot be met"
-        hint = f"{_LOST}; its counter-strategy, of {len(strategy.blocks)} states, stands in its output"
+        hint = f"{_LOST}; solve -o FILE keeps its counter-strategy ({len(strategy.blocks)} states) beside that file"
         raise ToolError([error("SYN033", message, hint=hint + _particulars(run))], _NOT_MET, run, strategy)
     return strategy
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import fcntl
+import json
 import shlex
 import signal
+import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -26,6 +28,8 @@ from pursue_gen.synthesis.verifytga import ToolError, find_verifytga, run_verify
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal import read_network, read_query
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 CALLED = """poi "desk"
 poi "shelf"
@@ -404,3 +408,70 @@ def test_recorded_losses_keep_their_counter_strategy(
     problem = failure(recorded, printing(tool, tmp_path, plan.read_bytes()))
     assert problem.exit_status == 4
     assert problem.counter is not None and len(problem.counter.blocks) == blocks
+
+
+# On the command line -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def called(tmp_path: Path) -> Path:
+    file = tmp_path / "called.pur"
+    file.write_text(CALLED, encoding="utf-8")
+    return file
+
+
+def pursue(*arguments: object) -> "subprocess.CompletedProcess[str]":
+    words = [sys.executable, "-m", "pursue_gen", *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, encoding="utf-8", cwd=ROOT, check=False)
+
+
+IDEAL = ("--ends", "controllable", "--reaction", "0")
+
+
+def test_solve_prints_the_tools_proven_plan(game: Game, strategy: Strategy, tool: Tool, called: Path) -> None:
+    program = tool(replaying(winning(game, strategy)))
+    done = pursue("solve", called, *IDEAL, "--solver", "verifytga", "--verifytga", program)
+    assert done.returncode == 0, done.stderr
+    assert read_plan(done.stdout, game[0], "plan").blocks
+    assert "verifytga engine" in done.stderr and "proven" in done.stderr
+
+
+def test_ws_takes_the_tools_strategy(game: Game, strategy: Strategy, tool: Tool, called: Path, tmp_path: Path) -> None:
+    program = tool(replaying(winning(game, strategy)))
+    options = ("-o", tmp_path / "ws", *IDEAL, "--solver", "verifytga", "--verifytga", program)
+    assert pursue("ws", called, *options).returncode == 0
+    assert (tmp_path / "ws" / "src" / "observer").is_dir()
+
+
+def test_the_counter_strategy_stands_beside_the_plan(
+    game: Game, strategy: Strategy, tool: Tool, called: Path, tmp_path: Path
+) -> None:
+    program = tool(replaying(losing(game, strategy)))
+    options = ("-o", tmp_path / "plan.txt", *IDEAL, "--solver", "verifytga", "--verifytga", program)
+    done = pursue("solve", called, *options)
+    assert (done.returncode, done.stdout) == (4, "")
+    assert not (tmp_path / "plan.txt").exists()
+    kept = read_plan((tmp_path / "plan_failed.txt").read_text(encoding="utf-8"), game[0], "kept")
+    assert kept == replace(strategy, counter=True)
+
+
+def test_a_strategy_that_does_not_win_is_no_verdict(game: Game, strategy: Strategy, tool: Tool, called: Path) -> None:
+    program = tool(replaying(winning(game, strategy)))
+    options = ("--ends", "controllable", "--solver", "verifytga", "--verifytga", program)
+    done = pursue("solve", called, "--json", *options)
+    assert done.returncode == 4
+    assert json.loads(done.stdout)["won"] is None
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("solve", "--verifytga", "verifytga"),
+        ("solve", "--solver", "verifytga", "--engine", "native"),
+        ("ws", "--solver", "verifytga", "--plan", "plan.txt"),
+    ],
+)
+def test_options_that_contradict_each_other_are_told(called: Path, options: Tuple[str, ...]) -> None:
+    done = pursue(options[0], called, *options[1:])
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--solver" in done.stderr

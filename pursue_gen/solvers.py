@@ -1,0 +1,51 @@
+"""Whose solver finds the strategy: the built-in one, or UPPAAL-TIGA's where somebody has it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+from pursue_gen.console import tell, usage
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.files import write_texts
+from pursue_gen.pipeline import Rules, Solution, played, solution
+from pursue_gen.synthesis.plan import write_plan
+from pursue_gen.synthesis.verifytga import ToolError, run_verifytga
+from pursue_gen.tga.network import Network, Objective
+
+
+def solved(
+    network: Network,
+    objective: Objective,
+    rules: Rules,
+    solver: Optional[str] = None,
+    verifytga: Optional[Path] = None,
+    seconds: float = 0.0,
+    engine: Optional[str] = None,
+) -> Solution:
+    """The proven solution, of the built-in solver (None) or of "verifytga", which is at the path `verifytga`.
+
+    The rest is as for `pipeline.solution`, and it raises as that and `run_verifytga` do; with exit status 2 for options
+    that contradict each other.
+    """
+    if solver is None:
+        if verifytga is not None:
+            raise usage("--verifytga names a program that is not used", "add --solver verifytga")
+        return solution(network, objective, rules, seconds, engine)
+    if engine is not None:
+        raise usage(f"{engine} is an engine of the built-in solver", "use --engine or --solver verifytga, not both")
+    game = played(network, rules)
+    verdict = run_verifytga(game, objective, verifytga, seconds, rules.reaction)
+    assert verdict.strategy is not None  # it raises where there is none
+    return Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats)
+
+
+def keep_counter(problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]) -> None:
+    """Writes the counter-strategy of verifytga, where there is one, beside the file that is named for the plan."""
+    if not isinstance(problem, ToolError) or problem.counter is None or plan is None:
+        return
+    if plan.exists() and not plan.is_file():  # nothing stands beside /dev/null
+        return
+    kept = plan.with_name(f"{plan.stem}_failed{plan.suffix}")
+    write_texts({kept: write_plan(problem.counter, network, objective)})
+    tell(f"The counter-strategy is in {kept}")
