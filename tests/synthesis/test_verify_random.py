@@ -103,7 +103,8 @@ def test_a_strategy_with_a_losing_play_is_never_passed(
     data: st.DataObject, network: Network, kind: Kind, reaction: Fraction
 ) -> None:
     objective = _objective(kind)
-    strategy = solve(network, objective, reaction).strategy
+    verdict = solve(network, objective, reaction)
+    strategy = verdict.strategy
     if strategy is None or not _all_keys(strategy):
         return
     report = verify(network, objective, strategy, reaction, prompt=False)
@@ -112,6 +113,7 @@ def test_a_strategy_with_a_losing_play_is_never_passed(
     changed = _changed(data.draw, strategy) if data.draw(st.booleans()) else pruned(strategy, report)
     if PlayByPlay(network, objective, changed, reaction).broken() is not None:
         assert not verify(network, objective, changed, reaction, prompt=False).ok
+        assert not verify(network, objective, changed, reaction, prompt=False, ranks=verdict.ranks or {}).ok
 
 
 @settings(max_examples=100, deadline=None)
