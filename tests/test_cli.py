@@ -518,3 +518,25 @@ def test_ws_of_a_lost_game_writes_nothing(tmp_path: Path) -> None:
     assert told.status == 4
     assert "only the ideal game" in told.err
     assert not (tmp_path / "ws").exists()
+
+
+# What the README tells a newcomer ------------------------------------------------------------------------------------
+
+
+def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
+    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```")
+    (text,) = [block for block in blocks if block.startswith('\npoi "desk"')]
+    file = tmp_path / "library.pur"
+    file.write_text(text, encoding="utf-8")
+    assert pursue("check", file).err.startswith("1 file: 0 errors, 0 warnings")
+    assert pursue("solve", file).status == 0
+    file.write_text(text.replace("mobile 3", "mobile 1"), encoding="utf-8")
+    assert pursue("solve", file).status == 4
+
+
+def test_the_figures_of_the_readme_are_those_that_report_prints() -> None:
+    rows = [line.split("|")[2:5] for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines()]
+    told = [tuple(cell.strip() for cell in row) for row in rows if len(row) == 3]
+    for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief"):
+        for row in json.loads(pursue("report", THESIS / f"{name}.pur", "--json").out)["controllers"]:
+            assert (row["controller"], str(row["commands"]), str(row["lines"])) in told
