@@ -39,6 +39,7 @@ struct Node {
     std::vector<int> targets;      // node per move, -1: not followed
     std::vector<int> parents;
     Federation<N> set;             // reach: winning; safety: losing
+    Federation<N> rest;            // of the hull, what is not (yet) in the set
     std::vector<Action<N>> plan;   // reach: in the order in which the points were won
 };
 
@@ -150,6 +151,7 @@ class Arena {
                 const bool fresh = !target.reached;
                 target.hull = z;
                 target.reached = true;
+                refresh(target);
                 if (fresh) expand(t, game_.kind == Kind::safety);
                 else touched_.push_back(t);
                 if (fresh && nodes_[t].moves.empty()) wake(t);
@@ -158,11 +160,13 @@ class Arena {
         }
     }
 
+    static void refresh(Node<N>& n) { n.rest = reduced(minus(Federation<N>{n.hull}, n.set)); }
+
     // After a loss with few moves: states that are not won get all of theirs. False when all of them had them.
     bool open_lost() {
         const std::size_t count = nodes_.size();
         for (std::size_t k = 0; k < count; ++k)
-            if (nodes_[k].reached && !nodes_[k].full && !contains(nodes_[k].set, nodes_[k].hull))
+            if (nodes_[k].reached && !nodes_[k].full && !nodes_[k].rest.empty())
                 expand(static_cast<int>(k), true);
         const bool more = !touched_.empty();
         explore();

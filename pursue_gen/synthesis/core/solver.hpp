@@ -19,6 +19,7 @@ class Solver : public Arena<N> {
         n.reached = this->invariant(n.d, n.hull = origin<N>(game_.clocks));
         if (!n.reached) return false;
         this->elapse(n, n.hull);
+        this->refresh(n);
         this->expand(initial_, game_.kind == Kind::safety);
         this->explore();
         if (game_.kind == Kind::safety) return !fixpoint();
@@ -37,9 +38,12 @@ class Solver : public Arena<N> {
     using Arena<N>::check, Arena<N>::open_lost, Arena<N>::game_, Arena<N>::limits_, Arena<N>::planner_, Arena<N>::nodes_;
     using Arena<N>::waiting_, Arena<N>::initial_;
 
+    using Part = const Federation<N>& (*)(const Node<N>&);
+    static constexpr std::size_t MANY = 4;
+
     // --- discrete predecessors --------------------------------------------------------------------------------------
 
-    Federation<N> harm(const Node<N>& n, const std::function<Federation<N>(const Node<N>&)>& outside) const {
+    Federation<N> harm(const Node<N>& n, Part outside) const {
         Federation<N> out;
         for (std::size_t m = 0; m < n.moves.size(); ++m)
             if (!n.moves[m].controllable && n.targets[m] >= 0) {
@@ -50,8 +54,7 @@ class Solver : public Arena<N> {
     }
 
     // Per controllable move the points at which it may be commanded: right now and for the whole reaction delay.
-    std::vector<std::pair<int, Federation<N>>> commands(const Node<N>& n, const Federation<N>& harmful,
-                                                        const std::function<Federation<N>(const Node<N>&)>& inside) const {
+    std::vector<std::pair<int, Federation<N>>> commands(const Node<N>& n, const Federation<N>& harmful, Part inside) const {
         std::vector<std::pair<int, Federation<N>>> out;
         for (std::size_t m = 0; m < n.moves.size(); ++m) {
             if (!n.moves[m].controllable || n.targets[m] < 0) continue;
@@ -84,32 +87,41 @@ class Solver : public Arena<N> {
         return contains(nodes_[initial_].set, zero);
     }
 
-    static Federation<N> outside_of(const Node<N>& n) { return minus(Federation<N>{n.hull}, n.set); }
+    static const Federation<N>& inside_of(const Node<N>& n) { return n.set; }
+    static const Federation<N>& outside_of(const Node<N>& n) { return n.rest; }
 
+    // Adds to a state's set. A set in many zones is often the complement of a complement in fewer.
     bool grow(Node<N>& n, const Federation<N>& fresh) {
         append(n.set, fresh);
         n.set = reduced(n.set);
+        this->refresh(n);
+        if (n.set.size() > MANY) {
+            Federation<N> again = reduced(minus(Federation<N>{n.hull}, n.rest));
+            if (again.size() < n.set.size()) n.set = std::move(again);
+        }
+        return true;
+    }
+
+    bool fill(Node<N>& n) {
+        if (n.rest.empty()) return false;
+        n.set = {n.hull};
+        n.rest.clear();
         return true;
     }
 
     bool win_more(Node<N>& n) {
         if (lost(n.d)) return false;
-        if (won(n.d)) {
-            if (contains(n.set, n.hull)) return false;
-            n.set = {n.hull};
-            return true;
-        }
-        const Federation<N> missing = reduced(outside_of(n));
-        if (missing.empty()) return false;
+        if (won(n.d)) return fill(n);
+        if (n.rest.empty()) return false;
         const Federation<N> harmful = harm(n, outside_of);
-        const auto usable = commands(n, harmful, [](const Node<N>& t) { return t.set; });
+        const auto usable = commands(n, harmful, inside_of);
         Federation<N> good = n.set;
         for (const auto& [move, zones] : usable) append(good, zones);
         for (int a = 0; a < static_cast<int>(game_.automata.size()); ++a) {
             const Federation<N> bound = at_bound(n, a);
             if (!bound.empty()) append(good, minus(intersection(own_moves(n, a), bound), harmful));
         }
-        Federation<N> fresh = reduced(intersection(predt(good, harmful), missing));
+        Federation<N> fresh = reduced(intersection(predt(good, harmful), n.rest));
         if (fresh.empty()) return false;
         Federation<N> rest = fresh;
         for (const auto& [move, zones] : usable) {
@@ -136,7 +148,7 @@ class Solver : public Arena<N> {
 
     SafetyView look(const Node<N>& n, bool with_duty) const {
         SafetyView view;
-        view.harmful = harm(n, [](const Node<N>& t) { return t.set; });
+        view.harmful = harm(n, inside_of);
         view.usable = commands(n, view.harmful, outside_of);
         Federation<N> escapes;
         for (const auto& [move, zones] : view.usable) append(escapes, zones);
@@ -156,11 +168,7 @@ class Solver : public Arena<N> {
     }
 
     bool lose_more(Node<N>& n) {
-        if (lost(n.d)) {
-            if (contains(n.set, n.hull)) return false;
-            n.set = {n.hull};
-            return true;
-        }
+        if (lost(n.d)) return fill(n);
         const Federation<N> fresh = reduced(minus(look(n, false).losing, n.set));
         return !fresh.empty() && grow(n, fresh);
     }
@@ -169,7 +177,7 @@ class Solver : public Arena<N> {
     std::vector<Action<N>> safe_plan(const Node<N>& n) const {
         std::vector<Action<N>> out;
         if (lost(n.d)) return out;
-        Federation<N> safe = reduced(outside_of(n));
+        Federation<N> safe = n.rest;
         if (safe.empty()) return out;
         SafetyView view = look(n, true);
         const std::vector<int> liked = planner_.first_edges(n.d);
