@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -212,7 +213,7 @@ def test_check_finds_nothing_wrong_and_suggests_the_next_command() -> None:
     told = pursue("check", FIRST, THESIS / "scenario_2.pur")
     assert (told.status, told.out) == (0, "")
     assert "2 files: 0 errors, 0 warnings" in told.err
-    assert f"next: pursue-gen ws {FIRST}" in told.err
+    assert f"next: pursue-gen ws {shlex.quote(FIRST)}" in told.err
 
 
 def test_check_shows_the_place_of_every_error_in_every_file(tmp_path: Path) -> None:
@@ -284,7 +285,7 @@ def test_solve_prints_a_plan_and_talks_beside_it() -> None:
     assert told.status == 0
     assert read_plan(told.out, played(translate(load(FIRST)), Rules()), "plan").blocks
     assert "won: ends reported, reaction 0.1" in told.err
-    assert f"next: pursue-gen ws {FIRST}" in told.err
+    assert f"next: pursue-gen ws {shlex.quote(FIRST)}" in told.err
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])

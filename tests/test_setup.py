@@ -135,16 +135,11 @@ def fake(folder: Path, name: str, does: str) -> None:
     program.chmod(0o755)
 
 
-def run(machine: Path, *words: str) -> "subprocess.CompletedProcess[str]":
-    place = machine.parent / "project"
-    if not place.is_dir():
-        source(place_of(place))
+def run(machine: Path, *words: str, name: str = "project") -> "subprocess.CompletedProcess[str]":
+    place = machine.parent / name
+    place.mkdir()
+    source(place)
     return called(["bash", place / "run", *words], machine.parent, {"PATH": str(machine), "HOME": str(machine.parent)})
-
-
-def place_of(folder: Path) -> Path:
-    folder.mkdir()
-    return folder
 
 
 def test_run_explains_itself() -> None:
@@ -165,6 +160,12 @@ def test_without_apt_there_is_a_list_of_what_to_install(machine: Path) -> None:
     assert told.returncode == 6
     for word in ("catkin_make", "C++17", "rostest", "venv", "transitions"):
         assert word in told.stdout
+
+
+def test_a_place_that_catkin_cannot_work_in_is_told(machine: Path) -> None:
+    told = run(machine, "setup", name="my project")
+    assert told.returncode == 6
+    assert "without blanks" in told.stdout
 
 
 def test_only_what_is_missing_is_installed_and_a_failure_is_told(machine: Path) -> None:
