@@ -30,7 +30,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding. `code` is stable (PML001 …), `message` says what is wrong and what was expected, `hint` what to do."""
+    """One finding. `code` is stable (PML001 …), `message` what is wrong and was expected, `hint` what to do."""
 
     severity: Severity
     code: str

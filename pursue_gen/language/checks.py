@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
 from pursue_gen.language.behaviour import check_events, check_rules, component
@@ -36,12 +36,31 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings: List[Diagnostic] = list(reading.diagnostics)
     for part in (check_names, check_references, _numbers, _connections, _agents, _objectives, _order):
         findings += part(scenario)
-    if not any(f.code in ("PML103", "PML104", "PML110") for f in findings):  # the rest stands on names that are known
-        findings += check_events(scenario)
-        findings += check_rules(scenario)
+    codes = {f.code for f in findings}
+    if not codes & {"PML103", "PML104"}:  # the rest stands on names that mean one thing
+        doubtful = _doubtful(scenario) if "PML110" in codes else frozenset()
+        findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
+        if "PML110" not in codes:
+            findings += check_rules(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     return in_order(findings)
+
+
+def _doubtful(scenario: Scenario) -> FrozenSet[str]:
+    """The codes of findings that may be no more than the consequence of a name that is declared nowhere (a typo)."""
+    events, pois = {event.name for event in scenario.events}, {poi.name for poi in scenario.pois}
+    places = [name for way in scenario.connections for name in (way.a, way.b)]
+    places += [agent.location.name for agent in scenario.agents]
+    places += [event.location.name for event in scenario.events if event.location is not None]
+    codes: Set[str] = set()
+    if not all(ref.name in events for agent in scenario.agents for ref in agent.can_do):
+        codes |= {"PML150", "PML154"}
+    if not all(ref.name in events for agent in scenario.agents for ref in agent.reacts_to):
+        codes |= {"PML151", "PML154"}
+    if not pois.issuperset(places):
+        codes |= {"PML153", "PML154"}
+    return frozenset(codes)
 
 
 def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -10,7 +10,7 @@ from pursue_gen.diagnostics import Span
 
 @dataclass(frozen=True)
 class Pose:
-    """A pose in frame `map`: position in metres, orientation as a unit quaternion (x, y, z, w), as geometry_msgs has it."""
+    """A pose in frame `map`: position in metres, orientation as a unit quaternion, in the order of geometry_msgs."""
 
     x: float
     y: float

@@ -44,7 +44,8 @@ def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Outcome:
     except _core.LimitReached as limit:
         what = f"{seconds:g} seconds" if str(limit) == "seconds" else f"{states} discrete states"
         hint = "allow more, or make the scenario smaller: fewer agents, POIs or events"
-        raise PursueError([error("SYN010", f"no verdict within the limit of {what}", hint=hint)], exit_status=5) from None
+        finding = error("SYN010", f"no verdict within the limit of {what}", hint=hint)
+        raise PursueError([finding], exit_status=5) from None
     count = len(game.automata)
     blocks: List[RawBlock] = [
         (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))

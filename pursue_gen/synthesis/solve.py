@@ -30,8 +30,7 @@ class Stats:
 class Verdict:
     """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`).
 
-    `ranks` (where the engine knows them): for each zone of the strategy, (block, "wait" or command, zone), a number that
-    every step of a reach game lowers.
+    `ranks` (where the engine knows them): per zone of the strategy a number that every step of a reach game lowers.
     """
 
     won: bool

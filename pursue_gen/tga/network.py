@@ -87,7 +87,7 @@ class Automaton:
 
 @dataclass(frozen=True)
 class Network:
-    """Automata in system order; clocks, variables (with initial values) and broadcast channels in order of declaration."""
+    """Automata in system order; clocks, variables (with first values) and broadcast channels as declared."""
 
     clocks: Tuple[str, ...]
     variables: Tuple[Tuple[str, int], ...]

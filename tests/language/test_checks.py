@@ -155,3 +155,20 @@ def test_a_value_made_by_hand_is_checked_without_a_text() -> None:
     scenario = replace(parse(text(), "test.pur"), text="")
     assert check(scenario) == ()
     assert [finding.code for finding in check(replace(scenario, connections=()))] == ["PML154", "PML153"]
+
+
+WITH_UNKNOWN_PLACE = """poi "a"
+poi "b"
+event "meet" collaborative
+event "nobody"
+event "work" location b
+agent "bot" controllable mobile 1 location a can_do meet, work
+agent "man" mobile 2 location q
+reach_objective: do work
+"""
+
+
+def test_a_name_that_is_declared_nowhere_hides_no_other_mistake() -> None:
+    found = {(finding.code, finding.span.line) for finding in check(parse(WITH_UNKNOWN_PLACE, "x.pur")) if finding.span}
+    assert {("PML110", 7), ("PML151", 3), ("PML150", 4)} <= found
+    assert not any(code == "PML153" for code, _ in found), "where agents can get is not known"

@@ -1,4 +1,4 @@
-"""The UI as a program: help, wrong options, missing nodes, an end. With a roscore of its own, where ROS is installed."""
+"""The UI as a program: help, wrong options, missing nodes, an end; on a roscore of its own, where there is ROS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verdicts of the published scenarios and of the thesis's, in the ideal game and in the one that a robot can play."""
+"""Verdicts on the published scenarios and the thesis's, in the ideal game and in the one that a robot can play."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ def reference(folder: Path) -> Network:
 
 @pytest.mark.parametrize("name", REFERENCES)
 def test_network_is_the_reference_network(reference_dir: Path, name: str) -> None:
-    # Equal in everything, the order of declarations, automata, locations and edges included. One difference is allowed, and
-    # the reader makes it: a `states` automaton without edges (an older translator wrote one) is no automaton.
+    # Equal in everything, the order of declarations, automata, locations and edges included. One difference is allowed,
+    # and the reader makes it: a `states` automaton without edges (an older translator wrote one) is no automaton.
     # CT1's text lacks the `after` of its objective: its reference has `after 0`, which is what we take it for.
     folder = reference_dir / name
     assert translate(load(folder / "scenario.pur")) == reference(folder)
