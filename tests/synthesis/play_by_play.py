@@ -1,4 +1,4 @@
-"""Strategies played point by point on a grid of quarter time units: whatever breaks here is a real play that breaks.
+"""Strategies played point by point, with steps at quarter time units: whatever breaks here is a real play that breaks.
 
 A deliberately naive reading of the same rules, to hold against the symbolic checker.
 """
@@ -13,6 +13,9 @@ from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
 
 STEP = Fraction(1, 4)
+"""Steps are taken at multiples of this. Bounds are multiples too, so between two of them a zone holds all along or not
+at all, and one look halfway tells: a zone may lie between them, and a player who acts in it never sees the later one.
+"""
 
 Values = Dict[str, Fraction]
 Entry = Tuple[Tuple[str, ...], Tuple[int, ...], Tuple[Fraction, ...]]
@@ -83,7 +86,7 @@ class PlayByPlay:
             raise Broken("no block")
         entered: Optional[List[Tuple[Command, Zone]]] = None
         for n in itertools.count():
-            now = self.later(entry, n * STEP)
+            now, between = self.later(entry, n * STEP / 2), n % 2 == 1
             clocks = self.clocks(now)
             ready = [(c, z) for c in block.commands for z in c.zones if inside(z, clocks)]
             waits = any(inside(z, clocks) for z in block.wait)
@@ -92,19 +95,19 @@ class PlayByPlay:
                 entered = [one for one in entered if one in ready]
                 if not entered:
                     return
-            yield from self.environment(now)
+            yield from () if between else self.environment(now)
             if entered is not None:
                 if waits:
                     raise Broken("contradiction")
-                for command, _ in entered:
+                for command, _ in () if between else entered:
                     yield from self.act(now, command)
             elif not waits:
                 raise Broken("not covered")
-            if not self.lasts(self.later(now, STEP)):
+            if not self.lasts(self.later(now, STEP / 2)):
                 if entered is None:
                     self.check_obliged(now)
                 return
-            if n * STEP > self.longest:
+            if n * STEP / 2 > self.longest:
                 waits_on = entered is None and not self.invariants(now)
                 if waits_on and self.objective.kind is not Kind.SAFETY:
                     raise Broken("waits for ever")
