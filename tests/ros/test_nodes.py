@@ -43,7 +43,7 @@ def test_nodes_started_by_hand_reach_the_goal_and_end_with_status_0(
     workspace, source = sourced
     with ros.master() as there:
         ros.run("rosparam set /use_sim_time true", workspace, 30, **there)
-        clock = ros.start(f"{source}exec rosrun UI sim_clock _speed:=20", workspace, tmp_path / "clock", **there)
+        clock = ros.start(f"{source}exec rosrun UI sim_clock _speed:=10", workspace, tmp_path / "clock", **there)
         try:
             commands = {node: f"rosrun {node} {node}" for node in NODES}
             commands["simulator"] = "rosrun UI simulator"
@@ -76,7 +76,7 @@ def ended(
 def test_the_launch_file_plays_the_mission_and_ends(ros: Ros, sourced: Tuple[Path, str]) -> None:
     workspace, source = sourced
     with ros.master() as there:
-        command = f"{source}roslaunch scenario_1_bringup mission.launch use_sim_time:=true speed:=20"
+        command = f"{source}roslaunch scenario_1_bringup mission.launch use_sim_time:=true speed:=10"
         done = ros.run(command, workspace, 120, **there)
     assert "The goal is reached" in done.stdout, done.stdout
     assert "Traceback" not in done.stdout, done.stdout
