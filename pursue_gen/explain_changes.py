@@ -1,0 +1,347 @@
+"""What would change the verdict: one small change at a time, tried by solving again.
+
+A number is changed no further than it takes: the change that is told wins, and the next smaller one has been tried too
+and does not. (Where wins come and go along the way, a still smaller one may exist.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.explain_position import Clock
+from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
+from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
+
+_SHARE = 0.4
+"""The part of the time left that one attempt may take."""
+
+_PROBES = (11, 19, 31, 63, 127, 255)
+"""Where a search for a number that wins looks before it looks at the end of a long list: large numbers take longer."""
+
+_SLOWER = 32
+"""How many times slower an agent, or longer an event, is tried."""
+
+_FINEST = 1000
+"""The largest denominator of a reaction that the command line takes."""
+
+Variant = Tuple[Scenario, Rules]
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, distance,
+    rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` tells it; `next_lost`
+    is a smaller change, or what is now, that does not win: the next smaller one, where the change is known to be the
+    `least`.
+    """
+
+    what: str
+    name: str
+    before: str
+    after: str
+    sentence: str
+    span: Optional[Span] = None
+    next_lost: str = ""
+    least: bool = True
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Changes that win; what was tried to the utmost and does not; what was not decided in time.
+
+    `helpful`: strategies that win a changed game in which only numbers differ, those first that say most of the game
+    as it is.
+    """
+
+    changes: Tuple[Change, ...]
+    lost: Tuple[str, ...]
+    undecided: Tuple[str, ...]
+    helpful: Tuple[Strategy, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Knob:
+    """Something that can be changed, by the steps `values`: texts from the smallest change to the largest."""
+
+    what: str
+    name: str
+    label: str
+    before: str
+    values: Sequence[str]
+    make: Callable[[str], Variant]
+    say: Callable[[str], str]
+    span: Optional[Span] = None
+    helps: int = 0
+    """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
+
+
+def findings(scenario: Scenario, rules: Rules, seconds: float) -> Findings:
+    """Tries all that is small, for a scenario that is lost under these rules; takes about the time at most."""
+    clock = Clock(seconds)
+    knobs = list(_knobs(scenario, rules))
+    won: Dict[int, _Win] = {}
+    lost: Dict[int, str] = {}
+    undecided: Dict[int, str] = {}
+    # Long lists last: they make numbers larger, and larger games.
+    for k in sorted(range(len(knobs)), key=lambda k: (len(knobs[k].values) > _PROBES[0], k)):
+        knob = knobs[k]
+        if knob.what == "game" and any(knobs[n].what in ("ends", "reaction") for n in won):
+            continue
+        try:
+            win = _least(knob, clock)
+        except PursueError as problem:
+            if problem.exit_status == 5:
+                undecided[k] = knob.label
+            continue
+        if win is None:
+            lost[k] = knob.say(knob.values[-1])
+        else:
+            won[k] = win
+    helpful = sorted((k for k in won if knobs[k].helps), key=lambda k: (-knobs[k].helps, k))
+    return Findings(
+        tuple(_change(knobs[k], win) for k, win in sorted(won.items())),
+        tuple(text for _, text in sorted(lost.items())),
+        tuple(text for _, text in sorted(undecided.items())),
+        tuple(won[k].strategy for k in helpful),
+    )
+
+
+@dataclass(frozen=True)
+class _Win:
+    """The value at `high` wins, the one at `low` does not (-1: it is the one that the scenario has)."""
+
+    low: int
+    high: int
+    strategy: Strategy
+
+
+def _least(knob: _Knob, clock: Clock) -> Optional[_Win]:
+    """The smallest change that wins, between two that have been tried; None: the largest does not.
+
+    When the time is up, the smallest that is known. Raises PursueError (exit status 5) when none is.
+    """
+    last = len(knob.values) - 1
+    win: Optional[_Win] = None
+    low = -1
+    for probe in [p for p in _PROBES if p < last] + [last] if last >= _PROBES[0] else [last]:
+        strategy = _strategy(knob.make(knob.values[probe]), clock)
+        if strategy is not None:
+            win = _Win(low, probe, strategy)
+            break
+        low = probe
+    while win is not None and win.high - win.low > 1:
+        middle = (win.low + win.high) // 2
+        try:
+            strategy = _strategy(knob.make(knob.values[middle]), clock)
+        except PursueError as problem:
+            if problem.exit_status != 5:
+                raise
+            break
+        win = replace(win, low=middle) if strategy is None else _Win(win.low, middle, strategy)
+    return win
+
+
+def _change(knob: _Knob, win: _Win) -> Change:
+    value, next_lost = knob.values[win.high], knob.values[win.low] if win.low >= 0 else knob.before
+    least = win.high - win.low == 1
+    return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
+
+
+def _strategy(variant: Variant, clock: Clock) -> Optional[Strategy]:
+    """A strategy that wins the changed game, None where it is lost. Raises PursueError (status 5: not decided)."""
+    scenario, rules = variant
+    network = played(translate(scenario), rules)
+    return clock.verdict(network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
+
+
+# What can be changed --------------------------------------------------------------------------------------------------
+
+
+def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
+    """In the order in which they are worth knowing (and the quick ones first)."""
+    yield from _rules_knobs(scenario, rules)
+    yield from _objective_knobs(scenario, rules)
+    for agent in scenario.agents:
+        yield from _agent_knobs(scenario, rules, agent)
+    for event in scenario.events:
+        yield from _duration_knobs(scenario, rules, event)
+    for connection in scenario.connections:
+        yield from _distance_knobs(scenario, rules, connection)
+    yield from _order_knobs(scenario, rules)
+    for agent in scenario.agents:
+        yield from _control_knobs(scenario, rules, agent)
+
+
+def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
+    ideal = rules.ends == CONTROLLABLE
+    if rules.ends == REPORTED:
+        yield _Knob(
+            "ends", "", "ends chosen by the plan", REPORTED, (CONTROLLABLE,),
+            lambda value: (scenario, replace(rules, ends=CONTROLLABLE, slack={})),
+            lambda value: "ends chosen by the plan instead of reported by the robots (--ends controllable)",
+            helps=4,
+        )
+    if rules.reaction > 0:
+        yield _Knob(
+            "reaction", "", "a shorter reaction", _decimal(rules.reaction), _reactions(rules.reaction),
+            lambda value: (scenario, replace(rules, reaction=Fraction(value))),
+            lambda value: f"a reaction of {_decimal(Fraction(value))} instead of {_decimal(rules.reaction)} time units",
+            helps=5,
+        )
+    for agent, late in rules.slack.items():
+        yield _slack_knob(scenario, rules, agent, late)
+    if rules.reaction > 0 and not ideal:
+        yield _Knob(
+            "game", "", "the ideal game", "", ("ideal",), lambda value: (scenario, IDEAL),
+            lambda value: "the ideal game, which no real robot can play (--ends controllable --reaction 0)",
+            helps=3,
+        )
+
+
+def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> _Knob:
+    def make(k: int) -> Variant:
+        return scenario, replace(rules, slack={**rules.slack, agent: k})
+
+    def say(k: int) -> str:
+        return f"{agent} late by at most {k} instead of {late}"
+
+    return _number("slack", agent, f"{agent} less late", late, range(late - 1, -1, -1), make, say, None, 5)
+
+
+def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
+    safety, reach = scenario.safety, scenario.reach
+    if isinstance(safety, Respond):
+        respond = safety
+        deadline = safety.deadline
+        furthest = deadline + max(deadline, 2 * _all_time(scenario))
+        yield _number(
+            "deadline", safety.response.name, "a later deadline", deadline, range(deadline + 1, furthest + 1),
+            lambda k: (replace(scenario, safety=replace(respond, deadline=k)), rules),
+            lambda k: f"a deadline of {k} instead of {deadline} for {respond.response.name}", safety.span, 1,
+        )
+    if reach is not None and reach.after > 0:
+        goal = reach
+        yield _number(
+            "after", reach.event.name, f"an earlier {reach.event.name}", reach.after, range(reach.after - 1, -1, -1),
+            lambda k: (replace(scenario, reach=replace(goal, after=k)), rules),
+            lambda k: f"{goal.event.name} after {k} instead of {goal.after}", reach.span, 1,
+        )
+
+
+def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
+    pace = agent.mobile
+    if pace is None or not scenario.connections:
+        return
+
+    def make(k: int) -> Variant:
+        changed = tuple(replace(a, mobile=k) if a.name == agent.name else a for a in scenario.agents)
+        return replace(scenario, agents=changed), rules
+
+    def say(k: int) -> str:
+        return f"a {word} {agent.name}, mobile {k} instead of {pace}"
+
+    word = "faster" if agent.controllable else "slower"
+    values = range(pace - 1, 0, -1) if agent.controllable else range(pace + 1, pace * _SLOWER + 1)
+    if values:
+        yield _number("agent", agent.name, f"a {word} {agent.name}", pace, values, make, say, agent.span, 2)
+
+
+def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
+    duration = event.duration
+    if duration is None:
+        return
+
+    def make(k: int) -> Variant:
+        changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
+        return replace(scenario, events=changed), rules
+
+    def say(k: int) -> str:
+        return f"{event.name} lasting {k} instead of {duration}"
+
+    if duration > 1:
+        values = range(duration - 1, 0, -1)
+        yield _number("duration", event.name, f"a shorter {event.name}", duration, values, make, say, event.span, 2)
+    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+    if doers and not any(agent.controllable for agent in doers):
+        longer = range(duration + 1, max(duration * 2, 2 * _all_time(scenario)) + 1)
+        yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
+
+
+def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[_Knob]:
+    ends = f"{connection.a} and {connection.b}"
+
+    def make(k: int) -> Variant:
+        changed = tuple(replace(c, distance=k) if c == connection else c for c in scenario.connections)
+        return replace(scenario, connections=changed), rules
+
+    def say(k: int) -> str:
+        return f"{ends} at distance {k} instead of {connection.distance}"
+
+    if connection.distance > 1:
+        values = range(connection.distance - 1, 0, -1)
+        label = f"a shorter way between {ends}"
+        yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
+
+
+def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
+    for rule in scenario.rules:
+        fewer = replace(scenario, rules=tuple(r for r in scenario.rules if r != rule))
+        yield _switch("rule", rule.name, f"without rule {rule.name}", rule.name, (fewer, rules), rule.span)
+    for need in scenario.dependencies:
+        freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
+        text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
+        label = f"without stateDependency {text}"
+        yield _switch("dependency", need.event.name, label, text, (freer, rules), need.span, 1)
+
+
+def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
+    if not agent.controllable and (agent.can_do or agent.mobile is not None):
+        ally = replace(agent, human=True, controllable=True)
+        changed = replace(scenario, agents=tuple(ally if a.name == agent.name else a for a in scenario.agents))
+        label = f"{agent.name} following instructions (human controllable)"
+        yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
+
+
+def _switch(
+    what: str, name: str, label: str, before: str, variant: Variant, span: Optional[Span], helps: int = 0
+) -> _Knob:
+    return _Knob(what, name, label, before, ("",), lambda _: variant, lambda _: label, span, helps)
+
+
+def _number(
+    what: str,
+    name: str,
+    label: str,
+    before: int,
+    values: Sequence[int],
+    make: Callable[[int], Variant],
+    say: Callable[[int], str],
+    span: Optional[Span],
+    helps: int,
+) -> _Knob:
+    texts = tuple(str(k) for k in values)
+    return _Knob(
+        what, name, label, str(before), texts, lambda text: make(int(text)), lambda text: say(int(text)), span, helps
+    )
+
+
+def _reactions(reaction: Fraction) -> Tuple[str, ...]:
+    """Nine tenths of it, eight tenths, … and none; none alone where the tenths would be too fine to ask for."""
+    tenths = [reaction * k / 10 for k in range(9, -1, -1)]
+    return tuple(str(tenth) for tenth in tenths if tenth.denominator <= _FINEST)
+
+
+def _all_time(scenario: Scenario) -> int:
+    """More than it takes to do everything once and to go each way in both directions, waiting included."""
+    slowest = max((agent.mobile or 0 for agent in scenario.agents), default=0)
+    working = sum((event.duration or 0) + 2 for event in scenario.events)
+    return working + sum(2 * (way.distance * slowest + 2) for way in scenario.connections)
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):g}"

@@ -1,0 +1,285 @@
+"""A counter-play: one play in which the environment keeps the controller from its objective, whatever it tries.
+
+The controller plays as `explain_policy` has it; the environment answers with a move, a moment, or a lateness that
+leaves a lost position behind. That each position is lost is asked of the solver, so from any of them the environment
+can go on, whatever the controller does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.explain_policy import COARSE, Choice, Controller, Window, longest, moments, window
+from pursue_gen.explain_position import Clock, Oracle, Position
+from pursue_gen.synthesis.dbm import constant
+from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
+
+_MOST_STEPS = 60
+_FINE = Fraction(1, 1000)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A joint move, `at` in time units since the start; `edges` are indices into the game's, the owner's first."""
+
+    at: Fraction
+    owner: int
+    edges: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Play:
+    """Steps from the start, and how they end at the time `at`.
+
+    Every position on the way is lost. `end` is "bad" (what is to be avoided has happened with the last step),
+    "overdue" (time cannot go on: the automata `overdue` have to move and cannot), "idle" (nobody has to do anything any
+    more), "again" (all are as they were at the time `since`) or "open" (cut off). `position` is the last one.
+    """
+
+    game: Game
+    steps: Tuple[Step, ...]
+    end: str
+    at: Fraction
+    position: Position
+    overdue: Tuple[int, ...] = ()
+    since: Fraction = Fraction(0)
+
+
+def counter_play(
+    network: Network, objective: Objective, reaction: Fraction, seconds: float, helpful: Sequence[Strategy] = ()
+) -> Play:
+    """A play that shows why a lost game is lost; the network is that of the game as it is played.
+
+    `helpful` are strategies for games that differ in numbers only, for the controller to go by. Raises PursueError with
+    exit status 5 if the play is not found within the time.
+    """
+    clock = Clock(seconds)
+    spared = _spared(network, objective, reaction, clock)
+    return _Player(network, spared, objective, reaction, clock, helpful).play()
+
+
+def _spared(network: Network, objective: Objective, reaction: Fraction, clock: Clock) -> Network:
+    """The network without what the environment can do without, so that the play has less of what does not matter.
+
+    It only loses moves that it need not make (no invariant drives them), so what is lost there is lost in the whole.
+    """
+    for automaton in network.automata:
+        bounded = {place.name for place in automaton.locations if place.invariant}
+        sent = [e for e in automaton.edges if e.sync is not None and e.sync.sends]
+        free = [e for e in sent if not e.controllable and e.source not in bounded]
+        starts = [e for e in free if e.target.startswith("going_")]
+        groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
+        for group in groups:
+            fewer = _without(network, automaton.name, group)
+            if group and not clock.verdict(fewer, objective, reaction).won:
+                network = fewer
+    return network
+
+
+def _without(network: Network, name: str, edges: Sequence[Edge]) -> Network:
+    automata = (
+        replace(a, edges=tuple(e for e in a.edges if e not in edges)) if a.name == name else a for a in network.automata
+    )
+    return replace(network, automata=tuple(automata))
+
+
+class _Player:
+    def __init__(
+        self,
+        whole: Network,
+        spared: Network,
+        objective: Objective,
+        reaction: Fraction,
+        clock: Clock,
+        helpful: Sequence[Strategy],
+    ) -> None:
+        self._game = game = compile_game(whole, objective)
+        self._reaction = reaction
+        self._oracle = Oracle(spared, objective, reaction, clock)
+        self._controller = Controller(game, helpful)
+        self._kept = _kept(whole, spared)
+        self._robots = {edge.automaton for edge in game.edges if edge.controllable}
+        self._horizon: Optional[int] = None
+        self._now = Fraction(0)
+        self._met: Dict[Position, Fraction] = {}
+        self._been: Set[State] = set()
+
+    def play(self) -> Play:
+        """The play from the start."""
+        here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
+        if self._game.kind is Kind.SAFETY:
+            self._horizon = self._least_horizon(here)
+        steps: List[Step] = []
+        while len(steps) < _MOST_STEPS:
+            if self._is_broken(here):
+                return self._end("bad", steps, here)
+            same = self._oracle.same(here)
+            if self._horizon is None and same in self._met:
+                return replace(self._end("again", steps, here), since=self._met[same])
+            self._met[same] = self._now
+            self._been.add(here.state)
+            try:
+                choice = self._next(here)
+            except PursueError:  # no time is left: what has been played holds
+                break
+            if choice is None:
+                return self._finish(steps, here)
+            move, delay = choice
+            self._now += delay
+            steps.append(Step(self._now, move.owner, move.edges))
+            here = _after(here, move, delay)
+        return self._end("open", steps, here)
+
+    def _finish(self, steps: Sequence[Step], here: Position) -> Play:
+        room = longest(self._game, here)
+        if room is None:
+            return self._end("idle" if self._horizon is None else "open", steps, here)
+        overdue = self._overdue(here, room)
+        if not overdue:
+            return self._end("open", steps, here)
+        self._now += room
+        there = Position(here.state, tuple(value + room for value in here.clocks))
+        return replace(self._end("overdue", steps, there), overdue=overdue)
+
+    def _end(self, end: str, steps: Sequence[Step], here: Position) -> Play:
+        return Play(self._game, tuple(steps), end, self._now, here)
+
+    def _least_horizon(self, start: Position) -> int:
+        """About the least time in which the environment can do its work, so that the play makes for its end."""
+        safe, lost = 0, 8
+        while not self._oracle.lost(start, Fraction(0), lost):
+            safe, lost = lost, 2 * lost
+        while lost - safe > max(1, lost // 12):
+            middle = (safe + lost) // 2
+            if self._oracle.lost(start, Fraction(0), middle):
+                lost = middle
+            else:
+                safe = middle
+        return lost + 1
+
+    # One step ---------------------------------------------------------------------------------------------------------
+
+    def _next(self, here: Position) -> Optional[Choice]:
+        """What happens next; None: time just passes, for ever or until something is overdue."""
+        moves = list(joint_moves(self._game, here.state))
+        mine = [move for move in moves if move.controllable]
+        theirs = [
+            (move, window(self._game, here, move))
+            for move in moves
+            if not move.controllable and all(k in self._kept for k in move.edges)
+        ]
+        decision = self._controller.decide(here, mine) or self._last_resort(here, mine)
+        if decision is not None:
+            answer = self._answer(here, theirs, *decision)
+            if answer is not None:
+                return answer
+        return self._unhurried(here, theirs)
+
+    def _last_resort(self, here: Position, mine: Sequence[JointMove]) -> Optional[Choice]:
+        """A move at the last moment of an automaton that is overdue then."""
+        room = longest(self._game, here)
+        if room is None:
+            return None
+        late = [(move, room) for move in mine if move.owner in self._overdue(here, room)]
+        late = [pair for pair in late if window(self._game, here, pair[0]).holds(room)]
+        return next((pair for pair in late if not is_bad(self._game, pair[0].target)), None)
+
+    def _answer(
+        self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], move: JointMove, delay: Fraction
+    ) -> Optional[Choice]:
+        """The controller has decided for a move: it takes effect, at once or late, or the environment is faster."""
+        open_ = window(self._game, here, move)
+        for late in (Fraction(0), self._reaction):
+            if open_.holds(delay + late) and self._leaves_lost(here, move, delay + late):
+                return move, delay + late
+        for grain in (COARSE, _FINE):
+            limit = delay + self._reaction
+            for moment in sorted({delay, limit, Fraction(0), *moments(theirs, grain)}):
+                found = self._at(here, theirs, moment) if moment <= limit else None
+                if found is not None:
+                    return found
+        return None
+
+    def _unhurried(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+        """The controller waits: the environment does what it must, else nothing if that is enough, else something."""
+        room = longest(self._game, here)
+        driven = [pair for pair in theirs if self._is_driven(here, pair[0])]
+        for delay, move in sorted(self._preferred(driven), key=lambda pair: pair[0]):
+            if self._leaves_lost(here, move, delay):
+                return move, delay
+        if self._horizon is None if room is None else bool(self._overdue(here, room)):
+            return None
+        for grain in (COARSE, _FINE):
+            for moment in sorted({Fraction(0), *moments(theirs, grain)}):
+                found = self._at(here, theirs, moment)
+                if found is not None:
+                    return found
+        return None
+
+    def _preferred(self, driven: Sequence[Tuple[JointMove, Window]]) -> Iterator[Tuple[Fraction, JointMove]]:
+        """Robots end as late as they may, others as soon as they can."""
+        for move, open_ in driven:
+            late = open_.latest() if move.owner in self._robots else None
+            delay = open_.earliest() if late is None else late
+            if delay is not None:
+                yield delay, move
+
+    def _is_driven(self, here: Position, move: JointMove) -> bool:
+        return bool(self._game.automata[move.owner].invariants[here.state.locations[move.owner]]) and is_end(
+            self._game.origins[move.edges[0]]
+        )
+
+    def _at(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], delay: Fraction) -> Optional[Choice]:
+        # What is new first, and nothing that takes no time and leads nowhere.
+        for move, open_ in sorted(theirs, key=lambda pair: pair[0].target in self._been):
+            if not open_.holds(delay):
+                continue
+            same = self._oracle.same(_after(here, move, delay))
+            if self._met.get(same) != self._now + delay and self._leaves_lost(here, move, delay):
+                return move, delay
+        return None
+
+    def _leaves_lost(self, here: Position, move: JointMove, delay: Fraction) -> bool:
+        after, at = _after(here, move, delay), self._now + delay
+        if self._is_broken(after):
+            return True
+        # Past the horizon the environment can still win ties, and would put off its work for ever.
+        return (self._horizon is None or at <= self._horizon) and self._oracle.lost(after, at, self._horizon)
+
+    def _is_broken(self, here: Position) -> bool:
+        return is_bad(self._game, here.state) and not is_goal(self._game, here.state)
+
+    def _overdue(self, here: Position, room: Fraction) -> Tuple[int, ...]:
+        """The automata at their bounds after that time that the environment cannot move: the controller is obliged.
+
+        (Where something is to be reached, only if the environment cannot move any other one at its bound either.)
+        """
+        at_bound = tuple(
+            k
+            for k, automaton in enumerate(self._game.automata)
+            for i, bound in automaton.invariants[here.state.locations[k]]
+            if constant(bound) == here.clocks[i - 1] + room
+        )
+        moves = (move for move in joint_moves(self._game, here.state) if not move.controllable)
+        able = {move.owner for move in moves if window(self._game, here, move).holds(room)}
+        if self._horizon is None and able & set(at_bound):
+            return ()
+        return tuple(k for k in at_bound if k not in able)
+
+
+def _after(here: Position, move: JointMove, delay: Fraction) -> Position:
+    clocks = [value + delay for value in here.clocks]
+    for clock in move.resets:
+        clocks[clock - 1] = Fraction(0)
+    return Position(move.target, tuple(clocks))
+
+
+def _kept(whole: Network, spared: Network) -> FrozenSet[int]:
+    """The game's indices of the edges that are in both."""
+    pairs = [(automaton, edge) for automaton in whole.automata for edge in automaton.edges]
+    return frozenset(k for k, (a, edge) in enumerate(pairs) if edge in spared.automaton(a.name).edges)

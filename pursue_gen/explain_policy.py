@@ -1,0 +1,200 @@
+"""What the controller does in a counter-play: as well as it can be expected to play a game that it cannot win.
+
+It follows, in turn, strategies that win nearly the same game (see `explain_changes`), as long as they know a position;
+where none does, the first step of a relaxed plan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tuple
+
+from pursue_gen.explain_position import Position
+from pursue_gen.synthesis.dbm import constant, is_strict
+from pursue_gen.synthesis.directed import RelaxedPlanner
+from pursue_gen.synthesis.game import Game, JointMove, State, invariant
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
+from pursue_gen.tga.network import Edge
+
+Choice = Tuple[JointMove, Fraction]
+"""A move and after what delay it is decided."""
+
+_Key = Tuple[str, str, str, str]
+
+COARSE = Fraction(1, 10)
+"""How long after a moment that is just too early: soon enough for most plays, and short to write."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """Delays: from `low` (not itself if `low_open`) to `high` (not itself if `high_open`; None: for ever)."""
+
+    low: Fraction = Fraction(0)
+    low_open: bool = False
+    high: Optional[Fraction] = None
+    high_open: bool = False
+
+    def at_least(self, low: Fraction, strict: bool) -> Window:
+        """The delays of the window from there on."""
+        if low > self.low or (low == self.low and strict):
+            return replace(self, low=low, low_open=strict)
+        return self
+
+    def at_most(self, high: Fraction, strict: bool) -> Window:
+        """The delays of the window up to there."""
+        if self.high is None or high < self.high or (high == self.high and strict):
+            return replace(self, high=high, high_open=strict)
+        return self
+
+    def holds(self, delay: Fraction) -> bool:
+        """True if the delay is in the window."""
+        if delay < self.low or (delay == self.low and self.low_open):
+            return False
+        return self.high is None or delay < self.high or (delay == self.high and not self.high_open)
+
+    def earliest(self, grain: Fraction = COARSE) -> Optional[Fraction]:
+        """The first moment, or where there is none one soon after the beginning; None: the window is empty."""
+        if not self.low_open and self.holds(self.low):
+            return self.low
+        if self.holds(self.low + grain):
+            return self.low + grain
+        if self.high is None or self.high <= self.low:
+            return None
+        return (self.low + self.high) / 2 if self.high_open else self.high
+
+    def latest(self) -> Optional[Fraction]:
+        """The last moment; None where there is none."""
+        return self.high if self.high is not None and self.holds(self.high) else None
+
+
+def longest(game: Game, here: Position) -> Optional[Fraction]:
+    """How long time may pass in a position; None: for ever."""
+    rooms = [constant(bound) - here.clocks[i - 1] for i, _, bound in invariant(game, here.state)]
+    return min(rooms) if rooms else None
+
+
+def window(game: Game, here: Position, move: JointMove) -> Window:
+    """The delays after which the move can be made."""
+    entered = [bound for bound in invariant(game, move.target) if bound[0] not in move.resets]
+    result = Window()
+    for i, j, bound in (*invariant(game, here.state), *move.bounds, *entered):
+        if j == 0:
+            result = result.at_most(constant(bound) - here.clocks[i - 1], is_strict(bound))
+        else:
+            result = result.at_least(-constant(bound) - here.clocks[j - 1], is_strict(bound))
+    return result
+
+
+class Controller:
+    """Decides for the controller; remembers where it has been, to not go in circles by a relaxed plan."""
+
+    def __init__(self, game: Game, strategies: Sequence[Strategy]) -> None:
+        self._game = game
+        self._books: List[Dict[DiscreteState, Block]] = [{b.state: b for b in s.blocks} for s in strategies]
+        self._planner, self._at_risk = _planner(game)
+        self._been: Set[State] = set()
+
+    def decide(self, here: Position, moves: Sequence[JointMove]) -> Optional[Choice]:
+        """One of the controller's moves and when; None: wait."""
+        self._been.add(here.state)
+        windows = [(move, window(self._game, here, move)) for move in moves]
+        state = _named(self._game, here.state)
+        for book in self._books:
+            block = book.get(state)
+            if block is not None and self._knows(block, here):
+                return self._advised(block, here, windows)
+        return self._planned(here, windows)
+
+    def _knows(self, block: Block, here: Position) -> bool:
+        zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
+        return any(span is not None and span.holds(Fraction(0)) for span in map(self._span(here), zones))
+
+    def _advised(self, block: Block, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+        choices: List[Choice] = []
+        for command in block.commands:
+            keys = tuple(_key(move.automaton, move.edge) for move in command.moves)
+            for move, open_ in windows:
+                if self._keys(move) != keys:
+                    continue
+                for span in map(self._span(here), command.zones):
+                    delay = None if span is None else _both(span, open_).earliest()
+                    if delay is not None:
+                        choices.append((move, delay))
+        return min(choices, key=lambda choice: choice[1], default=None)
+
+    def _planned(self, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+        if self._planner is None:
+            return None
+        state = here.state
+        if self._at_risk is not None:
+            number, place = self._at_risk
+            state = replace(state, locations=(*state.locations[:number], place, *state.locations[number + 1 :]))
+        new = [(move, open_) for move, open_ in windows if move.target not in self._been]
+        for offered in (new, windows):
+            liked = self._planner.choose(state, [move for move, _ in offered])
+            for move, open_ in offered:
+                delay = open_.earliest() if move in liked else None
+                if delay is not None:
+                    return move, delay
+        return None
+
+    def _keys(self, move: JointMove) -> Tuple[_Key, ...]:
+        game = self._game
+        return tuple(_key(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges)
+
+    def _span(self, here: Position) -> Callable[[Zone], Optional[Window]]:
+        """When a zone holds, seen from here; None: time does not get there."""
+        clocks = dict(zip(self._game.clocks, here.clocks))
+
+        def span(zone: Zone) -> Optional[Window]:
+            result = Window()
+            for c in zone:
+                if c.left is not None and c.right is not None:
+                    difference = clocks[c.left] - clocks[c.right]
+                    if difference > c.bound or (difference == c.bound and c.strict):
+                        return None
+                elif c.left is not None:
+                    result = result.at_most(c.bound - clocks[c.left], c.strict)
+                elif c.right is not None:
+                    result = result.at_least(-c.bound - clocks[c.right], c.strict)
+            return result
+
+        return span
+
+
+def _both(a: Window, b: Window) -> Window:
+    common = a.at_least(b.low, b.low_open)
+    return common if b.high is None else common.at_most(b.high, b.high_open)
+
+
+def _planner(game: Game) -> Tuple[Optional[RelaxedPlanner], Optional[Tuple[int, int]]]:
+    """Plans for the goal; where there is a deadline only, always for the way out of risk: the next risk comes."""
+    if game.goal is not None:
+        return RelaxedPlanner(game), None
+    assert game.bad is not None, "an objective names a goal or what is bad"
+    number = game.bad[0]
+    names = game.automata[number].locations
+    if "atRisk" not in names:
+        return None, None
+    return RelaxedPlanner(replace(game, goal=(number, names.index("idle")))), (number, names.index("atRisk"))
+
+
+def _named(game: Game, state: State) -> DiscreteState:
+    places = zip(game.automata, state.locations)
+    return DiscreteState(
+        tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
+        tuple(zip(game.variables, state.values)),
+    )
+
+
+def _key(automaton: str, edge: Edge) -> _Key:
+    return automaton, edge.source, edge.target, str(edge.sync)
+
+
+def moments(windows: Sequence[Tuple[JointMove, Window]], grain: Fraction) -> Iterator[Fraction]:
+    """The first and last moments of the windows."""
+    for _, open_ in windows:
+        for moment in (open_.earliest(grain), open_.latest()):
+            if moment is not None:
+                yield moment

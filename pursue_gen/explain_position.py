@@ -1,0 +1,198 @@
+"""Who wins from a position in the middle of a play: asked of the solver, by a network that begins there.
+
+Positions are those of the game (see `synthesis.game`) with exact clocks in time units. The network that begins at a
+position keeps all automata parked while a prologue, at fixed moments of the environment's, sets the clocks; then all
+start at once. A safety game can be cut off at a horizon, after which nothing is lost any more: from a position that is
+lost even so, the environment wins in that time, so it makes headway by just staying among such positions.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis.game import State
+from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
+
+_PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
+_HORIZON = "@horizon"
+
+TIME_IS_UP = "EXP001"
+
+
+@dataclass(frozen=True)
+class Position:
+    """A point of a play: the discrete state, and the clocks in time units in the network's order."""
+
+    state: State
+    clocks: Tuple[Fraction, ...]
+
+
+class Clock:
+    """How much of an allowance of seconds is left.
+
+    The native engine stops at the allowance. The Python engine cannot be stopped: nothing is begun there that the last
+    attempt shows to be too long.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._end = time.monotonic() + seconds
+        self._longest = 0.0
+
+    def left(self) -> float:
+        """Seconds."""
+        return self._end - time.monotonic()
+
+    def verdict(self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
+        """The verdict. Raises PursueError with exit status 5 when (that share of) the time left is too short."""
+        seconds = self.left() * share
+        if seconds <= 0 or (not native.available() and seconds < self._longest):
+            raise PursueError([error(TIME_IS_UP, "no time is left")], exit_status=5)
+        began = time.monotonic()
+        try:
+            return solve(network, objective, reaction, seconds=seconds)
+        finally:
+            self._longest = max(self._longest, time.monotonic() - began)
+
+
+class Oracle:
+    """Tells of positions of one game whether they are lost for the controller; answers are remembered."""
+
+    def __init__(self, network: Network, objective: Objective, reaction: Fraction, clock: Clock) -> None:
+        self._network, self._objective, self._reaction, self._clock = network, objective, reaction, clock
+        self._largest = _largest_constants(network)
+        self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}
+
+    def same(self, position: Position) -> Position:
+        """The position with clocks that no guard can tell from larger ones made equal."""
+        bounds = (self._largest.get(name, 0) for name in self._network.clocks)
+        return replace(position, clocks=tuple(min(v, Fraction(top + 1)) for v, top in zip(position.clocks, bounds)))
+
+    def lost(self, position: Position, elapsed: Fraction = Fraction(0), horizon: Optional[int] = None) -> bool:
+        """True if the controller cannot win from here; with a horizon, not even if only so much time since the start
+        counts, of which `elapsed` has passed. Raises PursueError with exit status 5 when the time is up.
+        """
+        position = self.same(position)
+        key = (position, elapsed if horizon is not None else Fraction(0), horizon)
+        if key not in self._known:
+            network, clocks = self._network, position.clocks
+            if horizon is not None:
+                network = with_horizon(network, horizon)
+                clocks = (*clocks, min(elapsed, Fraction(horizon + 1)))
+            scale = _lcm(clocks)
+            begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
+            self._known[key] = not self._clock.verdict(begun, self._objective, self._reaction * scale).won
+        return self._known[key]
+
+
+def scaled(network: Network, scale: int) -> Network:
+    """The network with all times multiplied."""
+
+    def bounds(old: Sequence[ClockBound]) -> Tuple[ClockBound, ...]:
+        return tuple(replace(bound, bound=bound.bound * scale) for bound in old)
+
+    automata = tuple(
+        replace(
+            automaton,
+            locations=tuple(replace(place, invariant=bounds(place.invariant)) for place in automaton.locations),
+            edges=tuple(replace(edge, guard=replace(edge.guard, clocks=bounds(edge.guard.clocks)))
+                        for edge in automaton.edges),
+        )
+        for automaton in network.automata
+    )
+    return replace(network, automata=automata)
+
+
+def with_horizon(network: Network, horizon: int) -> Network:
+    """The network with a last clock, never reset; once it is past the horizon the controller may end the game."""
+    over = Location(_OVER)
+    automata = tuple(
+        replace(
+            automaton,
+            locations=(*automaton.locations, over),
+            edges=automaton.edges
+            + tuple(Edge(place.name, _OVER, sync=Sync(_OVER, sends=False)) for place in automaton.locations),
+        )
+        for automaton in network.automata
+    )
+    end = Edge(_HORIZON, _OVER, Guard((ClockBound(_HORIZON, ">", horizon),)), Sync(_OVER, sends=True))
+    referee = Automaton(_HORIZON, (Location(_HORIZON), over), _HORIZON, (end,))
+    return replace(
+        network,
+        clocks=(*network.clocks, _HORIZON),
+        channels=(*network.channels, _OVER),
+        automata=(*automata, referee),
+    )
+
+
+def beginning_at(network: Network, state: State, clocks: Sequence[int]) -> Network:
+    """The network whose play gets, with no choice for anybody, to this state (of its automata but the referee) with
+    these clocks, and goes on from there as the network's does.
+    """
+    automata: List[Automaton] = []
+    for k, automaton in enumerate(network.automata):
+        here = automaton.locations[state.locations[k]].name if k < len(state.locations) else automaton.initial
+        go = Edge(_PARKED, here, sync=Sync(_PROLOGUE, sends=False))
+        automata.append(
+            replace(
+                automaton,
+                locations=(*automaton.locations, Location(_PARKED)),
+                initial=_PARKED,
+                edges=(*automaton.edges, go),
+            )
+        )
+    values = tuple((name, value) for (name, _), value in zip(network.variables, state.values))
+    return replace(
+        network,
+        variables=values,
+        channels=(*network.channels, _PROLOGUE),
+        automata=(*automata, _prologue(dict(zip(network.clocks, clocks)))),
+    )
+
+
+def _prologue(clocks: Mapping[str, int]) -> Automaton:
+    """Resets each clock when what is left until the start is the value it must have; the largest is never reset."""
+    total = max(clocks.values())
+    watch = next(name for name, value in clocks.items() if value == total)
+    moments = sorted({total - value for value in clocks.values()} | {0, total})
+    locations: List[Location] = []
+    edges: List[Edge] = []
+    for k, moment in enumerate(moments):
+        last = k == len(moments) - 1
+        resets = tuple(name for name, value in clocks.items() if value == total - moment and name != watch)
+        locations.append(Location(f"{_PROLOGUE}{k}", (ClockBound(watch, "<=", moment),)))
+        edges.append(
+            Edge(
+                f"{_PROLOGUE}{k}",
+                f"{_PROLOGUE}{k + 1}",
+                Guard((ClockBound(watch, "==", moment),)),
+                Sync(_PROLOGUE, sends=True) if last else None,
+                resets=resets,
+                controllable=False,
+            )
+        )
+    locations.append(Location(f"{_PROLOGUE}{len(moments)}"))
+    return Automaton(_PROLOGUE, tuple(locations), locations[0].name, tuple(edges))
+
+
+def _largest_constants(network: Network) -> Dict[str, int]:
+    largest: Dict[str, int] = {}
+    for automaton in network.automata:
+        bounds = [bound for place in automaton.locations for bound in place.invariant]
+        bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]
+        for bound in bounds:
+            largest[bound.clock] = max(largest.get(bound.clock, 0), bound.bound)
+    return largest
+
+
+def _lcm(values: Sequence[Fraction]) -> int:
+    result = 1
+    for value in values:
+        result = result * value.denominator // math.gcd(result, value.denominator)
+    return result

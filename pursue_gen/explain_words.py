@@ -1,0 +1,149 @@
+"""A counter-play in the scenario's own words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Callable, Dict, Iterator, List, Tuple
+
+from pursue_gen.explain_play import Play, Step
+from pursue_gen.explain_policy import window
+from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
+from pursue_gen.synthesis.game import joint_moves
+from pursue_gen.tga import names
+from pursue_gen.tga.positions import directions
+
+
+@dataclass(frozen=True)
+class Line:
+    """Something that happens at a time (in units since the start); `who` is an agent, or empty."""
+
+    at: Fraction
+    who: str
+    text: str
+
+
+def in_words(scenario: Scenario, play: Play) -> Tuple[Line, ...]:
+    """The play step by step, and at last how it ends."""
+    words = _words(scenario)
+    lines: List[Line] = []
+    for step in play.steps:
+        owner = play.game.automata[step.owner].name
+        text = words.get(_key(play, step))
+        if text is not None:
+            lines.append(Line(step.at, owner, text + "".join(_remarks(scenario, play, step))))
+    return (*lines, *_ending(scenario, play))
+
+
+def time_text(at: Fraction) -> str:
+    """A time in units, with at most three decimals."""
+    return f"{float(at):.3f}".rstrip("0").rstrip(".")
+
+
+_Key = Tuple[str, str, str]
+"""An automaton, a channel (or nothing for a step of its own), and the location that is left by a step of its own."""
+
+
+def _key(play: Play, step: Step) -> _Key:
+    edge = play.game.origins[step.edges[0]]
+    owner = play.game.automata[step.owner].name
+    return (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
+
+
+def _words(scenario: Scenario) -> Dict[_Key, str]:
+    words: Dict[_Key, str] = {}
+    for agent in scenario.agents:
+        for event in scenario.events:
+            begins = event.name if event.duration is None else f"begins {event.name}"
+            words[agent.name, event.name, ""] = begins
+            words[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
+        for a, b in (way for connection in scenario.connections for way in directions(connection)):
+            words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
+            words[agent.name, "", names.going(a, b)] = f"arrives at {b}"
+    return words
+
+
+def _remarks(scenario: Scenario, play: Play, step: Step) -> Iterator[str]:
+    """What the step means for a deadline."""
+    safety = scenario.safety
+    if isinstance(safety, Respond):
+        for k in step.edges:
+            edge = play.game.edges[k]
+            if play.game.automata[edge.automaton].name == names.OBJECTIVE:
+                if play.game.origins[k].target == "atRisk":
+                    yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
+                elif play.game.origins[k].target == "idle":
+                    yield " (in time)"
+
+
+def _ending(scenario: Scenario, play: Play) -> Tuple[Line, ...]:
+    tell: Dict[str, Callable[[Scenario, Play], str]] = {
+        "bad": _bad,
+        "overdue": _overdue,
+        "idle": lambda s, p: f"nobody has to do anything any more{_so(s, ', and ', ' need never come')}",
+        "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
+        f"{_so(s, ': ', ' can always be prevented')}",
+        "open": lambda s, p: "and so on: from here, too, it can be prevented whatever the robots do",
+    }
+    texts = [tell[play.end](scenario, play)]
+    if play.end in ("overdue", "idle"):
+        texts += _withheld(scenario, play)
+    return tuple(Line(play.at, "", text) for text in texts)
+
+
+def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
+    """Where the robots have nothing to do at the end, and nobody is at it: what the others do not do."""
+    game, state = play.game, play.position.state
+    agents = {agent.name for agent in scenario.agents}
+    if any(a.name in agents and a.invariants[k] for a, k in zip(game.automata, state.locations)):
+        return
+    moves = [
+        move
+        for move in joint_moves(game, state)
+        if game.automata[move.owner].name in agents and window(game, play.position, move).holds(Fraction(0))
+    ]
+    words = _words(scenario)
+    keys = [_key(play, Step(play.at, move.owner, move.edges)) for move in moves]
+    if moves and not any(move.controllable for move in moves):
+        undone = ", ".join(dict.fromkeys(f"{key[0]} {words[key]}" for key in keys))
+        yield f"the robots can do nothing before one of these happens, and none of them needs to: {undone}"
+
+
+def _so(scenario: Scenario, before: str, after: str) -> str:
+    return "" if scenario.reach is None else f"{before}{scenario.reach.event.name}{after}"
+
+
+def _bad(scenario: Scenario, play: Play) -> str:
+    safety = scenario.safety
+    if isinstance(safety, Avoid):
+        return f"{safety.event.name} has happened, which was to be avoided"
+    if isinstance(safety, NeverWith):
+        return f"{safety.first.name} and {safety.second.name} are together: both {_place(play, safety.first.name)}"
+    return _late(scenario)
+
+
+def _late(scenario: Scenario) -> str:
+    safety = scenario.safety
+    if not isinstance(safety, Respond):
+        return "the objective is broken"
+    return f"too late: no {safety.response.name} within {safety.deadline} of {safety.trigger.name}"
+
+
+def _overdue(scenario: Scenario, play: Play) -> str:
+    overdue = [play.game.automata[k].name for k in play.overdue]
+    if names.OBJECTIVE in overdue:
+        return _late(scenario)
+    doing = ", ".join(f"{name} (now {_place(play, name)})" for name in overdue)
+    return f"nothing can go on: {doing} ought to be done by now, and cannot be"
+
+
+def _place(play: Play, agent: str) -> str:
+    for automaton, location in zip(play.game.automata, play.position.state.locations):
+        if automaton.name == agent:
+            name = automaton.locations[location]
+            if name.startswith("going_"):
+                return "on the way from " + name[len("going_") :].replace("_to_", " to ")
+            if name.startswith("doing_"):
+                return "doing " + name[len("doing_") :].replace("_in_", " at ")
+            return f"at {name}"
+    return ""
