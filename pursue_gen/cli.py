@@ -74,6 +74,9 @@ _SOLVER = typer.Option(
     None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
 )
 _VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
+_EXPLAIN = typer.Option(
+    True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
+)
 _JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 
 app = typer.Typer(
@@ -180,6 +183,7 @@ def solve(
     ),
     solver: Optional[Solver] = _SOLVER,
     verifytga: Optional[Path] = _VERIFYTGA,
+    explain: bool = _EXPLAIN,
     as_json_: bool = typer.Option(
         False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
     ),
@@ -189,6 +193,7 @@ def solve(
     The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
     where the objective cannot be met.
     """
+    from pursue_gen.explain_told import why
     from pursue_gen.files import write_texts
     from pursue_gen.game_options import asked_rules, verdict_json, verdict_text
     from pursue_gen.solvers import keep_counter, solved
@@ -200,8 +205,11 @@ def solve(
         won = solved(network, objective, rules, _value(solver), verifytga, limit, _value(engine))
     except PursueError as problem:
         keep_counter(problem, network, objective, output)
+        explained = why(problem, files, rules, explain, limit)
         if as_json_ and problem.exit_status in (4, 5):
-            print(json.dumps(verdict_json(rules, None, problem.diagnostics), indent=1))
+            print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
+        if explained:  # and so the findings are told
+            raise typer.Exit(problem.exit_status) from None
         raise
     plan = write_plan(won.strategy, won.network, objective)
     if output is not None:
@@ -289,12 +297,14 @@ def ws(
     ),
     solver: Optional[Solver] = _SOLVER,
     verifytga: Optional[Path] = _VERIFYTGA,
+    explain: bool = _EXPLAIN,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
     """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
 
     The folder is printed on stdout.
     """
+    from pursue_gen.explain_told import why
     from pursue_gen.game_options import asked_rules, games_to_try, verdict_text
     from pursue_gen.solvers import solved
     from pursue_gen.workspace import Options, write_workspace
@@ -306,7 +316,12 @@ def ws(
         tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     if plan is None:
         rules = asked_rules(network, _value(ends), reaction, slack)
-        won = solved(network, objective, rules, _value(solver), verifytga)
+        try:
+            won = solved(network, objective, rules, _value(solver), verifytga)
+        except PursueError as problem:
+            if why(problem, (scenario,), rules, explain):
+                raise typer.Exit(problem.exit_status) from None
+            raise
         tell(verdict_text(rules, won))
     elif solver is not None or verifytga is not None:
         raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")

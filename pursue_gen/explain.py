@@ -39,10 +39,7 @@ class Explanation:
 
 
 def explain(scenario: Scenario, rules: Rules, seconds: float = DEFAULT_SECONDS) -> Explanation:
-    """Explains a scenario that is lost under these rules, within about so many seconds.
-
-    (In the Python engine a single attempt cannot be cut short and may take longer.)
-    """
+    """Explains a scenario that is lost under these rules (that it is lost is not looked at), within so many seconds."""
     began = time.monotonic()
     found = findings(scenario, rules, seconds * _FOR_CHANGES)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explain_position import Clock
+from pursue_gen.explain_clock import Clock
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.strategy import Strategy
@@ -197,8 +197,9 @@ def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
         yield _slack_knob(scenario, rules, agent, late)
     if rules.reaction > 0 and not ideal:
         yield _Knob(
-            "game", "", "the ideal game", "", ("ideal",), lambda value: (scenario, IDEAL),
-            lambda value: "the ideal game, which no real robot can play (--ends controllable --reaction 0)",
+            "game", "", "ends chosen by the plan and no reaction", "", ("ideal",), lambda value: (scenario, IDEAL),
+            lambda value: "ends chosen by the plan and no reaction at all, as no real robot plays "
+            "(--ends controllable --reaction 0)",
             helps=3,
         )
 

@@ -12,8 +12,9 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explain_clock import Clock
 from pursue_gen.explain_policy import COARSE, Choice, Controller, Window, longest, moments, window
-from pursue_gen.explain_position import Clock, Oracle, Position
+from pursue_gen.explain_position import Oracle, Position
 from pursue_gen.synthesis.dbm import constant
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Strategy
@@ -187,7 +188,8 @@ class _Player:
             return None
         late = [(move, room) for move in mine if move.owner in self._overdue(here, room)]
         late = [pair for pair in late if window(self._game, here, pair[0]).holds(room)]
-        return next((pair for pair in late if not is_bad(self._game, pair[0].target)), None)
+        late = [pair for pair in late if not is_bad(self._game, pair[0].target) and not self._in_vain(here, *pair)]
+        return late[0] if late else None
 
     def _answer(
         self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], move: JointMove, delay: Fraction
@@ -237,12 +239,13 @@ class _Player:
     def _at(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], delay: Fraction) -> Optional[Choice]:
         # What is new first, and nothing that takes no time and leads nowhere.
         for move, open_ in sorted(theirs, key=lambda pair: pair[0].target in self._been):
-            if not open_.holds(delay):
-                continue
-            same = self._oracle.same(_after(here, move, delay))
-            if self._met.get(same) != self._now + delay and self._leaves_lost(here, move, delay):
+            if open_.holds(delay) and not self._in_vain(here, move, delay) and self._leaves_lost(here, move, delay):
                 return move, delay
         return None
+
+    def _in_vain(self, here: Position, move: JointMove, delay: Fraction) -> bool:
+        """True if the move only leads to where the play has been at the same time."""
+        return self._met.get(self._oracle.same(_after(here, move, delay))) == self._now + delay
 
     def _leaves_lost(self, here: Position, move: JointMove, delay: Fraction) -> bool:
         after, at = _after(here, move, delay), self._now + delay

@@ -9,22 +9,16 @@ lost even so, the environment wins in that time, so it makes headway by just sta
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.synthesis import native
+from pursue_gen.explain_clock import Clock
 from pursue_gen.synthesis.game import State
-from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
 _HORIZON = "@horizon"
-
-TIME_IS_UP = "EXP001"
-
 
 @dataclass(frozen=True)
 class Position:
@@ -32,33 +26,6 @@ class Position:
 
     state: State
     clocks: Tuple[Fraction, ...]
-
-
-class Clock:
-    """How much of an allowance of seconds is left.
-
-    The native engine stops at the allowance. The Python engine cannot be stopped: nothing is begun there that the last
-    attempt shows to be too long.
-    """
-
-    def __init__(self, seconds: float) -> None:
-        self._end = time.monotonic() + seconds
-        self._longest = 0.0
-
-    def left(self) -> float:
-        """Seconds."""
-        return self._end - time.monotonic()
-
-    def verdict(self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
-        """The verdict. Raises PursueError with exit status 5 when (that share of) the time left is too short."""
-        seconds = self.left() * share
-        if seconds <= 0 or (not native.available() and seconds < self._longest):
-            raise PursueError([error(TIME_IS_UP, "no time is left")], exit_status=5)
-        began = time.monotonic()
-        try:
-            return solve(network, objective, reaction, seconds=seconds)
-        finally:
-            self._longest = max(self._longest, time.monotonic() - began)
 
 
 class Oracle:

@@ -7,7 +7,6 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Tuple
 
 from pursue_gen.explain_play import Play, Step
-from pursue_gen.explain_policy import window
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
@@ -92,21 +91,20 @@ def _ending(scenario: Scenario, play: Play) -> Tuple[Line, ...]:
 
 
 def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
-    """Where the robots have nothing to do at the end, and nobody is at it: what the others do not do."""
+    """At the end, where nobody is at anything: what the others do not do, and need not."""
     game, state = play.game, play.position.state
     agents = {agent.name for agent in scenario.agents}
     if any(a.name in agents and a.invariants[k] for a, k in zip(game.automata, state.locations)):
         return
-    moves = [
-        move
-        for move in joint_moves(game, state)
-        if game.automata[move.owner].name in agents and window(game, play.position, move).holds(Fraction(0))
-    ]
+    # Agents' guards only bound their clocks from below: what is not possible yet will be.
+    moves = [move for move in joint_moves(game, state) if game.automata[move.owner].name in agents]
     words = _words(scenario)
-    keys = [_key(play, Step(play.at, move.owner, move.edges)) for move in moves]
-    if moves and not any(move.controllable for move in moves):
-        undone = ", ".join(dict.fromkeys(f"{key[0]} {words[key]}" for key in keys))
-        yield f"the robots can do nothing before one of these happens, and none of them needs to: {undone}"
+    keys = [_key(play, Step(play.at, move.owner, move.edges)) for move in moves if not move.controllable]
+    undone = ", ".join(dict.fromkeys(f"{key[0]}: {words[key]}" for key in keys))
+    if undone and not any(move.controllable for move in moves):
+        yield f"the robots can do nothing before one of these, and none of them needs to happen: {undone}"
+    elif undone and play.end == "idle":
+        yield f"these could still happen, and need not: {undone}"
 
 
 def _so(scenario: Scenario, before: str, after: str) -> str:

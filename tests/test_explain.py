@@ -1,0 +1,260 @@
+"""Explanations of lost scenarios: each claim is tried again on an edited text, and plays say what happens when."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Tuple
+
+import pytest
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.explain import Explanation, as_json, explain, render
+from pursue_gen.explain_changes import Change
+from pursue_gen.explain_clock import Clock
+from pursue_gen.language import parse
+from pursue_gen.pipeline import CONTROLLABLE, IDEAL, Rules, played
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
+from tests.test_cli import pursue
+
+PLENTY = 120.0
+DEFAULT = Rules()
+
+CALLED = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "callBot"
+event "fetch" location shelf
+agent "bot" controllable mobile 1 location desk can_do fetch
+agent "visitor" location desk can_do callBot
+objective: if callBot then fetch within {deadline}
+"""
+
+SHY = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "meet" collaborative
+agent "bot" controllable mobile 2 location desk reacts_to meet
+agent "visitor" mobile 1 location shelf can_do meet
+objective: avoid meet
+"""
+
+APART = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "sing"
+agent "bot" controllable mobile 2 location desk can_do sing
+agent "visitor" mobile 1 location shelf
+objective: bot never_with visitor
+"""
+
+LOCKED = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "open"
+event "fetch" location shelf
+rule "order": open before fetch
+agent "bot" controllable mobile 2 location desk can_do fetch
+agent "visitor" location shelf can_do open
+reach_objective: do fetch
+"""
+
+TOLD = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "lock"
+event "fetch" location shelf duration 2
+state "locked": initially false, true_if lock
+stateDependency: fetch only_if locked is_false
+agent "bot" controllable mobile 2 location desk can_do fetch
+agent "visitor" location shelf can_do lock
+reach_objective: do fetch after 1
+"""
+
+SLOW = CALLED.replace("mobile 1", "mobile 3").format(deadline=6)
+
+
+def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Rules]:
+    """The scenario's text and the rules with the change made to that value, as a person would make it."""
+    if change.what == "ends":
+        return text, replace(rules, ends=value, slack={})
+    if change.what == "reaction":
+        return text, replace(rules, reaction=Fraction(value))
+    if change.what == "slack":
+        return text, replace(rules, slack={**rules.slack, change.name: int(value)})
+    if change.what == "game":
+        return text, IDEAL
+    assert change.span is not None
+    lines = text.splitlines()
+    at = change.span.line - 1
+    words = {"deadline": "within", "after": "after", "agent": "mobile", "duration": "duration", "distance": "distance"}
+    if change.what in words:
+        word = words[change.what]
+        assert f"{word} {change.before}" in lines[at]
+        lines[at] = lines[at].replace(f"{word} {change.before}", f"{word} {value}")
+    elif change.what == "control":
+        lines[at] = re.sub(r'(agent "\w+")', r"\1 human controllable", lines[at])
+    else:
+        assert change.what in ("rule", "dependency")
+        lines[at] = ""
+    return "\n".join(lines), rules
+
+
+def wins(text: str, rules: Rules) -> bool:
+    scenario = parse(text, "x.pur")
+    return solve(played(translate(scenario), rules), scenario_objective(scenario), rules.reaction).won
+
+
+def check_claims(text: str, rules: Rules, explanation: Explanation) -> None:
+    assert not wins(text, rules)
+    for change in explanation.changes:
+        assert wins(*edited(text, rules, change, change.after)), change.sentence
+        if change.next_lost != change.before:
+            assert not wins(*edited(text, rules, change, change.next_lost)), change.sentence
+            if change.least:
+                step = abs(Fraction(change.after) - Fraction(change.next_lost))
+                assert step == (rules.reaction / 10 if change.what == "reaction" else 1)
+
+
+SMALL = {
+    "deadline 3": (CALLED.format(deadline=3), DEFAULT),
+    "deadline 4": (CALLED.format(deadline=4), DEFAULT),
+    "deadline 4, late": (CALLED.format(deadline=5), Rules(slack={"bot": 2})),
+    "deadline 5, slow to react": (CALLED.format(deadline=5), Rules(reaction=Fraction(3))),
+    "ideal, deadline 3": (CALLED.format(deadline=3), IDEAL),
+    "slow": (SLOW, DEFAULT),
+    "shy": (SHY, DEFAULT),
+    "shy, ideal": (SHY, IDEAL),
+    "apart": (APART, DEFAULT),
+    "locked": (LOCKED, DEFAULT),
+    "told": (TOLD, DEFAULT),
+}
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name: str) -> None:
+    text, rules = SMALL[name]
+    explanation = explain(parse(text, "x.pur"), rules, PLENTY)
+    assert explanation.changes and explanation.play and not explanation.undecided
+    check_claims(text, rules, explanation)
+    assert json.loads(json.dumps(as_json(explanation)))["changes"][0]["sentence"] == explanation.changes[0].sentence
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+@pytest.mark.parametrize("name", ["EB1", "WC2a", "CT3a"])
+def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name: str) -> None:
+    text = (reference_dir / name / "scenario.pur").read_text()
+    explanation = explain(parse(text, "x.pur"), DEFAULT, PLENTY)
+    check_claims(text, DEFAULT, explanation)
+    found = {(change.what, change.name): (change.after, change.next_lost) for change in explanation.changes}
+    if name == "EB1":
+        assert found["deadline", "officeClean"] == ("46", "45")
+        assert explanation.play[-1].text == "too late: no officeClean within 20 of callBot"
+        assert sum(line.text.startswith("callBot") for line in explanation.play) == 2
+    if name == "CT3a":
+        assert found["agent", "thief"][0] == "2"
+        assert "so it can go on for ever" in explanation.play[-1].text
+
+
+def told(name: str) -> str:
+    text, rules = SMALL[name]
+    rendered = render(explain(parse(text, "x.pur"), rules, PLENTY))
+    return rendered[rendered.index("How it goes wrong") :].split("Not enough")[0]
+
+
+def test_a_missed_deadline_is_told_step_by_step() -> None:
+    assert told("deadline 3") == (
+        "How it goes wrong, for example (times in units):\n"
+        "  1.1  visitor: callBot (fetch is due by 4.1)\n"
+        "  1.1  bot: sets off from desk to shelf\n"
+        "  4.1  bot: arrives at shelf\n"
+        "  4.1  too late: no fetch within 3 of callBot\n"
+    )
+
+
+def test_an_event_that_was_to_be_avoided_is_told() -> None:
+    assert told("shy").endswith("meet has happened, which was to be avoided\n")
+
+
+def test_agents_that_were_to_be_apart_are_told_where_they_met() -> None:
+    assert told("apart").endswith("bot and visitor are together: both at desk\n")
+
+
+def test_an_agent_that_need_not_help_is_named() -> None:
+    assert told("locked").endswith(
+        "nobody has to do anything any more, and fetch need never come\n"
+        "  6.1  these could still happen, and need not: visitor: open\n"
+    )
+
+
+def test_a_robot_that_can_do_nothing_alone_is_told(reference_dir: Path) -> None:
+    text = (reference_dir / "WC2a" / "scenario.pur").read_text()
+    last = explain(parse(text, "x.pur"), DEFAULT, PLENTY).play[-1].text
+    assert last == (
+        "the robots can do nothing before one of these, and none of them needs to happen: human: begins screwH"
+    )
+
+
+def test_a_change_that_only_moves_the_problem_is_no_claim() -> None:
+    explanation = explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, PLENTY)
+    assert "desk and shelf at distance 1 instead of 2" in explanation.lost
+    assert not any(change.what == "distance" for change in explanation.changes)
+
+
+def test_where_there_is_no_time_nothing_is_claimed() -> None:
+    explanation = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, 0.0)
+    assert explanation.changes == explanation.lost == explanation.play == ()
+    assert "a later deadline" in explanation.undecided
+    text = render(explanation)
+    assert "Not decided in the time: " in text
+    assert "not computed in the time" in text
+
+
+def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
+    first = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, PLENTY).changes[0]
+    assert (first.what, first.after) == ("ends", CONTROLLABLE)
+    slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), PLENTY)
+    (reaction,) = [change for change in slow.changes if change.what == "reaction"]
+    assert Fraction(reaction.after) + Fraction(3, 10) == Fraction(reaction.next_lost)
+
+
+def test_without_the_native_engine_the_time_is_kept_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario = parse(CALLED.format(deadline=5), "x.pur")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    monkeypatch.setattr(native, "available", lambda: False)
+    assert Clock(PLENTY).verdict(network, objective, DEFAULT.reaction).strategy is not None
+    with pytest.raises(PursueError) as stopped:
+        Clock(1e-4).verdict(network, objective, DEFAULT.reaction)
+    assert stopped.value.exit_status == 5
+    with pytest.raises(PursueError) as refused:
+        Clock(PLENTY).verdict(network, objective, Fraction(-1))
+    assert [finding.code for finding in refused.value.diagnostics] == ["SYN001"]
+
+
+def test_solve_and_ws_explain_a_lost_scenario_after_saying_so(tmp_path: Path) -> None:
+    file = tmp_path / "called.pur"
+    file.write_text(CALLED.format(deadline=3))
+    for command in (["solve"], ["ws", "-o", str(tmp_path / "ws")]):
+        outcome = pursue(*command, file)
+        assert (outcome.status, outcome.out) == (4, "")
+        assert outcome.err.count("SYN021") == 1
+        assert outcome.err.index("SYN021") < outcome.err.index("a deadline of 5 instead of 3 for fetch")
+        assert "deadline of 5" not in pursue(*command, file, "--no-explain").err
+    assert not (tmp_path / "ws").exists()
+
+
+def test_json_holds_the_explanation(tmp_path: Path) -> None:
+    file = tmp_path / "called.pur"
+    file.write_text(CALLED.format(deadline=3))
+    verdict = json.loads(pursue("solve", file, "--json").out)
+    assert verdict["won"] is False
+    change = verdict["explanation"]["changes"][0]
+    assert (change["what"], change["before"], change["after"], change["next_lost"]) == ("deadline", "3", "5", "4")
+    assert (change["file"], change["line"]) == (str(file), 8)
+    assert verdict["explanation"]["play"][0] == {"at": 1.1, "who": "visitor", "text": "callBot (fetch is due by 4.1)"}
+    assert "explanation" not in json.loads(pursue("solve", file, "--json", "--no-explain").out)
