@@ -22,7 +22,7 @@ from pursue_gen.tga import scenario_objective, translate
 DEFAULT_SECONDS = 20.0
 """How long an explanation may take, unless somebody says otherwise."""
 
-_FOR_CHANGES = 0.5
+_FOR_CHANGES = 0.65
 """The part of the time that the search for changes may take."""
 
 

@@ -17,7 +17,7 @@ from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
-_SHARE = 0.4
+_SHARE = 0.5
 """The part of the time left that one attempt may take."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
