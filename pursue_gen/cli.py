@@ -12,6 +12,22 @@ from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
 import typer
 
 from pursue_gen import __version__
+from pursue_gen.cli_options import (
+    ENDS,
+    EXPLAIN,
+    GAME,
+    JSON,
+    REACH_OBJ,
+    REACTION,
+    SCENARIO,
+    SLACK,
+    SOLVER,
+    VERIFYTGA,
+    Controllers,
+    Ends,
+    Engine,
+    Solver,
+)
 from pursue_gen.console import count, guarded, show, suggest, tell, usage
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, in_order, warning
 
@@ -21,63 +37,6 @@ if TYPE_CHECKING:
     from pursue_gen.plans import Trial
     from pursue_gen.tga.network import Network, Objective
 
-
-class Ends(str, Enum):
-    """Who controls the ends of the controlled agents' movements and actions."""
-
-    REPORTED = "reported"
-    CONTROLLABLE = "controllable"
-
-
-class Controllers(str, Enum):
-    """How the commands are shared out."""
-
-    DISTRIBUTED = "distributed"
-    CENTRALIZED = "centralized"
-    GENERAL = "general"
-
-
-class Engine(str, Enum):
-    """Which solver."""
-
-    NATIVE = "native"
-    PYTHON = "python"
-
-
-class Solver(str, Enum):
-    """Whose solver, instead of the built-in one."""
-
-    VERIFYTGA = "verifytga"
-
-
-_SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
-_GAME = "SCENARIO | TGA.xml TCTL.q"
-_ENDS = typer.Option(
-    None,
-    help="Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
-    "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
-)
-_REACTION = typer.Option(
-    None, metavar="UNITS", help="How late a command may take effect, in time units: 0.1 (the default), 1/20, 0 …"
-)
-_SLACK = typer.Option(
-    [],
-    metavar="[AGENT=]UNITS",
-    help="A robot, or with AGENT= this one, may end so much later than the model; repeatable.",
-)
-_REACH_OBJ = typer.Option(
-    "dedicated",
-    metavar="dedicated|all|ROBOT",
-    help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
-)
-_SOLVER = typer.Option(
-    None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
-)
-_VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
-_EXPLAIN = typer.Option(
-    True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
-)
-_JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 
 app = typer.Typer(
     name="pursue-gen",
@@ -143,12 +102,12 @@ def check(
 @app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
 @guarded
 def tga(
-    scenario: Path = _SCENARIO,
+    scenario: Path = SCENARIO,
     folder: Path = typer.Option(Path("."), "-o", "--output", metavar="DIR", help="Where to write; here by default."),
     ends: Ends = typer.Option(
         Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
     ),
-    slack: List[str] = _SLACK,
+    slack: List[str] = SLACK,
 ) -> None:
     """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
     from pursue_gen.files import write_texts
@@ -170,10 +129,10 @@ def tga(
 )
 @guarded
 def solve(
-    files: List[Path] = typer.Argument(..., metavar=_GAME, help="A scenario, or UPPAAL's files for a timed game."),
-    ends: Optional[Ends] = _ENDS,
-    reaction: Optional[str] = _REACTION,
-    slack: List[str] = _SLACK,
+    files: List[Path] = typer.Argument(..., metavar=GAME, help="A scenario, or UPPAAL's files for a timed game."),
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
     output: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
     ),
@@ -181,9 +140,9 @@ def solve(
     limit: float = typer.Option(
         0.0, metavar="SECONDS", min=0.0, help="Give up after so long (native engine and verifytga; 0: never)."
     ),
-    solver: Optional[Solver] = _SOLVER,
-    verifytga: Optional[Path] = _VERIFYTGA,
-    explain: bool = _EXPLAIN,
+    solver: Optional[Solver] = SOLVER,
+    verifytga: Optional[Path] = VERIFYTGA,
+    explain: bool = EXPLAIN,
     as_json_: bool = typer.Option(
         False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
     ),
@@ -226,10 +185,10 @@ def solve(
 @app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
 @guarded
 def verify(
-    files: List[Path] = typer.Argument(..., metavar=f"({_GAME}) PLAN", help="A game as for solve, and a plan for it."),
-    ends: Optional[Ends] = _ENDS,
-    reaction: Optional[str] = _REACTION,
-    slack: List[str] = _SLACK,
+    files: List[Path] = typer.Argument(..., metavar=f"({GAME}) PLAN", help="A game as for solve, and a plan for it."),
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
 ) -> None:
     """Prove that a plan wins, or show a play in which it does not.
 
@@ -252,13 +211,13 @@ def verify(
 @app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur")
 @guarded
 def report(
-    scenario: Path = _SCENARIO,
+    scenario: Path = SCENARIO,
     reach_obj: Optional[str] = typer.Option(
         None,
         metavar="dedicated|all|ROBOT",
         help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
     ),
-    as_json_: bool = _JSON,
+    as_json_: bool = JSON,
 ) -> None:
     """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios."""
     from pursue_gen.pipeline import IDEAL, Rules, solution
@@ -280,7 +239,7 @@ def report(
 @app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")
 @guarded
 def ws(
-    scenario: Path = _SCENARIO,
+    scenario: Path = SCENARIO,
     folder: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="DIR", help="Where the workspace goes; workspace_out/<scenario> by default."
     ),
@@ -288,16 +247,16 @@ def ws(
         Controllers.DISTRIBUTED,
         help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
     ),
-    reach_obj: str = _REACH_OBJ,
-    ends: Optional[Ends] = _ENDS,
-    reaction: Optional[str] = _REACTION,
-    slack: List[str] = _SLACK,
+    reach_obj: str = REACH_OBJ,
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
     plan: Optional[Path] = typer.Option(
         None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving."
     ),
-    solver: Optional[Solver] = _SOLVER,
-    verifytga: Optional[Path] = _VERIFYTGA,
-    explain: bool = _EXPLAIN,
+    solver: Optional[Solver] = SOLVER,
+    verifytga: Optional[Path] = VERIFYTGA,
+    explain: bool = EXPLAIN,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
     """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
@@ -379,7 +338,7 @@ def _game(files: Sequence[Path]) -> Tuple[Network, Objective]:
     if len(files) == 1 and files[0].suffix != ".xml":
         return _game_of(_scenario(files[0]))
     if len(files) != 2:
-        raise usage("expected one scenario, or a network and its query", f"pursue-gen solve {_GAME}")
+        raise usage("expected one scenario, or a network and its query", f"pursue-gen solve {GAME}")
     model, query = files
     network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

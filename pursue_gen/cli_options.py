@@ -1,0 +1,65 @@
+"""Arguments and options that several commands have, declared once."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import typer
+
+
+class Ends(str, Enum):
+    """Who controls the ends of the controlled agents' movements and actions."""
+
+    REPORTED = "reported"
+    CONTROLLABLE = "controllable"
+
+
+class Controllers(str, Enum):
+    """How the commands are shared out."""
+
+    DISTRIBUTED = "distributed"
+    CENTRALIZED = "centralized"
+    GENERAL = "general"
+
+
+class Engine(str, Enum):
+    """Which solver."""
+
+    NATIVE = "native"
+    PYTHON = "python"
+
+
+class Solver(str, Enum):
+    """Whose solver, instead of the built-in one."""
+
+    VERIFYTGA = "verifytga"
+
+
+SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
+GAME = "SCENARIO | TGA.xml TCTL.q"
+ENDS = typer.Option(
+    None,
+    help="Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
+    "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
+)
+REACTION = typer.Option(
+    None, metavar="UNITS", help="How late a command may take effect, in time units: 0.1 (the default), 1/20, 0 …"
+)
+SLACK = typer.Option(
+    [],
+    metavar="[AGENT=]UNITS",
+    help="A robot, or with AGENT= this one, may end so much later than the model; repeatable.",
+)
+REACH_OBJ = typer.Option(
+    "dedicated",
+    metavar="dedicated|all|ROBOT",
+    help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
+)
+SOLVER = typer.Option(
+    None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
+)
+VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
+EXPLAIN = typer.Option(
+    True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
+)
+JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
