@@ -85,7 +85,8 @@ def main() -> int:
             row = json.loads(done.stdout)
             rate = row["states"] / max(row["seconds"], 1e-9)
             line = f"{name:32} {game:8} {row['verdict']:8} {row['states']:8} {rate:9.0f} {row['seconds']:8.3f}"
-            line += f" {row.get('proof', float('nan')):7.3f} {row['memory']:6.0f}"
+            proof = f"{row['proof']:.3f}" if "proof" in row else "-"
+            line += f" {proof:>7} {row['memory']:6.0f}"
             print(f"{line} {row.get('blocks', '-'):>7} {row.get('commands', '-'):>8}", flush=True)
     return 0
 
