@@ -152,7 +152,7 @@ def solve(
     The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
     where the objective cannot be met.
     """
-    from pursue_gen.explain_told import why
+    from pursue_gen.explanation.told import why
     from pursue_gen.files import write_texts
     from pursue_gen.game_options import asked_rules, verdict_json, verdict_text
     from pursue_gen.solvers import keep_counter, solved
@@ -263,7 +263,7 @@ def ws(
 
     The folder is printed on stdout.
     """
-    from pursue_gen.explain_told import why
+    from pursue_gen.explanation.told import why
     from pursue_gen.game_options import asked_rules, games_to_try, verdict_text
     from pursue_gen.solvers import solved
     from pursue_gen.workspace import Options, write_workspace

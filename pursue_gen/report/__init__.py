@@ -1,1 +1,1 @@
-"""report"""
+"""Tables and pictures of what was made."""

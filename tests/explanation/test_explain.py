@@ -12,9 +12,9 @@ from typing import Tuple
 import pytest
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explain import Explanation, as_json, explain, render
-from pursue_gen.explain_changes import Change
-from pursue_gen.explain_clock import Clock
+from pursue_gen.explanation.changes import Change
+from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, Rules, played
 from pursue_gen.synthesis import native

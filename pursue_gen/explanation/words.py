@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Tuple
 
-from pursue_gen.explain_play import Play, Step
+from pursue_gen.explanation.play import Play, Step
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names

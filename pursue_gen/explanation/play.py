@@ -1,6 +1,6 @@
 """A counter-play: one play in which the environment keeps the controller from its objective, whatever it tries.
 
-The controller plays as `explain_policy` has it; the environment answers with a move, a moment, or a lateness that
+The controller plays as `policy` has it; the environment answers with a move, a moment, or a lateness that
 leaves a lost position behind. That each position is lost is asked of the solver, so from any of them the environment
 can go on, whatever the controller does.
 """
@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explain_clock import Clock
-from pursue_gen.explain_policy import COARSE, Choice, Controller, Window, longest, moments, window
-from pursue_gen.explain_position import Oracle, Position
+from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
+from pursue_gen.explanation.position import Oracle, Position
 from pursue_gen.synthesis.dbm import constant
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Strategy

@@ -12,9 +12,9 @@ from dataclasses import asdict, dataclass
 from typing import Any, Dict, List, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explain_changes import Change, findings
-from pursue_gen.explain_play import counter_play
-from pursue_gen.explain_words import Line, in_words, time_text
+from pursue_gen.explanation.changes import Change, findings
+from pursue_gen.explanation.play import counter_play
+from pursue_gen.explanation.words import Line, in_words, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.pipeline import Rules, played
 from pursue_gen.tga import scenario_objective, translate

@@ -8,7 +8,7 @@ from typing import Any, Dict, Sequence
 from pursue_gen import language
 from pursue_gen.console import show, tell
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explain import DEFAULT_SECONDS, as_json, explain, render
+from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
 from pursue_gen.pipeline import Rules
 
 _CANNOT_BE_MET = "SYN021"

@@ -1,6 +1,6 @@
 """What the controller does in a counter-play: as well as it can be expected to play a game that it cannot win.
 
-It follows, in turn, strategies that win nearly the same game (see `explain_changes`), as long as they know a position;
+It follows, in turn, strategies that win nearly the same game (see `changes`), as long as they know a position;
 where none does, the first step of a relaxed plan.
 """
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.explain_position import Position
+from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.dbm import constant, is_strict
 from pursue_gen.synthesis.directed import RelaxedPlanner
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
