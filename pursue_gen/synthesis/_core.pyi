@@ -1,9 +1,15 @@
 """What the native engine (core/module.cpp) offers."""
 
-from typing import Any, Dict
+from typing import Any, Callable, Dict, Optional
 
 INF: int
 
 class LimitReached(Exception): ...
 
-def solve(game: Dict[str, Any], seconds: float = 0.0, states: int = 0) -> Dict[str, Any]: ...
+def solve(
+    game: Dict[str, Any],
+    seconds: float = 0.0,
+    states: int = 0,
+    memory_mib: int = 0,
+    progress: Optional[Callable[[int, int, float, int], None]] = None,
+) -> Dict[str, Any]: ...

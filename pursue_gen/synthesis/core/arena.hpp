@@ -1,7 +1,11 @@
 // The arena of a game: discrete states with one hull of zones each, the moves that are followed, symbolic steps.
 #pragma once
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <cstdio>
 #include <deque>
 #include <functional>
 #include <map>
@@ -19,8 +23,28 @@ struct Limit : std::runtime_error {
 struct Limits {
     double seconds = 0;                     // 0: none
     std::size_t states = 0;                 // discrete states, 0: none
+    std::size_t memory = 0;                 // MiB of the whole process, 0: none
     std::function<void()> poll = [] {};     // called now and then; may throw (Ctrl-C)
+    // Called a few times a second, and before a limit is thrown: states, waiting, seconds, MiB. May throw.
+    std::function<void(std::size_t, std::size_t, double, std::size_t)> progress;
 };
+
+// MiB of this process in memory; where the system does not tell, the most that it was so far.
+inline std::size_t memory_in_use() {
+    if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+        unsigned long pages = 0;
+        const int read = std::fscanf(file, "%*u %lu", &pages);
+        std::fclose(file);
+        if (read == 1) return static_cast<std::size_t>(pages) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) >> 20;
+    }
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+    return static_cast<std::size_t>(usage.ru_maxrss) >> 20;
+#else
+    return static_cast<std::size_t>(usage.ru_maxrss) >> 10;
+#endif
+}
 
 template <int N>
 struct Action {
@@ -67,6 +91,7 @@ class Arena {
     int node(const Discrete& d) {
         const auto [it, fresh] = index_.emplace(d, static_cast<int>(nodes_.size()));
         if (fresh) {
+            if (limits_.states && nodes_.size() >= limits_.states) stop("states");
             check();
             nodes_.emplace_back();
             nodes_.back().d = d;
@@ -75,12 +100,24 @@ class Arena {
         return it->second;
     }
 
+    double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
     void check() {
-        if (++checks_ % 256) return;
+        const double now = spent();
+        if (limits_.seconds > 0 && now > limits_.seconds) stop("seconds");
+        if (now < look_) return;
+        look_ = now + 0.02;  // looking at memory costs a system call or three
         limits_.poll();
-        if (limits_.states && nodes_.size() >= limits_.states) throw Limit("states");
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-        if (limits_.seconds > 0 && spent.count() > limits_.seconds) throw Limit("seconds");
+        const std::size_t memory = memory_in_use();
+        if (limits_.memory && memory > limits_.memory) stop("memory");
+        if (now < tell_) return;
+        tell_ = now + 0.2;
+        if (limits_.progress) limits_.progress(nodes_.size(), waiting_.size() + touched_.size(), now, memory);
+    }
+
+    [[noreturn]] void stop(const char* which) const {
+        if (limits_.progress) limits_.progress(nodes_.size(), waiting_.size() + touched_.size(), spent(), memory_in_use());
+        throw Limit(which);
     }
 
     bool invariant(const Discrete& d, Dbm<N>& z) const {
@@ -231,7 +268,7 @@ class Arena {
     std::map<Discrete, int> index_;
     std::deque<int> touched_, waiting_;  // hulls that grew; states whose surroundings changed
     int initial_ = 0;
-    std::size_t checks_ = 0;
+    double look_ = 0, tell_ = 0;  // when to look at memory, and to tell the progress, again
 
   private:
     // What the controller wishes for when it may choose: the goal, or to have the duty of the safety objective behind it.

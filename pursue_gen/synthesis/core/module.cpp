@@ -73,6 +73,7 @@ py::dict solve_with(const Game& game, const Limits& limits) {
         ++reached;
         zones += node.set.size();
         if (!won) continue;
+        solver.check();
         py::list actions;
         for (const auto& action : solver.plan(node)) {
             std::vector<raw_t> matrix;
@@ -92,11 +93,16 @@ py::dict solve_with(const Game& game, const Limits& limits) {
     return out;
 }
 
-py::dict solve(const py::dict& in, double seconds, std::size_t states) {
+py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress) {
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
     limits.states = states;
+    limits.memory = memory;
+    if (!progress.is_none())
+        limits.progress = [&progress](std::size_t reached, std::size_t waiting, double spent, std::size_t mib) {
+            progress(reached, waiting, spent, mib);
+        };
     limits.poll = [] {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
@@ -119,5 +125,6 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception<Limit>(module, "LimitReached");
     module.attr("INF") = INF;
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
-               "Decides a compiled game. Raises LimitReached('seconds' or 'states').");
+               py::arg("memory_mib") = 0, py::arg("progress") = py::none(),
+               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory').");
 }

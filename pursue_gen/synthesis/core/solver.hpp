@@ -11,7 +11,7 @@ namespace pursue {
 template <int N>
 class Solver : public Arena<N> {
   public:
-    using Arena<N>::Arena;
+    using Arena<N>::Arena, Arena<N>::check;
 
     bool run() {
         initial_ = this->node(this->first());
@@ -35,7 +35,7 @@ class Solver : public Arena<N> {
 
   private:
     using Arena<N>::before, Arena<N>::at_bound, Arena<N>::own_moves, Arena<N>::won, Arena<N>::lost, Arena<N>::wake;
-    using Arena<N>::check, Arena<N>::open_lost, Arena<N>::game_, Arena<N>::limits_, Arena<N>::planner_, Arena<N>::nodes_;
+    using Arena<N>::open_lost, Arena<N>::game_, Arena<N>::limits_, Arena<N>::planner_, Arena<N>::nodes_;
     using Arena<N>::waiting_, Arena<N>::initial_;
 
     using Part = const Federation<N>& (*)(const Node<N>&);
