@@ -8,9 +8,11 @@ as tight as they can be) and holds at least one point: operations that may leave
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Iterable, List, Optional, Sequence, Tuple, Union
+from functools import lru_cache
+from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
 INF = 1 << 30
 """The raw bound of "no bound". Finite raw bounds are far smaller."""
@@ -46,6 +48,14 @@ def add(a: int, b: int) -> int:
 def complement(bound: int) -> int:
     """The raw bound of `x_j - x_i` that holds exactly where `x_i - x_j` is not within the (finite) bound."""
     return 1 - bound
+
+
+@lru_cache(maxsize=None)
+def _opposite(dim: int) -> Callable[[Tuple[int, ...]], Tuple[int, ...]]:
+    """What turns a matrix over: to the place of each bound comes the one that says the opposite."""
+    if dim == 1:
+        return lambda m: m
+    return operator.itemgetter(*(j * dim + i for i in range(dim) for j in range(dim)))
 
 
 def _close(m: List[int], dim: int) -> bool:
@@ -129,23 +139,13 @@ class Dbm:
 
     def is_disjoint(self, other: Dbm) -> bool:
         """True if the two have no point in common, as one pair of opposite bounds shows (may miss; never wrong)."""
-        dim, a, b = self.dim, self.m, other.m
-        for i in range(dim):
-            for j in range(dim):
-                x, y = a[i * dim + j], b[j * dim + i]
-                if x < INF and y < INF and x + y - ((x | y) & 1) < LE_ZERO:
-                    return True
-        return False
+        # Opposite bounds leave no point where their sum is below `<= 0`: where their raw forms add up to less than 2.
+        return min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 2
 
     def has_gap(self, other: Dbm) -> bool:
         """True if points not in either lie between the two, as one pair of opposite bounds shows."""
-        dim, a, b = self.dim, self.m, other.m
-        for i in range(dim):
-            for j in range(dim):
-                # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
-                if a[i * dim + j] + b[j * dim + i] < 1:
-                    return True
-        return False
+        # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
+        return min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 1
 
     def intersect(self, other: Dbm) -> Optional[Dbm]:
         """The points in both; None if there are none."""
@@ -165,10 +165,7 @@ class Dbm:
 
     def includes(self, other: Dbm) -> bool:
         """True if every point of the other is in this one."""
-        for mine, its in zip(self.m, other.m):
-            if its > mine:
-                return False
-        return True
+        return all(map(operator.ge, self.m, other.m))
 
     def contains(self, point: Sequence[Number]) -> bool:
         """True if the valuation is in the zone; `point[k]` is the value of clock k + 1."""

@@ -139,7 +139,10 @@ class ClosedLoop:
         return self.arena.clock[clock]
 
     def _raw(self, bound: Fraction, strict: bool) -> int:
-        return raw(int(bound * self.arena.scale), strict)
+        return raw(self._scaled(bound), strict)
+
+    def _scaled(self, bound: Fraction) -> int:
+        return bound.numerator * (self.arena.scale // bound.denominator)
 
     def _described(self, state: State) -> Described:
         """For the horizon: what may happen in a state, and which constants the strategy compares clocks with there."""
@@ -151,7 +154,7 @@ class ClosedLoop:
         compared: List[Tuple[int, int]] = []
         for b in self._blocks[state]:
             for c in (c for zone in _zones_of(self.strategy.blocks[b]) for c in zone):
-                size = abs(int(c.bound * self.arena.scale))
+                size = abs(self._scaled(c.bound))
                 compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
         return moves, compared
 

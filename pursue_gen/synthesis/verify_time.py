@@ -105,8 +105,11 @@ def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) ->
     taken: List[Tuple[JointMove, Dbm]] = []
     for k, zones in sorted(decided.items()):
         used.append(acts[k].key)
-        taken += _flights(acts[k], zones, advice.disputed[k], rules.reaction)
-        for other, effect in _met_in_flight(k, zones, advice, rules.reaction):
+        flights = [_flight(zone, situation, rules) for zone in zones]
+        _check_decided(acts[k], zones, advice.disputed[k])
+        for flight in flights:
+            taken += _effects(acts[k], flight)
+        for other, effect in _met_in_flight(k, flights, advice, rules.reaction):
             used.append(acts[other].key)
             taken += _effects(acts[other], effect)
     return Passage(tuple(merged(waiting + [flight for _, flight in taken])), tuple(taken), tuple(used))
@@ -216,9 +219,14 @@ def _check_end(part: Dbm, situation: Situation, must_end: bool) -> None:
     assert situation.invariant is not None
     future = part.up().intersect(situation.invariant)
     assert future is not None
+    _check_obliged(future, situation, must_end)
+
+
+def _check_obliged(points: Dbm, situation: Situation, must_end: bool) -> None:
+    """At each of the points that is at the bound of an invariant someone must be able to move by itself."""
     ends: List[Tuple[int, Dbm]] = []
     for owner, clock, bound in situation.bounds:
-        last = future.constrained(0, clock, raw(-(bound >> 1), strict=False))
+        last = points.constrained(0, clock, raw(-(bound >> 1), strict=False))
         if last is not None:
             ends.append((owner, last))
     for owner, last in ends:
@@ -236,32 +244,48 @@ def _check_end(part: Dbm, situation: Situation, must_end: bool) -> None:
             raise Broken("time is blocked: an invariant ends, no command comes and its owner cannot move", rest[0])
 
 
+def _flight(zone: Dbm, situation: Situation, rules: Rules) -> Dbm:
+    """The points at which a command may take effect that is decided in the zone.
+
+    Time does not take it beyond the end of an invariant: who is at its bound there moves, and the command is stale.
+    """
+    assert situation.invariant is not None
+    if not rules.reaction:
+        return zone
+    reached = zone.up_within(rules.reaction)
+    if situation.invariant.includes(reached) or any(is_strict(bound) for _, _, bound in situation.bounds):
+        return reached
+    within = reached.intersect(situation.invariant)
+    assert within is not None
+    try:
+        _check_obliged(within, situation, rules.must_end)
+    except Broken as broken:
+        raise Broken(_TOO_LATE, broken.zone) from None
+    return within
+
+
 def _met_in_flight(
-    k: int, zones: Sequence[Dbm], advice: Advice, reaction: int
+    k: int, flights: Sequence[Dbm], advice: Advice, reaction: int
 ) -> List[Tuple[int, Dbm]]:
-    """Other commands that may overtake one that is decided in `zones`, and the points at which they then take effect.
+    """Other commands that may overtake one that is in flight, and the points at which they then take effect.
 
     The one that was decided first ends the time that passes here, so its flight bounds theirs.
     """
     result: List[Tuple[int, Dbm]] = []
-    for zone in zones:
-        reached = zone.up_within(reaction) if reaction else zone
+    for flight in flights:
         for other in advice.near[k]:
             if advice.acts[other].move == advice.acts[k].move:
                 continue
-            common = reached.intersect(advice.acts[other].zone)
+            common = flight.intersect(advice.acts[other].zone)
             if common is not None:
-                effect = (common.up_within(reaction) if reaction else common).intersect(reached)
+                effect = (common.up_within(reaction) if reaction else common).intersect(flight)
                 assert effect is not None
                 result.append((other, effect))
     return result
 
 
-def _flights(
-    act: Act, zones: Sequence[Dbm], disputed: Sequence[Dbm], reaction: int
-) -> List[Tuple[JointMove, Dbm]]:
-    """The points at which the command may take effect when decided in the zones."""
-    result: List[Tuple[JointMove, Dbm]] = []
+def _check_decided(act: Act, zones: Sequence[Dbm], disputed: Sequence[Dbm]) -> None:
+    """The command must be a clear one where it is decided, and enabled."""
     for zone in zones:
         for waited in disputed:
             both = waited.intersect(zone)
@@ -269,11 +293,10 @@ def _flights(
                 raise Broken("contradiction: the strategy says both to wait and to act here", both)
         if act.move is not None and act.move.enabled is not None and not act.move.enabled.includes(zone):
             raise Broken(_NOT_ENABLED, zone.minus(act.move.enabled)[0])
-        result += _effects(act, zone.up_within(reaction) if reaction else zone)
-    return result
 
 
 _NOT_ENABLED = "not enabled: the command's guard or an invariant does not hold here"
+_TOO_LATE = "may come too late: the command is no longer enabled when it takes effect here"
 
 
 def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
@@ -283,8 +306,7 @@ def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
     if act.move.enabled is None:
         raise Broken(_NOT_ENABLED, points)
     if not act.move.enabled.includes(points):
-        late = "may come too late: the command is no longer enabled when it takes effect here"
-        raise Broken(late, points.minus(act.move.enabled)[0])
+        raise Broken(_TOO_LATE, points.minus(act.move.enabled)[0])
     return [(act.move, points)]
 
 

@@ -117,6 +117,9 @@ class PlayByPlay:
         """The command takes effect at any time within the reaction."""
         for n in range(int(self.reaction / STEP) + 1):
             then = self.later(now, n * STEP)
+            if not self.lasts(then):  # time is blocked before the command comes: someone else has to move
+                self.check_obliged(self.later(now, (n - 1) * STEP))
+                return
             moves = [m for m in self.moves(then) if {(x.automaton, x.edge) for x in command.moves} == set(m)]
             if not moves or not all(edge.controllable for _, edge in moves[0]):
                 raise Broken("not enabled")

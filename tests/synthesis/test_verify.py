@@ -146,6 +146,27 @@ def test_a_command_may_take_effect_late(command: str, outcome: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("objective", "guard", "own", "outcome"),
+    [
+        (REACH, "y>2", "", "ok"),
+        (REACH, "y>3", "", "may come too late"),
+        (SAFETY, "y>2", "", "ok"),
+        (SAFETY, "y>3", "", "may come too late"),
+        (SAFETY, "y>2", ":x<=3", "may come too late"),
+    ],
+)
+def test_a_command_is_not_late_where_somebody_else_has_to_move_before_it_comes(
+    objective: Objective, guard: str, own: str, outcome: str
+) -> None:
+    bot = automaton("bot", f"a{own} win lose", edge("a", "win", "x>1"))
+    net = network(bot, automaton("other", "c:y<=3 d", edge("c", "d", guard, env=True)))
+    go = moves(net, ("bot", 0))
+    plan = [block(net, "a c", ["x<=2"], ("x>2", go)), block(net, "a d", [], ("", go))]
+    plan += [block(net, "win c", [""]), block(net, "win d", [""])]
+    assert kind(checked(net, objective, *plan, reaction=HALF)) == outcome
+
+
+@pytest.mark.parametrize(
     ("bot", "other", "reach", "safety"),
     [
         (edge("a", "win", "x>1"), edge("c", "d", "y>9", env=True), "time is blocked", "time is blocked"),
