@@ -17,6 +17,8 @@ from pursue_gen.cli_options import (
     EXPLAIN,
     GAME,
     JSON,
+    LIMIT,
+    MEMORY,
     REACH_OBJ,
     REACTION,
     SCENARIO,
@@ -29,12 +31,10 @@ from pursue_gen.cli_options import (
     Solver,
 )
 from pursue_gen.console import count, guarded, show, suggest, tell, usage
-from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, in_order, warning
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, in_order
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
-    from pursue_gen.pipeline import Rules, Solution
-    from pursue_gen.plans import Trial
     from pursue_gen.tga.network import Network, Objective
 
 
@@ -137,9 +137,8 @@ def solve(
         None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
     ),
     engine: Optional[Engine] = typer.Option(None, help="The solver; native where it was built, by default."),
-    limit: float = typer.Option(
-        0.0, metavar="SECONDS", min=0.0, help="Give up after so long (native engine and verifytga; 0: never)."
-    ),
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
     solver: Optional[Solver] = SOLVER,
     verifytga: Optional[Path] = VERIFYTGA,
     explain: bool = EXPLAIN,
@@ -154,17 +153,19 @@ def solve(
     """
     from pursue_gen.explanation.told import why
     from pursue_gen.files import write_texts
-    from pursue_gen.game_options import asked_rules, verdict_json, verdict_text
+    from pursue_gen.game_options import asked_limits, asked_rules, verdict_json, verdict_text
+    from pursue_gen.progress import progress_line
     from pursue_gen.solvers import keep_counter, solved
     from pursue_gen.synthesis.plan import write_plan
 
     network, objective = _game(files)
-    rules = asked_rules(network, _value(ends), reaction, slack)
+    rules, limits = asked_rules(network, _value(ends), reaction, slack), asked_limits(limit, memory)
     try:
-        won = solved(network, objective, rules, _value(solver), verifytga, limit, _value(engine))
+        with progress_line(as_json_) as progress:
+            won = solved(network, objective, rules, _value(solver), verifytga, limits, _value(engine), progress)
     except PursueError as problem:
         keep_counter(problem, network, objective, output)
-        explained = why(problem, files, rules, explain, limit)
+        explained = why(problem, files, rules, explain, limits, as_json_)
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
         if explained:  # and so the findings are told
@@ -189,23 +190,27 @@ def verify(
     ends: Optional[Ends] = ENDS,
     reaction: Optional[str] = REACTION,
     slack: List[str] = SLACK,
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
 ) -> None:
     """Prove that a plan wins, or show a play in which it does not.
 
     Without --ends, --reaction and --slack the default game is tried, then UPPAAL-TIGA's (ends controllable, reaction
     0). The exit status is 4 where the plan wins in neither.
     """
-    from pursue_gen.game_options import games_to_try, in_words
+    from pursue_gen.game_options import asked_limits, games_to_try, in_words
+    from pursue_gen.plans import exit_status, try_plan
 
     if len(files) < 2:
         raise usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
     network, objective = _game(files[:-1])
-    tried = _trials(files[-1], network, objective, games_to_try(network, _value(ends), reaction, slack))
+    games = games_to_try(network, _value(ends), reaction, slack)
+    tried = try_plan(files[-1], network, objective, games, asked_limits(limit, memory))
     for trial in tried:
-        print(f"{in_words(trial.rules)}: {'the plan wins' if trial.solution else 'the plan does not win'}")
+        print(f"{in_words(trial.rules)}: {trial.outcome}")
         show(trial.findings)
-    if tried[-1].solution is None:
-        raise typer.Exit(4)
+    if exit_status(tried):
+        raise typer.Exit(exit_status(tried))
 
 
 @app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur")
@@ -217,18 +222,22 @@ def report(
         metavar="dedicated|all|ROBOT",
         help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
     ),
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
     as_json_: bool = JSON,
 ) -> None:
     """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios."""
+    from pursue_gen.game_options import asked_limits
     from pursue_gen.pipeline import IDEAL, Rules, solution
+    from pursue_gen.progress import progress_line
     from pursue_gen.report import commands
 
     read = _scenario(scenario)
     network, objective = _game_of(read)
-    game, ideal = (
-        commands.Game(won.network, won.strategy, won.reaction)
-        for won in (solution(network, objective, rules) for rules in (Rules(), IDEAL))
-    )
+    limits = asked_limits(limit, memory)
+    with progress_line(as_json_) as progress:
+        both = [solution(network, objective, rules, limits, progress=progress) for rules in (Rules(), IDEAL)]
+    game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
     table = commands.commands_table(read.name, read.agents, game, ideal, reach_obj)
     if as_json_:
         print(json.dumps(commands.as_json(table), indent=1))
@@ -256,6 +265,8 @@ def ws(
     ),
     solver: Optional[Solver] = SOLVER,
     verifytga: Optional[Path] = VERIFYTGA,
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
     explain: bool = EXPLAIN,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
@@ -264,7 +275,9 @@ def ws(
     The folder is printed on stdout.
     """
     from pursue_gen.explanation.told import why
-    from pursue_gen.game_options import asked_rules, games_to_try, verdict_text
+    from pursue_gen.game_options import asked_limits, asked_rules, games_to_try, verdict_text
+    from pursue_gen.plans import take_plan
+    from pursue_gen.progress import progress_line
     from pursue_gen.solvers import solved
     from pursue_gen.workspace import Options, write_workspace
 
@@ -273,19 +286,21 @@ def ws(
     if controllers is Controllers.GENERAL and ends is None:
         ends = Ends.CONTROLLABLE
         tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
+    limits = asked_limits(limit, memory)
     if plan is None:
         rules = asked_rules(network, _value(ends), reaction, slack)
         try:
-            won = solved(network, objective, rules, _value(solver), verifytga)
+            with progress_line() as progress:
+                won = solved(network, objective, rules, _value(solver), verifytga, limits, progress=progress)
         except PursueError as problem:
-            if why(problem, (scenario,), rules, explain):
+            if why(problem, (scenario,), rules, explain, limits):
                 raise typer.Exit(problem.exit_status) from None
             raise
         tell(verdict_text(rules, won))
     elif solver is not None or verifytga is not None:
         raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")
     else:
-        won = _planned(plan, network, objective, games_to_try(network, _value(ends), reaction, slack))
+        won = take_plan(plan, network, objective, games_to_try(network, _value(ends), reaction, slack), limits)
     options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction)
     place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
     print(place)
@@ -350,31 +365,6 @@ def _quoted(path: Path) -> str:
 
 def _value(choice: Optional[Enum]) -> Optional[str]:
     return None if choice is None else str(choice.value)
-
-
-def _trials(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Tuple[Trial, ...]:
-    from pursue_gen.files import read_text
-    from pursue_gen.plans import trials
-
-    return trials(read_text(plan, "a plan, such as UPPAAL_plan.txt"), str(plan), network, objective, games)
-
-
-def _planned(plan: Path, network: Network, objective: Objective, games: Sequence[Rules]) -> Solution:
-    """A plan of the user's, proven; one that wins in the ideal game only is taken with a warning."""
-    from pursue_gen.game_options import in_words
-
-    tried = _trials(plan, network, objective, games)
-    won = tried[-1].solution
-    if won is None:
-        raise PursueError([finding for trial in tried for finding in trial.findings], exit_status=4)
-    if len(tried) > 1:
-        ideal, default = in_words(tried[-1].rules), in_words(tried[0].rules)
-        message = f"{plan} wins in the ideal game only ({ideal}), not with {default}"
-        hint = "it may lose when a message is late or a robot needs longer; without --plan a better one is looked for"
-        show([warning("CLI010", message, hint=hint)])
-    else:
-        tell(f"{plan} wins: {in_words(tried[0].rules)}")
-    return won
 
 
 if __name__ == "__main__":

@@ -62,4 +62,11 @@ VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if n
 EXPLAIN = typer.Option(
     True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
 )
+LIMIT = typer.Option(0.0, metavar="SECONDS", min=0.0, help="Give up after so long (0: never).")
+MEMORY = typer.Option(
+    None,
+    metavar="MIB",
+    min=0,
+    help="Give up when so much memory is in use (0: no limit); by default 4096, or 80 % of what is available.",
+)
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")

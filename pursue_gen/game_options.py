@@ -8,6 +8,7 @@ from typing import Any, Dict, Optional, Sequence, Tuple
 from pursue_gen.console import count, usage
 from pursue_gen.diagnostics import Diagnostic, as_json
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, Solution
+from pursue_gen.synthesis.limits import UNDECIDED, Limits, careful_memory
 from pursue_gen.tga.network import Network, is_end
 
 DEFAULT = Rules()
@@ -21,6 +22,11 @@ def asked_rules(network: Network, ends: Optional[str], reaction: Optional[str], 
     if rules.slack and rules.ends == CONTROLLABLE:
         raise usage("slack has no meaning where the plan decides the ends", "use it with --ends reported")
     return rules
+
+
+def asked_limits(seconds: float, memory: Optional[int]) -> Limits:
+    """The limits that the options ask for; None: the memory that leaves the machine some."""
+    return Limits(seconds, careful_memory() if memory is None else memory)
 
 
 def games_to_try(
@@ -68,7 +74,7 @@ def verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagn
     It is null where nobody knows: a limit was hit, or the strategy of another tool does not win.
     """
     result: Dict[str, Any] = {
-        "won": True if won else None if any(f.code in ("SYN010", "SYN035") for f in findings) else False,
+        "won": True if won else None if any(f.code in (UNDECIDED, "SYN035") for f in findings) else False,
         "ends": rules.ends,
         "reaction": str(rules.reaction),
         "slack": dict(rules.slack),

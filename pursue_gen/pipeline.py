@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.verify import pruned, verify
@@ -52,18 +54,28 @@ def played(network: Network, rules: Rules) -> Network:
 
 
 def solution(
-    network: Network, objective: Objective, rules: Rules, seconds: float = 0.0, engine: Optional[str] = None
+    network: Network,
+    objective: Objective,
+    rules: Rules,
+    limits: Limits = NO_LIMITS,
+    engine: Optional[str] = None,
+    progress: Optional[Listener] = None,
 ) -> Solution:
-    """Solves the game and proves the strategy with the independent checker (`seconds` and `engine` as in `solve`).
+    """Solves the game and proves the strategy with the independent checker, both together within the limits.
 
-    Raises PursueError with exit status 4 when the objective cannot be met under these rules; it says so plainly when
-    the ideal game, which no robot can play, would be won. With exit status 5 at a limit.
+    `engine` and `progress` as in `solve`. Raises PursueError with exit status 4 when the objective cannot be met under
+    these rules; it says so plainly when the ideal game, which no robot can play, would be won. With exit status 5 at a
+    limit.
     """
+    start = time.monotonic()
     game = played(network, rules)
-    verdict = solve(game, objective, rules.reaction, engine, seconds)
+    verdict = solve(game, objective, rules.reaction, engine, limits, progress)
     if verdict.strategy is None:
-        raise PursueError([_cannot_be_met(network, objective, rules, seconds, engine)], exit_status=4)
-    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks)
+        finding = _cannot_be_met(network, objective, rules, limits.since(start), engine, progress)
+        raise PursueError([finding], exit_status=4)
+    strategy = prove(
+        game, objective, verdict.strategy, rules.reaction, verdict.ranks, limits.since(start), progress
+    )
     return Solution(game, objective, strategy, rules.reaction, verdict.stats)
 
 
@@ -73,14 +85,22 @@ def prove(
     strategy: Strategy,
     reaction: Fraction,
     ranks: Optional[Mapping[ZoneKey, int]] = None,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
-    Raises PursueError with the play that breaks it.
+    Raises PursueError with the play that breaks it; with exit status 5 at a limit, the checker's own one on symbolic
+    states included.
     """
-    report = verify(network, objective, strategy, reaction, ranks=ranks)
+    start = time.monotonic()
+    report = verify(network, objective, strategy, reaction, ranks=ranks, limits=limits, progress=progress)
     if not report.ok and ranks is not None:
-        report = verify(network, objective, strategy, reaction)
+        left = limits.since(start)
+        report = verify(network, objective, strategy, reaction, limits=left, progress=progress)
+    if report.reason.startswith("limit"):
+        hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
+        raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)
     if not report.ok:
         play = "".join(f"\n      {step}" for step in report.play)
         hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
@@ -89,28 +109,39 @@ def prove(
 
 
 def solve_scenario(
-    scenario: Scenario, rules: Rules, seconds: float = 0.0, engine: Optional[str] = None
+    scenario: Scenario,
+    rules: Rules,
+    limits: Limits = NO_LIMITS,
+    engine: Optional[str] = None,
+    progress: Optional[Listener] = None,
 ) -> Solution:
     """The proven strategy of a scenario. Raises as `solution` does."""
-    return solution(translate(scenario), scenario_objective(scenario), rules, seconds, engine)
+    return solution(translate(scenario), scenario_objective(scenario), rules, limits, engine, progress)
 
 
 def _cannot_be_met(
-    network: Network, objective: Objective, rules: Rules, seconds: float, engine: Optional[str]
+    network: Network,
+    objective: Objective,
+    rules: Rules,
+    limits: Limits,
+    engine: Optional[str],
+    progress: Optional[Listener],
 ) -> Diagnostic:
     reaction = _decimal(rules.reaction)
     message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
     hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
-    if rules != IDEAL and _won_ideally(network, objective, seconds, engine):
+    if rules != IDEAL and _won_ideally(network, objective, limits, engine, progress):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
     return error("SYN021", message, hint=hint)
 
 
-def _won_ideally(network: Network, objective: Objective, seconds: float, engine: Optional[str]) -> bool:
+def _won_ideally(
+    network: Network, objective: Objective, limits: Limits, engine: Optional[str], progress: Optional[Listener]
+) -> bool:
     """True if the ideal game is known to be won; that it is not decided in time takes nothing from the verdict."""
     try:
-        return solve(network, objective, engine=engine, seconds=seconds).won
+        return solve(network, objective, engine=engine, limits=limits, progress=progress).won
     except PursueError:
         return False
 

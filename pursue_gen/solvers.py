@@ -9,6 +9,7 @@ from pursue_gen.console import tell, usage
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.files import write_texts
 from pursue_gen.pipeline import Rules, Solution, played, solution
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.verifytga import ToolError, run_verifytga
 from pursue_gen.tga.network import Network, Objective
@@ -20,8 +21,9 @@ def solved(
     rules: Rules,
     solver: Optional[str] = None,
     verifytga: Optional[Path] = None,
-    seconds: float = 0.0,
+    limits: Limits = NO_LIMITS,
     engine: Optional[str] = None,
+    progress: Optional[Listener] = None,
 ) -> Solution:
     """The proven solution, of the built-in solver (None) or of "verifytga", which is at the path `verifytga`.
 
@@ -31,11 +33,11 @@ def solved(
     if solver is None:
         if verifytga is not None:
             raise usage("--verifytga names a program that is not used", "add --solver verifytga")
-        return solution(network, objective, rules, seconds, engine)
+        return solution(network, objective, rules, limits, engine, progress)
     if engine is not None:
         raise usage(f"{engine} is an engine of the built-in solver", "use --engine or --solver verifytga, not both")
     game = played(network, rules)
-    verdict = run_verifytga(game, objective, verifytga, seconds, rules.reaction)
+    verdict = run_verifytga(game, objective, verifytga, limits, rules.reaction, progress)
     assert verdict.strategy is not None  # it raises where there is none
     return Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats)
 

@@ -14,6 +14,7 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.clock import Clock
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
@@ -80,9 +81,11 @@ class _Knob:
     """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
 
 
-def findings(scenario: Scenario, rules: Rules, seconds: float) -> Findings:
+def findings(
+    scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
+) -> Findings:
     """Tries all that is small, for a scenario that is lost under these rules; takes about the time at most."""
-    clock = Clock(seconds)
+    clock = Clock(limits, progress)
     knobs = list(_knobs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import textwrap
 import time
-from dataclasses import asdict, dataclass
-from typing import Any, Dict, List, Tuple
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.changes import Change, findings
@@ -17,10 +17,13 @@ from pursue_gen.explanation.play import counter_play
 from pursue_gen.explanation.words import Line, in_words, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.pipeline import Rules, played
+from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
 DEFAULT_SECONDS = 20.0
 """How long an explanation may take, unless somebody says otherwise."""
+
+_PATIENCE = Limits(DEFAULT_SECONDS)
 
 _FOR_CHANGES = 0.65
 """The part of the time that the search for changes may take."""
@@ -38,14 +41,22 @@ class Explanation:
     play: Tuple[Line, ...]
 
 
-def explain(scenario: Scenario, rules: Rules, seconds: float = DEFAULT_SECONDS) -> Explanation:
-    """Explains a scenario that is lost under these rules (that it is lost is not looked at), within so many seconds."""
+def explain(
+    scenario: Scenario,
+    rules: Rules,
+    limits: Limits = _PATIENCE,
+    progress: Optional[Listener] = None,
+) -> Explanation:
+    """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
+
+    Their seconds are for everything, the memory for each game that is solved, of which `progress` tells.
+    """
     began = time.monotonic()
-    found = findings(scenario, rules, seconds * _FOR_CHANGES)
+    found = findings(scenario, rules, replace(limits, seconds=limits.seconds * _FOR_CHANGES), progress)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-    left = seconds - (time.monotonic() - began)
+    left = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
     try:
-        play = in_words(scenario, counter_play(network, objective, rules.reaction, left, found.helpful))
+        play = in_words(scenario, counter_play(network, objective, rules.reaction, left, found.helpful, progress))
     except PursueError as problem:
         if problem.exit_status != 5:
             raise

@@ -17,6 +17,7 @@ from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, lo
 from pursue_gen.explanation.position import Oracle, Position
 from pursue_gen.synthesis.dbm import constant
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 
@@ -52,14 +53,19 @@ class Play:
 
 
 def counter_play(
-    network: Network, objective: Objective, reaction: Fraction, seconds: float, helpful: Sequence[Strategy] = ()
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    limits: Limits,
+    helpful: Sequence[Strategy] = (),
+    progress: Optional[Listener] = None,
 ) -> Play:
     """A play that shows why a lost game is lost; the network is that of the game as it is played.
 
     `helpful` are strategies for games that differ in numbers only, for the controller to go by. Raises PursueError with
     exit status 5 if the play is not found within the time.
     """
-    clock = Clock(seconds)
+    clock = Clock(limits, progress)
     spared = _spared(network, objective, reaction, clock)
     return _Player(network, spared, objective, reaction, clock, helpful).play()
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.dbm import INF
 from pursue_gen.synthesis.game import Action, Game, RawBlock
+from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
 
 try:
     from pursue_gen.synthesis import _core
@@ -33,19 +33,28 @@ class Outcome:
     counts: Mapping[str, int]
 
 
-def solve_native(game: Game, seconds: float = 0.0, states: int = 0) -> Outcome:
+def solve_native(
+    game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, states: int = 0
+) -> Outcome:
     """Decides the game.
 
-    `seconds` and `states` (discrete ones) are limits, 0 for none; a limit that is hit raises PursueError with exit
-    status 5. Ctrl-C raises KeyboardInterrupt at once.
+    `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises PursueError with exit status 5.
+    Ctrl-C raises KeyboardInterrupt at once.
     """
+    reached = NOTHING_YET
+
+    def told(states: int, waiting: int, seconds: float, memory: int) -> None:
+        nonlocal reached
+        reached = Progress(states, waiting, seconds, memory)
+        if progress is not None:
+            progress(reached)
+
     try:
-        result = _core.solve(_tables(game), seconds, states)
+        result = _core.solve(_tables(game), limits.left, states, limits.memory, told)
     except _core.LimitReached as limit:
-        what = f"{seconds:g} seconds" if str(limit) == "seconds" else f"{states} discrete states"
-        hint = "allow more, or make the scenario smaller: fewer agents, POIs or events"
-        finding = error("SYN010", f"no verdict within the limit of {what}", hint=hint)
-        raise PursueError([finding], exit_status=5) from None
+        raise limit_reached(str(limit), limits, reached, states) from None
+    except MemoryError:
+        raise limit_reached("memory", limits, reached) from None
     count = len(game.automata)
     blocks: List[RawBlock] = [
         (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))

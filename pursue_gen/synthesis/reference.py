@@ -22,6 +22,7 @@ from pursue_gen.synthesis.dbm import Dbm
 from pursue_gen.synthesis.directed import RelaxedPlanner
 from pursue_gen.synthesis.federation import Federation, predt
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener, Watch
 from pursue_gen.synthesis.reference_arena import Arena, Move, Node
 from pursue_gen.tga.network import Kind
 
@@ -54,15 +55,21 @@ class Outcome:
         )
 
 
-def solve_reference(game: Game, directed: bool = True) -> Outcome:
-    """Who wins from the initial position, and how.
+def solve_reference(
+    game: Game, directed: bool = True, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None
+) -> Outcome:
+    """Who wins from the initial position, and how. Raises PursueError with exit status 5 at a limit.
 
     `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan,
     or none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
     """
-    if game.kind is Kind.SAFETY:
-        return _Safety(game).solve()
-    return _Reach(game, directed).solve()
+    watch = Watch(limits, progress)
+    try:
+        if game.kind is Kind.SAFETY:
+            return _Safety(game, watch).solve()
+        return _Reach(game, watch, directed).solve()
+    except MemoryError:
+        raise watch.stopped("memory") from None
 
 
 class _Fixpoint:
@@ -88,10 +95,15 @@ class _Fixpoint:
         """The next node; None: a fixpoint."""
         if not self._queue:
             return None
+        self.check()
         number = self._queue.popleft()
         self._queued.discard(number)
         self.evaluations += 1
         return number
+
+    def check(self) -> None:
+        """Raises PursueError at a limit."""
+        self.arena.watch.check(len(self.arena.nodes), len(self._queue))
 
     def grow(self, number: int, new: Federation) -> None:
         """Add the new positions (disjoint from what was found), and look again at what leads to the node."""
@@ -172,8 +184,8 @@ def _disjoint(federation: Federation) -> Tuple[Dbm, ...]:
 class _Reach(_Fixpoint):
     """`found` is what is won, `rest` what is reached and not won (yet)."""
 
-    def __init__(self, game: Game, directed: bool) -> None:
-        super().__init__(Arena(game, RelaxedPlanner(game).choose if directed else None))
+    def __init__(self, game: Game, watch: Watch, directed: bool) -> None:
+        super().__init__(Arena(game, watch, RelaxedPlanner(game).choose if directed else None))
         self._pieces: Dict[int, List[Piece]] = {}
         self._forced: Dict[int, Tuple[Dbm, Federation]] = {}
 
@@ -248,8 +260,8 @@ class _Reach(_Fixpoint):
 class _Safety(_Fixpoint):
     """`found` is what is lost, `rest` what is reached and not lost (yet)."""
 
-    def __init__(self, game: Game) -> None:
-        super().__init__(Arena(game))
+    def __init__(self, game: Game, watch: Watch) -> None:
+        super().__init__(Arena(game, watch))
         self._unforced: List[Federation] = []
 
     def solve(self) -> Outcome:
@@ -257,6 +269,7 @@ class _Safety(_Fixpoint):
         arena = self.arena
         arena.explore()
         for k, node in enumerate(arena.nodes):
+            self.check()
             reach, bad = Federation.of(node.reach), is_bad(arena.game, node.state)
             self.found.append(reach if bad else Federation())
             self.rest.append(Federation() if bad else reach)
@@ -286,6 +299,7 @@ class _Safety(_Fixpoint):
         """Wait where that may go on for ever; else take a safe move where there is one; else wait for one."""
         blocks: List[Tuple[State, Tuple[Piece, ...]]] = []
         for number, node in enumerate(self.arena.nodes):
+            self.check()
             safe = self.rest[number]
             if safe:
                 danger, usable = self._look(number)

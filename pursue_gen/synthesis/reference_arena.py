@@ -13,6 +13,7 @@ from typing import Callable, Deque, Dict, Iterable, List, Optional, Sequence, Se
 from pursue_gen.synthesis.dbm import Dbm, complement
 from pursue_gen.synthesis.federation import Federation
 from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, invariant, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.limits import Watch
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
 """Of a state and its moves that the controller can take, those that a search is to follow at first."""
@@ -43,8 +44,9 @@ class Node:
 class Arena:
     """The part of the game that is looked at; it grows by `explore` and `widen`. Node 0 is where the game starts."""
 
-    def __init__(self, game: Game, choose: Optional[Chooser] = None) -> None:
+    def __init__(self, game: Game, watch: Watch, choose: Optional[Chooser] = None) -> None:
         self.game = game
+        self.watch = watch
         self.nodes: List[Node] = []
         self._choose = choose
         self._index: Dict[State, int] = {}
@@ -56,6 +58,7 @@ class Arena:
         """Follow the moves until nothing new is reached; returns the nodes in which more is reached than before."""
         changed: Set[int] = set()
         while self._waiting:
+            self.watch.check(len(self.nodes), len(self._waiting))
             number = self._waiting.popleft()
             self._queued.discard(number)
             changed.add(number)

@@ -10,6 +10,7 @@ from typing import Mapping, Optional
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis import native
 from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.reference import solve_reference
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
@@ -44,13 +45,14 @@ def solve(
     objective: Objective,
     reaction: Fraction = Fraction(0),
     engine: Optional[str] = None,
-    seconds: float = 0.0,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
     `reaction` is the delay of a command in time units, `engine` "native" or "python" (default: native where it was
-    built), `seconds` a limit of the native engine (0: none). Raises PursueError for networks that the game does not
-    support, with exit status 5 at the limit, and with 6 where the native engine is asked for and was not built.
+    built); `progress` is told a few times a second how far it is. Raises PursueError for networks that the game does
+    not support, with exit status 5 at a limit, and with 6 where the native engine is asked for and was not built.
     """
     if engine == "native" and not native.available():
         hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
@@ -59,12 +61,12 @@ def solve(
     ranks = None
     start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
-        found = native.solve_native(game, seconds)
+        found = native.solve_native(game, limits, progress)
         won, blocks = found.won, found.blocks
         ranks = to_ranks(found.blocks, found.ranks)
         stats = Stats("native", found.counts["discrete_states"], found.counts["zones"], time.perf_counter() - start)
     else:
-        outcome = solve_reference(game)
+        outcome = solve_reference(game, limits=limits, progress=progress)
         won, blocks = outcome.won, outcome.raw_blocks()
         stats = Stats("python", outcome.stats.states, outcome.stats.zones, time.perf_counter() - start)
     return Verdict(won, to_strategy(game, blocks) if won else None, stats, ranks)

@@ -14,6 +14,7 @@ from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Se
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, Limits, Listener, Watch
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.verify_clocks import Horizon
 from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry, in_words, sample
@@ -53,6 +54,8 @@ def verify(
     limit: int = LIMIT,
     prompt: Optional[bool] = None,
     ranks: Optional[Mapping[ZoneKey, int]] = None,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
 ) -> Report:
     """Check that the strategy wins when each command takes effect up to `reaction` time units after its decision.
 
@@ -65,7 +68,8 @@ def verify(
     Never says ok for a strategy that loses. A strategy that compares clock differences may in rare cases be refused
     though it wins, because forgetting large clock values is not exact there. Whoever waits in a reach game may rely on
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
-    Raises PursueError for a network or strategy that it cannot read.
+    Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on time or memory.
+    `progress` is told a few times a second how far it is.
     """
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
@@ -77,13 +81,17 @@ def verify(
     zero = Dbm.zero(loop.arena.dim)
     if start is None or not start.includes(zero):
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
-    report = _played(loop, False, False, limit)
-    if prompt and not report.ok:
-        report = _played(loop, True, False, limit)
-    if report.ok or ranks is not None:
-        return report
-    # It may fail only because clock values are forgotten: look again without that, and show a play that is real.
-    exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT))
+    watch = Watch(limits, progress, PROVING)
+    try:
+        report = _played(loop, False, False, limit, watch)
+        if prompt and not report.ok:
+            report = _played(loop, True, False, limit, watch)
+        if report.ok or ranks is not None:
+            return report
+        # It may fail only because clock values are forgotten: look again without that, and show a play that is real.
+        exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT), watch)
+    except MemoryError:
+        raise watch.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
 
 
@@ -102,14 +110,14 @@ def pruned(strategy: Strategy, report: Report) -> Strategy:
     return replace(strategy, blocks=tuple(blocks))
 
 
-def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int) -> Report:
+def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:
     """What becomes of all plays when the strategy is played so; `exact`: forget nothing about the clocks."""
     loop.rules, loop.used = replace(loop.rules, prompt=prompt), set()
     search = _check_ends if loop.rules.must_end and loop.ranks is None else _check_all
-    return search(loop, (loop.arena.initial, Dbm.zero(loop.arena.dim)), exact, limit)
+    return search(loop, (loop.arena.initial, Dbm.zero(loop.arena.dim)), exact, limit, watch)
 
 
-def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int) -> Report:
+def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch) -> Report:
     """Everything that is reachable, breadth first."""
     found: List[Tuple[Entry, int, Optional[JointMove]]] = [(start, -1, None)]
     passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
@@ -123,6 +131,7 @@ def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int) -> Repor
         return steps[::-1]
 
     while pending:
+        watch.check(len(found), len(pending))
         n = pending.popleft()
         (state, zone), _, _ = found[n]
         if not any(other is zone for other in passed[state]):
@@ -154,7 +163,7 @@ class _Step:
     left: List[Tuple[JointMove, Entry]]
 
 
-def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int) -> Report:
+def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch) -> Report:
     """Depth first: an entry is proven when all that may follow it are, so every play ends in the goal."""
     proven: Dict[State, List[Dbm]] = {}
     open_zones: Dict[State, List[Dbm]] = {}
@@ -167,6 +176,7 @@ def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int) -> Repo
         return _failed(loop, reason, steps, state, zone, states)
 
     while coming is not None or path:
+        watch.check(states, len(path))
         if coming is None:
             step = path[-1]
             if step.left:

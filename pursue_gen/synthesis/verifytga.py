@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -19,9 +20,10 @@ import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Optional, Sequence, Tuple
+from typing import Callable, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import Stats, Verdict
 from pursue_gen.synthesis.strategy import Strategy
@@ -102,25 +104,27 @@ def run_verifytga(
     network: Network,
     objective: Objective,
     path: Optional[Path] = None,
-    seconds: float = 0.0,
+    limits: Limits = NO_LIMITS,
     reaction: Fraction = Fraction(0),
+    progress: Optional[Listener] = None,
 ) -> Verdict:
     """The strategy of verifytga for the game on the network as it stands: proven, and without what no play reaches.
 
-    `path` is the program (default: the verifytga on PATH), `seconds` a limit on its time (0: none), `reaction` the
-    delay of commands, in time units, under which its strategy has to win. In the statistics the discrete states are
-    those of its plan, the zones those on its last line of progress.
+    `path` is the program (default: the verifytga on PATH), `limits` hold for it and, with the time that is left, for
+    the proof, of which `progress` tells; `reaction` is the delay of commands, in time units, under which its strategy
+    has to win. In the statistics the discrete states are those of its plan, the zones those on its last line of
+    progress.
 
     Raises PursueError with exit status 6 where there is no tool, and ToolError with status 4 where it finds that the
     objective cannot be met or its strategy does not win, 5 where it runs out of time or memory, 6 where it fails.
     """
     tool = find_verifytga(path)
-    start = time.perf_counter()
-    run = _first_with_strategy(tool, network, objective, seconds)
-    taken = time.perf_counter() - start
+    start = time.monotonic()
+    run = _first_with_strategy(tool, network, objective, limits)
+    taken = time.monotonic() - start
     strategy = _strategy(run, network)
     sizes = _SIZE.findall(run.before)
-    proven = _proven(run, network, objective, strategy, reaction)
+    proven = _proven(run, network, objective, strategy, reaction, limits.since(start), progress)
     return Verdict(True, proven, Stats(TOOL, len(strategy.blocks), int(sizes[-1]) if sizes else 0, taken))
 
 
@@ -147,23 +151,22 @@ def find_verifytga(path: Optional[Path] = None) -> str:
     return os.path.abspath(found)
 
 
-def _first_with_strategy(tool: str, network: Network, objective: Objective, seconds: float) -> Run:
+def _first_with_strategy(tool: str, network: Network, objective: Objective, limits: Limits) -> Run:
     """The first run, one per option, that prints a strategy. Raises ToolError where none does."""
-    until = time.monotonic() + seconds
+    start = time.monotonic()
     runs = []
     with tempfile.TemporaryDirectory(prefix="pursue-gen-") as name:
         folder = Path(name)
         (folder / _MODEL).write_text(write_network(_all_named(network), objective), encoding="utf-8")
         (folder / _QUERY).write_text(write_query(objective), encoding="utf-8")
         for option in _OPTIONS:
-            left = max(until - time.monotonic(), 0.001) if seconds else None
-            run = _run((tool, option, _MODEL, _QUERY), folder, left)
+            run = _run((tool, option, _MODEL, _QUERY), folder, limits.since(start))
             if run.decided and _HEADER.search(run.output):
                 return run
             runs.append(run)
             if not (run.decided or _OPTION.search(run.before)):
                 break
-    raise _failure(next((run for run in runs if run.decided), runs[-1]), seconds)
+    raise _failure(next((run for run in runs if run.decided), runs[-1]), limits)
 
 
 def _all_named(network: Network) -> Network:
@@ -177,22 +180,28 @@ def _all_named(network: Network) -> Network:
     )
 
 
-def _run(command: Tuple[str, ...], folder: Path, seconds: Optional[float]) -> Run:
-    """Runs the tool until it ends, or for so many seconds; then, and at Ctrl-C, it and all that it started is ended."""
+def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
+    """Runs the tool until it ends, or its time is up; then, and at Ctrl-C, it and all that it started is ended."""
     outputs = (folder / "output", folder / "messages")
     with contextlib.ExitStack() as stack:
         out, err = (stack.enter_context(open(file, "wb")) for file in outputs)
         try:
             # In files, not pipes: plans are large. In a session of its own: its children can be ended with it.
             process = subprocess.Popen(
-                command, cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=err, start_new_session=True
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                start_new_session=True,
+                preexec_fn=_memory_setter(limits.memory),
             )
         except OSError as problem:
             run = Run(command, "", "", None)
             message = f"{command[0]} cannot be started: {problem.strerror or problem}"
             raise ToolError([error("SYN031", message, hint=_START_IT)], _UNUSABLE, run) from None
         try:
-            status: Optional[int] = process.wait(seconds)
+            status: Optional[int] = process.wait(limits.left or None)
         except subprocess.TimeoutExpired:
             status = None
         finally:
@@ -204,7 +213,16 @@ def _run(command: Tuple[str, ...], folder: Path, seconds: Optional[float]) -> Ru
     return Run(command, output, messages, status)
 
 
-def _failure(run: Run, seconds: float) -> ToolError:
+def _memory_setter(memory: int) -> Optional[Callable[[], None]]:
+    """What gives a new process at most so many MiB (0: None); it then gets no more, and says so itself."""
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    size = memory << 20
+    if not size or (hard != resource.RLIM_INFINITY and hard <= size):
+        return None
+    return lambda: resource.setrlimit(resource.RLIMIT_AS, (size, hard))
+
+
+def _failure(run: Run, limits: Limits) -> ToolError:
     """What went wrong in a run that printed no strategy."""
     told = run.before
     verdict = _VERDICT.search(run.output)
@@ -212,11 +230,13 @@ def _failure(run: Run, seconds: float) -> ToolError:
     hint = f"try it by hand with the files that `pursue-gen tga` writes; {_OURS}"
     if run.status is None:
         code, exit_status = "SYN010", _LIMIT
-        message, hint = f"no verdict of {TOOL} within the limit of {seconds:g} seconds", f"allow more; {_OURS}"
+        message, hint = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds", f"allow more; {_OURS}"
     elif _MEMORY.search(told) or run.status == -signal.SIGKILL:
         code, exit_status = "SYN010", _LIMIT
         surely = "ran out of memory" if _MEMORY.search(told) else "was killed, most likely for want of memory"
-        message, hint = f"{TOOL} {surely}", f"make the scenario smaller: fewer agents, POIs or events; {_OURS}"
+        of = f" (the limit is {limits.memory} MiB)" if limits.memory else ""
+        smaller = "make the scenario smaller: fewer agents, POIs or events"
+        message, hint = f"{TOOL} {surely}{of}", f"{'allow more (--memory), or ' if of else ''}{smaller}; {_OURS}"
     elif run.status == -signal.SIGXCPU:
         code, exit_status = "SYN010", _LIMIT
         message, hint = f"{TOOL} reached the limit on time of this shell (ulimit -t)", f"allow more; {_OURS}"
@@ -251,15 +271,24 @@ def _strategy(run: Run, network: Network) -> Strategy:
     return strategy
 
 
-def _proven(run: Run, network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> Strategy:
+def _proven(
+    run: Run,
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    limits: Limits,
+    progress: Optional[Listener],
+) -> Strategy:
     """The part of the strategy that plays reach, once the checker finds it winning. Raises ToolError."""
-    report = verify(network, objective, strategy, reaction)
+    start = time.monotonic()
+    report = verify(network, objective, strategy, reaction, limits=limits, progress=progress)
     if report.ok:
         return pruned(strategy, report)
     if report.reason.startswith("limit"):
         message, hint = f"the strategy of {TOOL} is not proven: {report.reason}", f"it is too large; {_OURS}"
         raise ToolError([error("SYN010", message, hint=hint)], _LIMIT, run)
-    if reaction and verify(network, objective, strategy).ok:
+    if reaction and verify(network, objective, strategy, limits=limits.since(start), progress=progress).ok:
         delay = f"{float(reaction):g} time units"
         message = f"the strategy of {TOOL} wins only where commands take effect at once, not up to {delay} later"
         hint = f"{TOOL} knows no reaction: --reaction 0 takes its strategy as it is; {_OURS}, which knows it"

@@ -18,6 +18,7 @@ from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, Rules, played
 from pursue_gen.synthesis import native
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.test_cli import pursue
@@ -139,7 +140,7 @@ SMALL = {
 @pytest.mark.parametrize("name", SMALL)
 def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name: str) -> None:
     text, rules = SMALL[name]
-    explanation = explain(parse(text, "x.pur"), rules, PLENTY)
+    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
     assert explanation.changes and explanation.play and not explanation.undecided
     check_claims(text, rules, explanation)
     assert json.loads(json.dumps(as_json(explanation)))["changes"][0]["sentence"] == explanation.changes[0].sentence
@@ -149,7 +150,7 @@ def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name
 @pytest.mark.parametrize("name", ["EB1", "WC2a", "CT3a"])
 def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name: str) -> None:
     text = (reference_dir / name / "scenario.pur").read_text()
-    explanation = explain(parse(text, "x.pur"), DEFAULT, PLENTY)
+    explanation = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY))
     check_claims(text, DEFAULT, explanation)
     found = {(change.what, change.name): (change.after, change.next_lost) for change in explanation.changes}
     if name == "EB1":
@@ -163,7 +164,7 @@ def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name
 
 def told(name: str) -> str:
     text, rules = SMALL[name]
-    rendered = render(explain(parse(text, "x.pur"), rules, PLENTY))
+    rendered = render(explain(parse(text, "x.pur"), rules, Limits(PLENTY)))
     return rendered[rendered.index("How it goes wrong") :].split("Not enough")[0]
 
 
@@ -194,20 +195,20 @@ def test_an_agent_that_need_not_help_is_named() -> None:
 
 def test_a_robot_that_can_do_nothing_alone_is_told(reference_dir: Path) -> None:
     text = (reference_dir / "WC2a" / "scenario.pur").read_text()
-    last = explain(parse(text, "x.pur"), DEFAULT, PLENTY).play[-1].text
+    last = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY)).play[-1].text
     assert last == (
         "the robots can do nothing before one of these, and none of them needs to happen: human: begins screwH"
     )
 
 
 def test_a_change_that_only_moves_the_problem_is_no_claim() -> None:
-    explanation = explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, PLENTY)
+    explanation = explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, Limits(PLENTY))
     assert "desk and shelf at distance 1 instead of 2" in explanation.lost
     assert not any(change.what == "distance" for change in explanation.changes)
 
 
 def test_where_there_is_no_time_nothing_is_claimed() -> None:
-    explanation = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, 0.0)
+    explanation = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, Limits(0.0))
     assert explanation.changes == explanation.lost == explanation.play == ()
     assert "a later deadline" in explanation.undecided
     text = render(explanation)
@@ -216,9 +217,9 @@ def test_where_there_is_no_time_nothing_is_claimed() -> None:
 
 
 def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
-    first = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, PLENTY).changes[0]
+    first = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes[0]
     assert (first.what, first.after) == ("ends", CONTROLLABLE)
-    slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), PLENTY)
+    slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), Limits(PLENTY))
     (reaction,) = [change for change in slow.changes if change.what == "reaction"]
     assert Fraction(reaction.after) + Fraction(3, 10) == Fraction(reaction.next_lost)
 
@@ -227,12 +228,12 @@ def test_without_the_native_engine_the_time_is_kept_too(monkeypatch: pytest.Monk
     scenario = parse(CALLED.format(deadline=5), "x.pur")
     network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
     monkeypatch.setattr(native, "available", lambda: False)
-    assert Clock(PLENTY).verdict(network, objective, DEFAULT.reaction).strategy is not None
+    assert Clock(Limits(PLENTY)).verdict(network, objective, DEFAULT.reaction).strategy is not None
     with pytest.raises(PursueError) as stopped:
-        Clock(1e-4).verdict(network, objective, DEFAULT.reaction)
+        Clock(Limits(1e-4)).verdict(network, objective, DEFAULT.reaction)
     assert stopped.value.exit_status == 5
     with pytest.raises(PursueError) as refused:
-        Clock(PLENTY).verdict(network, objective, Fraction(-1))
+        Clock(Limits(PLENTY)).verdict(network, objective, Fraction(-1))
     assert [finding.code for finding in refused.value.diagnostics] == ["SYN001"]
 
 

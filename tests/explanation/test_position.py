@@ -12,6 +12,7 @@ from pursue_gen.explanation.clock import Clock
 from pursue_gen.explanation.play import Play, counter_play
 from pursue_gen.explanation.position import Oracle, Position, beginning_at
 from pursue_gen.synthesis.game import compile_game, initial_state
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind, Network, Objective
 from tests.synthesis.random_games import _automaton
@@ -45,7 +46,7 @@ def test_any_position_is_judged_as_brute_force_judges_it(drawn, delay):
     network, objective = drawn
     regions = RegionGame(compile_game(network, objective, Fraction(delay)))
     winning = regions.winning()
-    oracle = Oracle(network, objective, Fraction(delay), Clock(PLENTY))
+    oracle = Oracle(network, objective, Fraction(delay), Clock(Limits(PLENTY)))
     for state, clocks in sampled(regions, 12):
         assert oracle.lost(Position(state, clocks)) is ((state, clocks) not in winning)
 
@@ -56,7 +57,7 @@ def test_what_is_lost_within_a_time_is_lost_within_more_and_without_a_limit(draw
     network, objective = drawn
     game = compile_game(network, objective, Fraction(delay))
     start = Position(initial_state(game), (Fraction(0),) * len(game.clocks))
-    oracle = Oracle(network, objective, Fraction(delay), Clock(PLENTY))
+    oracle = Oracle(network, objective, Fraction(delay), Clock(Limits(PLENTY)))
     by_horizon = [oracle.lost(start, Fraction(0), horizon) for horizon in (1, 2, 4, 8, 64)]
     assert by_horizon == sorted(by_horizon)
     assert by_horizon[-1] is oracle.lost(start)
@@ -76,7 +77,7 @@ def test_a_game_that_begins_at_its_beginning_is_the_same_game(drawn, delay):
 def test_a_counter_play_follows_the_rules_and_never_leaves_what_is_lost(drawn, delay):
     network, objective = drawn
     assume(not solve(network, objective, Fraction(delay)).won)
-    play = counter_play(network, objective, Fraction(delay), PLENTY)
+    play = counter_play(network, objective, Fraction(delay), Limits(PLENTY))
     regions = RegionGame(compile_game(network, objective, Fraction(delay)))
     winning = regions.winning()
     for state, clocks in replayed(play):

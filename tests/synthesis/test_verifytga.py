@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, render
 from pursue_gen.language import load, parse
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -105,7 +106,7 @@ def told(problem: PursueError) -> str:
 
 def failure(game: Game, program: Path, seconds: float = 0.0, reaction: Fraction = Fraction(0)) -> ToolError:
     with pytest.raises(ToolError) as caught:
-        run_verifytga(*game, path=program, seconds=seconds, reaction=reaction)
+        run_verifytga(*game, path=program, limits=Limits(seconds), reaction=reaction)
     return caught.value
 
 

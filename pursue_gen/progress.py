@@ -1,0 +1,76 @@
+"""How far a search is, on one line of a terminal that is redrawn in place."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import time
+from typing import Iterator, Optional, TextIO
+
+from pursue_gen.synthesis.limits import Listener, Progress
+
+_PATIENCE = 0.5
+"""Nothing is shown of work that takes no longer than so many seconds."""
+
+_REDRAW = 0.2
+"""Seconds from one drawing to the next."""
+
+
+@contextlib.contextmanager
+def progress_line(quiet: bool = False, stream: Optional[TextIO] = None) -> Iterator[Optional[Listener]]:
+    """A listener that draws the line on the stream (stderr); erased at the end, however the work ends.
+
+    None where nothing is to be drawn: `quiet`, or the stream is no terminal that can do it.
+    """
+    out = sys.stderr if stream is None else stream
+    if quiet or os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
+        yield None
+        return
+    line = _Line(out)
+    try:
+        yield line.show
+    finally:
+        line.erase()
+
+
+class _Line:
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._start = time.monotonic()
+        self._next = self._start + _PATIENCE
+        self._drawn = False
+
+    def show(self, progress: Progress) -> None:
+        """Draws it, unless that was done a moment ago."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + _REDRAW
+        self._drawn = True
+        text = in_words(progress, now - self._start)[: _columns(self._stream) - 1]
+        self._stream.write(f"\r{text}\033[K")
+        self._stream.flush()
+
+    def erase(self) -> None:
+        """Leaves the line as it was."""
+        if self._drawn:
+            self._stream.write("\r\033[K")
+            self._stream.flush()
+
+
+def in_words(progress: Progress, elapsed: float) -> str:
+    """One line; `elapsed` are the seconds since all of the work began."""
+    rate = progress.states / progress.seconds if progress.seconds else 0.0
+    return (
+        f"{progress.phase}: {progress.states} states, {progress.waiting} waiting, {rate:.0f} states/s, "
+        f"{progress.memory} MiB, {elapsed:.0f} s"
+    )
+
+
+def _columns(stream: TextIO) -> int:
+    """The width of the terminal."""
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or 80
+    except (OSError, ValueError):
+        return 80

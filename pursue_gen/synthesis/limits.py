@@ -1,0 +1,138 @@
+"""How much time and memory a search may take, how far it is, and what is told where a limit ends it."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from dataclasses import dataclass, replace
+from typing import Callable, Iterator, Optional
+
+from pursue_gen.diagnostics import PursueError, error
+
+CAREFUL = 4096
+"""MiB that the commands allow themselves where nobody says otherwise, if the machine has them."""
+
+_SHARE = 0.8
+"""The part of the available memory that may be taken; the machine has to go on."""
+
+_LOOK, _TELL = 0.05, 0.2
+"""Seconds from one look at the memory to the next, and from one report to the next."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Seconds, and MiB of the whole process; 0: no limit. `spent`: so many of the seconds are used up already."""
+
+    seconds: float = 0.0
+    memory: int = 0
+    spent: float = 0.0
+
+    @property
+    def left(self) -> float:
+        """The seconds that are left, more than 0 even if none are; 0: no limit."""
+        return max(self.seconds - self.spent, 1e-9) if self.seconds else 0.0
+
+    def since(self, start: float) -> Limits:
+        """What is left of them after work that began at `start` (of time.monotonic())."""
+        return replace(self, spent=self.spent + time.monotonic() - start)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """States reached (the checker's: symbolic ones), those that wait to be looked at, seconds, MiB of the process."""
+
+    states: int
+    waiting: int
+    seconds: float
+    memory: int
+    phase: str = "solving"
+
+
+Listener = Callable[[Progress], None]
+"""Is told the progress a few times a second."""
+
+SOLVING, PROVING = "solving", "proving"
+UNDECIDED = "SYN010"
+"""The code of a finding that says that a limit was hit."""
+
+NOTHING_YET = Progress(0, 0, 0.0, 0)
+NO_LIMITS = Limits()
+
+
+class Watch:
+    """For engines that ask, between steps, whether they may go on; the listener learns how far they are."""
+
+    def __init__(self, limits: Limits = NO_LIMITS, listener: Optional[Listener] = None, phase: str = SOLVING) -> None:
+        self._limits, self._listener, self._phase = limits, listener, phase
+        self._start = time.monotonic()
+        self._look = self._tell = 0.0
+        self._reached = NOTHING_YET
+
+    def check(self, states: int, waiting: int) -> None:
+        """Raises PursueError (exit status 5) at a limit."""
+        seconds = time.monotonic() - self._start
+        late = 0 < self._limits.left < seconds
+        if seconds < self._look and not late:
+            return
+        self._look = seconds + _LOOK
+        self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
+        if late:
+            raise self.stopped("seconds")
+        if 0 < self._limits.memory < self._reached.memory:
+            raise self.stopped("memory")
+        if self._listener is not None and seconds >= self._tell:
+            self._tell = seconds + _TELL
+            self._listener(self._reached)
+
+    def stopped(self, which: str) -> PursueError:
+        """What to raise where the limit on "seconds" or "memory" ended the work."""
+        return limit_reached(which, self._limits, self._reached)
+
+
+def limit_reached(which: str, limits: Limits, reached: Progress, states: int = 0) -> PursueError:
+    """What is told at a limit: which one ("seconds", "memory" or "states"), how far the work was, what to do."""
+    proving = reached.phase == PROVING
+    shown = {"seconds": f"{limits.seconds:g} seconds", "memory": f"{limits.memory} MiB of memory"}
+    where = f"within the limit of {shown.get(which, f'{states} discrete states')}"
+    hint = "make the scenario smaller: fewer agents, POIs or events"
+    if which == "memory" and not limits.memory:
+        where = "with the memory that there is"
+    else:
+        option = {"seconds": " (--limit)", "memory": " (--memory), if the machine has more"}.get(which, "")
+        hint = f"allow more{option}, or {hint}"
+    far = f"{reached.states} {'symbolic' if proving else 'discrete'} states were reached, {reached.waiting} waiting"
+    if proving:
+        hint = f"there is a strategy, but only what is proven is used; {hint}"
+    message = f"no {'proof' if proving else 'verdict'} {where}; {far}, {reached.memory} MiB in use"
+    return PursueError([error(UNDECIDED, message, hint=hint)], exit_status=5)
+
+
+def memory_in_use() -> int:
+    """MiB of this process in memory; where the system does not tell, the most that it was so far."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * resource.getpagesize() >> 20
+    except (OSError, ValueError, IndexError):
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
+
+
+def careful_memory() -> int:
+    """The limit on memory (MiB) where nobody names one: some GiB, and never all that the machine has left."""
+    return max(1, min([CAREFUL, *(int(_SHARE * size) for size in _available())]))
+
+
+def _available() -> Iterator[int]:
+    """MiB that this process may come to have: of what the machine has free, and of what a container is given."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as file:
+            sizes = dict(line.split(":", 1) for line in file if ":" in line)
+        yield (int(sizes["MemAvailable"].split()[0]) >> 10) + memory_in_use()
+    except (OSError, ValueError, KeyError, IndexError):
+        pass
+    for name in ("memory.max", "memory/memory.limit_in_bytes"):
+        try:
+            with open(f"/sys/fs/cgroup/{name}", encoding="ascii") as file:
+                yield int(file.read()) >> 20
+        except (OSError, ValueError):  # not in a container, or "max"
+            pass
