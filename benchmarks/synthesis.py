@@ -1,93 +1,185 @@
-"""Prints how long synthesis takes: `python benchmarks/synthesis.py [SCENARIO.pur | TGA.xml ...]`.
+"""Measures what synthesis costs: `python benchmarks/synthesis.py --help` lists the choices.
 
-Without arguments: the scenarios in scenarios/, and the published ones where they are at hand (beside the project in
-shared/reference, or where PURSUE_REFERENCE says). Each game is decided in a process of its own, the ideal one and the
-default one; times are those of one run, so quote them with the machine they come from.
-
-columns: discrete states; those per second; seconds to decide; seconds to prove; peak memory of the process (MiB);
-blocks and commands of the proven strategy.
+Each game is decided and proven in a process of its own, with limits on time and memory, so that a slow one does not
+stop the table. The published scenarios (and TIGA's figures) are read where they are at hand: beside the project in
+shared/reference, or where PURSUE_REFERENCE says. docs/benchmarks.md says what the columns mean.
 """
 
 from __future__ import annotations
 
+import argparse
+import datetime
 import json
 import os
-import resource
-import subprocess
+import platform
 import sys
-import time
-from fractions import Fraction
 from pathlib import Path
-from typing import Dict, Iterator, List, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 ROOT = Path(__file__).resolve().parent.parent
-GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fraction(1, 10))}
-LIMIT = 120.0  # seconds to decide a game
+sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures this checkout
 
-Row = Dict[str, Union[str, int, float]]
+from benchmarks import tables  # noqa: E402
+from benchmarks.families import FAMILIES  # noqa: E402
+from benchmarks.measure import GAMES, Bounds, Case, Row, measured  # noqa: E402
+from benchmarks.page import filled  # noqa: E402
+from benchmarks.tiga import NOTHING, Figures, figures  # noqa: E402
 
-
-def measured(file: Path, game: str) -> Row:
-    """Decides and proves one game in this process."""
-    from pursue_gen.language import load
-    from pursue_gen.pipeline import Rules, played, prove
-    from pursue_gen.synthesis.solve import solve
-    from pursue_gen.tga import scenario_objective, translate
-    from pursue_gen.tga.uppaal import read_network, read_query
-
-    if file.suffix == ".xml":
-        network = read_network(file.read_text(), str(file))
-        objective = read_query((file.parent / "TCTL.q").read_text(), str(file.parent / "TCTL.q"))
-    else:
-        scenario = load(file)
-        network, objective = translate(scenario), scenario_objective(scenario)
-    rules = Rules(*GAMES[game])
-    network = played(network, rules)
-    verdict = solve(network, objective, rules.reaction, seconds=LIMIT)
-    row: Row = {"verdict": "won" if verdict.won else "lost", "states": verdict.stats.discrete_states}
-    row["seconds"] = verdict.stats.seconds
-    if verdict.strategy is not None:
-        start = time.perf_counter()
-        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks)
-        row["proof"] = time.perf_counter() - start
-        row["blocks"] = len(strategy.blocks)
-        row["commands"] = sum(len(block.commands) for block in strategy.blocks)
-    row["memory"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return row
+QUICK = ("CT1", "EB1", "WC1", "WC2a", "scenario 1", "scenario 4")
 
 
-def files(arguments: List[str]) -> Iterator[Tuple[str, Path]]:
-    """What to measure, with a name for each."""
-    if arguments:
-        yield from ((argument, Path(argument)) for argument in arguments)
-        return
-    for file in sorted((ROOT / "scenarios").glob("*/*.pur")):
-        yield f"{file.parent.name}/{file.stem}", file
-    published = Path(os.environ.get("PURSUE_REFERENCE", ROOT.parent / "shared" / "reference")) / "pursue-scenarios"
-    for file in sorted(published.glob("*/TGA.xml")):
-        yield file.parent.name, file
+def reference_folder() -> Path:
+    """Where the published scenarios are, if they are there."""
+    return Path(os.environ.get("PURSUE_REFERENCE", ROOT.parent / "shared" / "reference")) / "pursue-scenarios"
 
 
-def main() -> int:
-    """Prints the table, a row at a time."""
-    if sys.argv[1:2] == ["--one"]:
-        print(json.dumps(measured(Path(sys.argv[2]), sys.argv[3])))
-        return 0
-    head = f"{'scenario':32} {'game':8} {'verdict':8} {'states':>8} {'states/s':>9} {'seconds':>8} {'proof':>7}"
-    print(f"{head} {'MiB':>6} {'blocks':>7} {'commands':>8}")
-    for name, file in files(sys.argv[1:]):
+def scenario_cases() -> Iterator[Case]:
+    """The thesis's five, and the published ones where they are at hand."""
+    for file in sorted((ROOT / "scenarios" / "thesis").glob("*.pur")):
         for game in GAMES:
-            command = [sys.executable, __file__, "--one", str(file), game]
-            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-            if done.returncode:
-                print(f"{name:32} {game:8} {done.stderr.strip().splitlines()[-1][:90]}", flush=True)
-                continue
-            row = json.loads(done.stdout)
-            rate = row["states"] / max(row["seconds"], 1e-9)
-            line = f"{name:32} {game:8} {row['verdict']:8} {row['states']:8} {rate:9.0f} {row['seconds']:8.3f}"
-            proof = f"{row['proof']:.3f}" if "proof" in row else "-"
-            line += f" {proof:>7} {row['memory']:6.0f}"
-            print(f"{line} {row.get('blocks', '-'):>7} {row.get('commands', '-'):>8}", flush=True)
+            yield Case("thesis", file.stem.replace("_", " "), game, file=str(file))
+    for file in sorted(reference_folder().glob("*/TGA.xml")):
+        for game in GAMES:
+            yield Case("reference", file.parent.name, game, file=str(file))
+
+
+def family_cases(quick: bool) -> Iterator[Case]:
+    """All members of all families, a family at a time, small ones first."""
+    for family in FAMILIES:
+        for game in GAMES:
+            for size in family.quick if quick else family.sizes:
+                yield Case("family", family.name, game, size=size, text=family.text(size))
+
+
+def tiga_figures(case: Case) -> Figures:
+    """What TIGA logged about the same network."""
+    if case.group != "reference" or case.file is None:
+        return NOTHING
+    for name in ("UPPAAL_plan.txt", "UPPAAL_plan_failed.txt"):
+        output = Path(case.file).parent / name
+        if output.is_file():
+            return figures(output.read_text(errors="replace"))
+    return NOTHING
+
+
+def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
+    """A row per case. In a family, what comes after one that took too much is not tried."""
+    given_up: Set[Tuple[str, str]] = set()
+    for case in cases:
+        series = (case.name, case.game)
+        if case.group == "family" and series in given_up:
+            row: Row = {"group": "family", "name": case.name, "size": case.size, "game": case.game}
+            row["outcome"] = "skipped"
+        else:
+            row = measured(case, bounds)
+            if case.group == "family" and row["outcome"]:
+                given_up.add(series)
+        if case.group == "reference":
+            row.update({f"tiga_{what}": value for what, value in tiga_figures(case).as_json().items()})
+        yield row
+
+
+def machine() -> str:
+    """What the times depend on."""
+    cpu, system = platform.machine(), platform.system()
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        cpu = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+        release = dict(line.split("=", 1) for line in Path("/etc/os-release").read_text().splitlines() if "=" in line)
+        system = f"{release['NAME']} {release['VERSION_ID']}".replace('"', "").replace(" GNU/Linux", "")
+    except (OSError, StopIteration, KeyError, IndexError):
+        pass
+    python = ".".join(platform.python_version_tuple()[:2])
+    return f"{os.cpu_count()} cores ({cpu}), {system}, Python {python}"
+
+
+def merged(old: Sequence[Row], new: Sequence[Row]) -> List[Row]:
+    """The new rows and, of the old ones, those that were not measured again; in the order of a complete run."""
+
+    def key(row: Row) -> Tuple[str, str, int, str]:
+        return Case(row["group"], row["name"], row["game"], size=row.get("size")).key
+
+    rows = {**{key(row): row for row in old}, **{key(row): row for row in new}}
+    order = {case.key: place for place, case in enumerate([*scenario_cases(), *family_cases(quick=False)])}
+    return [row for _, row in sorted(rows.items(), key=lambda item: (order.get(item[0], len(order)), item[0]))]
+
+
+def write(folder: Path, results: Dict[str, Any], plots: bool) -> None:
+    """Everything that is made of the results: folder/benchmarks.md and in folder/benchmarks/ data and pictures."""
+    from pursue_gen.files import write_texts
+
+    rows = results["rows"]
+    page = folder / "benchmarks.md"
+    texts = {folder / "benchmarks" / "results.json": json.dumps(results, indent=1) + "\n"}
+    texts[folder / "benchmarks" / "results.csv"] = tables.as_csv(rows)
+    texts[page] = filled(page.read_text() if page.is_file() else None, results)
+    if plots:
+        from benchmarks.plots import pictures
+
+        texts.update({folder / "benchmarks" / name: svg for name, svg in pictures(rows).items()})
+    write_texts(texts)
+
+
+def options() -> argparse.ArgumentParser:
+    """The command line."""
+    parser = argparse.ArgumentParser(description="Measures what synthesis costs, each game in a process of its own.")
+    parser.add_argument("files", nargs="*", metavar="FILE", help="a SCENARIO.pur, or a TGA.xml beside its TCTL.q")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--all", action="store_true", help="scenarios and families (otherwise the scenarios alone)")
+    what.add_argument("--families", action="store_true", help="the families alone")
+    what.add_argument("--quick", action="store_true", help="a few scenarios and the smallest of each family")
+    what.add_argument("--render", action="store_true", help="measure nothing, write again what --out holds")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="of these, the scenarios and families named so")
+    parser.add_argument("--games", nargs="+", choices=list(GAMES), default=list(GAMES))
+    parser.add_argument("--seconds", type=float, default=120.0, help="to decide a game, and again to prove it (120)")
+    parser.add_argument("--memory", type=int, default=4096, metavar="MIB", help="of each process (4096)")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write benchmarks.md, benchmarks/*.json, .csv, .svg")
+    parser.add_argument("--no-plots", action="store_true", help="without pictures (matplotlib is not needed then)")
+    parser.add_argument("--machine", default=machine(), help="how the results name the machine")
+    parser.add_argument("--date", default=datetime.date.today().isoformat(), help="how they give the date (today)")
+    return parser
+
+
+def chosen(given: argparse.Namespace) -> List[Case]:
+    """What the command line asks for."""
+    if given.files:
+        cases = [Case("file", file, game, file=str(Path(file).resolve())) for file in given.files for game in GAMES]
+    elif given.quick:
+        cases = [case for case in scenario_cases() if case.name in QUICK] + list(family_cases(quick=True))
+    else:
+        cases = [] if given.families else list(scenario_cases())
+        cases += family_cases(quick=False) if given.all or given.families or given.only else []
+    names = given.only or [case.name for case in cases]
+    return [case for case in cases if case.name in names and case.game in given.games]
+
+
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    """Prints the table a row at a time, and writes the results where that is asked for."""
+    parser = options()
+    given = parser.parse_args(arguments)
+    if given.render and not given.out:
+        parser.error("--render needs --out")
+    cases = [] if given.render else chosen(given)
+    unknown = set(given.only or ()) - {case.name for case in cases}
+    if unknown and not given.render:
+        parser.error(f"nothing here is called {', '.join(sorted(unknown))}")
+    new: List[Row] = []
+    if cases:
+        print(tables.HEADLINE)
+    try:
+        for row in measurements(cases, Bounds(given.seconds, given.memory)):
+            new.append(row)
+            print(tables.terminal(row), flush=True)
+    except KeyboardInterrupt:
+        print("interrupted; nothing was written", file=sys.stderr)
+        return 130
+    if given.out:
+        file = given.out / "benchmarks" / "results.json"
+        old: Dict[str, Any] = json.loads(file.read_text()) if file.is_file() and (given.only or given.render) else {}
+        results = {"machine": given.machine, "date": given.date, "seconds": given.seconds, "memory": given.memory}
+        if given.render:
+            results.update({key: old[key] for key in results})
+        write(given.out, {**results, "rows": merged(old.get("rows", []), new)}, not given.no_plots)
     return 0
 
 

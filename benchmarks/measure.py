@@ -1,0 +1,166 @@
+"""One game measured, in a process of its own: `python -m benchmarks.measure` reads a case from standard input (JSON).
+
+It prints a line of JSON after each stage, the last one with everything; who started it takes the last line that came.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Dict, Optional, Tuple
+
+ROOT = Path(__file__).resolve().parent.parent
+GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fraction(1, 10))}
+"""The two games: who controls the ends, and the reaction in time units."""
+
+SHORT, RUNS = 0.5, 7  # what takes less than so many seconds is done so often, and the median counts
+
+Row = Dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A game to measure: `group` ("thesis", "reference", "family" or "file"), `name`, for families their `size`; `game`
+    is a key of GAMES. The scenario is in `file` (a .pur, or a network beside its TCTL.q), or it is `text`.
+    """
+
+    group: str
+    name: str
+    game: str
+    size: Optional[int] = None
+    file: Optional[str] = None
+    text: Optional[str] = None
+
+    @property
+    def key(self) -> Tuple[str, str, int, str]:
+        """What tells a case from all others."""
+        return (self.group, self.name, -1 if self.size is None else self.size, self.game)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What a case may cost: seconds to decide and as many again for the rest, memory of the process in MiB."""
+
+    seconds: float
+    memory: int
+
+
+def measured(case: Case, bounds: Bounds) -> Row:
+    """What the case costs, measured in another process; `outcome` says where it did not get to its end.
+
+    Keys: those of the case (without its text), verdict ("won", "lost" or None), outcome, states, zones, seconds
+    (median, of the solver alone), runs, decided (seconds of one whole call, tables and strategy included), proof
+    (seconds), memory (MiB, peak of the process), blocks, commands, margin.
+    """
+    row: Row = {"group": case.group, "name": case.name, "size": case.size, "game": case.game, "outcome": ""}
+    job = json.dumps({"case": asdict(case), "bounds": asdict(bounds)})
+    command = [sys.executable, "-m", "benchmarks.measure"]
+    pipes: Dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=str(ROOT), universal_newlines=True, **pipes) as process:
+        try:
+            out, err = process.communicate(job, timeout=2 * bounds.seconds + 10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            out, err = process.communicate()
+            row["outcome"] = "time"
+    whole = [line for line in out.splitlines() if line.endswith("}")]
+    row.update(json.loads(whole[-1]) if whole else {})
+    if process.returncode and not row["outcome"]:
+        # Killed by the system, or Python ran out of what RLIMIT_AS leaves it.
+        starved = process.returncode < 0 or "MemoryError" in err or "bad_alloc" in err
+        row["outcome"] = "memory" if starved else (err.strip().splitlines() or ["failed"])[-1][:120]
+    return row
+
+
+def _measure(case: Case, bounds: Bounds) -> None:
+    """Decides, proves and prints what it cost, as far as it gets."""
+    from pursue_gen.diagnostics import PursueError
+    from pursue_gen.pipeline import Rules, played, prove
+    from pursue_gen.synthesis.solve import solve
+
+    network, objective = _game(case)
+    rules = Rules(*GAMES[case.game])
+    network = played(network, rules)
+    start = time.perf_counter()
+    try:
+        verdict = solve(network, objective, reaction=rules.reaction, **_limits(bounds))
+    except PursueError as problem:
+        if problem.exit_status != 5:
+            raise
+        memory = "memory" in str(problem).lower()
+        _tell({"outcome": "memory" if memory else "time", "memory": _peak()})
+        return
+    row: Row = {"decided": time.perf_counter() - start, "verdict": "won" if verdict.won else "lost"}
+    row.update(states=verdict.stats.discrete_states, zones=verdict.stats.zones, engine=verdict.stats.engine)
+    row.update(seconds=verdict.stats.seconds, runs=1, memory=_peak())
+    _tell({**row, "outcome": "proof" if verdict.won else ""})
+    if verdict.stats.seconds < SHORT:
+        again = [solve(network, objective, reaction=rules.reaction).stats.seconds for _ in range(RUNS - 1)]
+        row.update(seconds=statistics.median([verdict.stats.seconds, *again]), runs=RUNS)
+    if verdict.strategy is not None:
+        start = time.perf_counter()
+        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks)
+        row.update(proof=time.perf_counter() - start, blocks=len(strategy.blocks), memory=_peak())
+        row["commands"] = sum(len(block.commands) for block in strategy.blocks)
+    _tell(row)
+
+
+def _game(case: Case) -> Tuple[Any, Any]:
+    """Network and objective of the case."""
+    from pursue_gen.language import load, parse
+    from pursue_gen.tga import scenario_objective, translate
+    from pursue_gen.tga.uppaal import read_network, read_query
+
+    if case.text is None and str(case.file).endswith(".xml"):
+        file = Path(str(case.file))
+        query = file.parent / "TCTL.q"
+        return read_network(file.read_text(), str(file)), read_query(query.read_text(), str(query))
+    scenario = load(Path(str(case.file))) if case.text is None else parse(case.text, f"{case.name}.pur", "member")
+    return translate(scenario), scenario_objective(scenario)
+
+
+def _limits(bounds: Bounds) -> Dict[str, Any]:
+    """The bounds as the solver takes them."""
+    import inspect
+
+    from pursue_gen.synthesis.solve import solve
+
+    if "limits" not in inspect.signature(solve).parameters:
+        return {"seconds": bounds.seconds}
+    from pursue_gen.synthesis.limits import Limits
+
+    return {"limits": Limits(seconds=bounds.seconds, memory=bounds.memory)}
+
+
+def _peak() -> float:
+    """The most memory that this process has had, in MiB."""
+    try:
+        # ru_maxrss also counts what the process that started this one had.
+        status = Path("/proc/self/status").read_text()
+        return int(status.split("VmHWM:")[1].split()[0]) / 1024
+    except (OSError, IndexError):
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def _tell(row: Row) -> None:
+    print(json.dumps({"outcome": "", **row}), flush=True)
+
+
+def main() -> None:
+    """Measures the case on standard input."""
+    job = json.load(sys.stdin)
+    bounds = Bounds(**job["bounds"])
+    limit = (bounds.memory + 1024) * 2**20  # the solver's own limit comes first; libraries need addresses too
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    _measure(Case(**job["case"]), bounds)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""The page of results: a text that people write, in which each part between two marks is made of what was measured."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Callable, Dict, Optional
+
+from benchmarks import tables
+
+Results = Dict[str, Any]
+
+_PART = re.compile(r"(<!-- measured: ([a-z ]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+
+
+def filled(page: Optional[str], results: Results) -> str:
+    """The page with its measured parts made anew; where there is none yet, one of measured parts alone.
+
+    Raises ValueError for a mark that names no part.
+    """
+    if page is None:
+        page = "# Benchmarks\n\n" + "\n".join(f"<!-- measured: {part} -->\n<!-- end -->\n" for part in PARTS)
+
+    def part(match: "re.Match[str]") -> str:
+        if match.group(2) not in PARTS:
+            raise ValueError(f"the page asks for '{match.group(2)}'; there is {', '.join(PARTS)}")
+        return f"{match.group(1)}\n{PARTS[match.group(2)](results)}\n{match.group(4)}"
+
+    return _PART.sub(part, page)
+
+
+def _where(results: Results) -> str:
+    return (
+        f"Measured {results['date']} on {results['machine']}. Limits of each game: {results['seconds']:g} s to decide "
+        f"and as many to prove, {results['memory']:,} MiB.\n"
+    )
+
+
+def _scenarios(results: Results) -> "list[Dict[str, Any]]":
+    return [row for row in results["rows"] if row["group"] != "family"]
+
+
+PARTS: Dict[str, Callable[[Results], str]] = {
+    "machine": _where,
+    "ideal game": lambda results: tables.beside_tiga(_scenarios(results)),
+    "default game": lambda results: tables.default_game(_scenarios(results)),
+    "growth": lambda results: tables.growths(results["rows"]),
+    "families": lambda results: tables.families(results["rows"]),
+}
+"""What a page can ask for."""
