@@ -18,6 +18,7 @@ from pursue_gen.cli_options import (
     GAME,
     JSON,
     LIMIT,
+    MARGIN,
     MEMORY,
     REACH_OBJ,
     REACTION,
@@ -142,6 +143,7 @@ def solve(
     solver: Optional[Solver] = SOLVER,
     verifytga: Optional[Path] = VERIFYTGA,
     explain: bool = EXPLAIN,
+    margin: bool = MARGIN,
     as_json_: bool = typer.Option(
         False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
     ),
@@ -153,9 +155,9 @@ def solve(
     """
     from pursue_gen.explanation.told import why
     from pursue_gen.files import write_texts
-    from pursue_gen.game_options import asked_limits, asked_rules, verdict_json, verdict_text
+    from pursue_gen.game_options import asked_limits, asked_rules, margins_told, verdict_json, verdict_text
     from pursue_gen.progress import progress_line
-    from pursue_gen.solvers import keep_counter, solved
+    from pursue_gen.solvers import keep_counter, margins, solved
     from pursue_gen.synthesis.plan import write_plan
 
     network, objective = _game(files)
@@ -174,11 +176,13 @@ def solve(
     plan = write_plan(won.strategy, won.network, objective)
     if output is not None:
         write_texts({output: plan})
+    found = margins(won, margin, limits)
     if as_json_:
-        print(json.dumps(verdict_json(rules, won, ()), indent=1))
+        print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
     elif output is None:
         print(plan, end="")
     tell(verdict_text(rules, won))
+    tell(margins_told(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {_quoted(files[0])}")
 
@@ -231,18 +235,25 @@ def report(
     from pursue_gen.pipeline import IDEAL, Rules, solution
     from pursue_gen.progress import progress_line
     from pursue_gen.report import commands
+    from pursue_gen.solvers import margins
+    from pursue_gen.synthesis.margin import as_json as margin_json
+    from pursue_gen.synthesis.margin import told
 
     read = _scenario(scenario)
     network, objective = _game_of(read)
     limits = asked_limits(limit, memory)
     with progress_line(as_json_) as progress:
         both = [solution(network, objective, rules, limits, progress=progress) for rules in (Rules(), IDEAL)]
+        found = [margins(won, False, limits)[0] for won in both]
     game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
     table = commands.commands_table(read.name, read.agents, game, ideal, reach_obj)
     if as_json_:
-        print(json.dumps(commands.as_json(table), indent=1))
-    else:
-        print(commands.render_table(table), end="")
+        of_games = {name: margin_json(margin) for name, margin in zip(("default", "ideal"), found)}
+        print(json.dumps({**commands.as_json(table), "margins": of_games}, indent=1))
+        return
+    print(commands.render_table(table))
+    for name, won, margin in zip(("default", "ideal"), both, found):
+        print(f"{name} game: {told(margin, won.strategy)}")
 
 
 @app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")
@@ -279,6 +290,7 @@ def ws(
     from pursue_gen.plans import take_plan
     from pursue_gen.progress import progress_line
     from pursue_gen.solvers import solved
+    from pursue_gen.synthesis.margin import QUICK, strategy_margin, told
     from pursue_gen.workspace import Options, write_workspace
 
     read = _scenario(scenario)
@@ -301,7 +313,9 @@ def ws(
         raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")
     else:
         won = take_plan(plan, network, objective, games_to_try(network, _value(ends), reaction, slack), limits)
-    options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction)
+    late = told(strategy_margin(won.network, objective, won.strategy, won.reaction, QUICK, limits), won.strategy)
+    tell(late)
+    options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction, margin=late)
     place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
     print(place)
     tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")

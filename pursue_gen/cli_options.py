@@ -69,4 +69,9 @@ MEMORY = typer.Option(
     min=0,
     help="Give up when so much memory is in use (0: no limit); by default 4096, or 80 % of what is available.",
 )
+MARGIN = typer.Option(
+    False,
+    "--margin",
+    help="Find the margin however long it takes, and the game's: the largest reaction for which it can be won at all.",
+)
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")

@@ -9,6 +9,9 @@ from pursue_gen.console import count, usage
 from pursue_gen.diagnostics import Diagnostic, as_json
 from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, Solution
 from pursue_gen.synthesis.limits import UNDECIDED, Limits, careful_memory
+from pursue_gen.synthesis.margin import Margin, decides_ends, told
+from pursue_gen.synthesis.margin import as_json as margin_json
+from pursue_gen.synthesis.margin import in_words as margin_in_words
 from pursue_gen.tga.network import Network, is_end
 
 DEFAULT = Rules()
@@ -68,8 +71,22 @@ def verdict_text(rules: Rules, won: Solution) -> str:
     return f"won: {in_words(rules)}{took}; {count(_commands(won), 'command')}, proven"
 
 
-def verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagnostic]) -> Dict[str, Any]:
-    """The outcome as a JSON object; `findings` say why `won` is not true.
+def margins_told(won: Solution, margin: Margin, game: Optional[Margin] = None) -> str:
+    """Lines about how late commands may come; `game` is the game's margin, where it was asked for."""
+    lines = [told(margin, won.strategy)]
+    if game is not None:
+        lines.append(f"Margin of the game, with a strategy that is made for it (--reaction): {margin_in_words(game)}.")
+    return "\n".join(lines)
+
+
+def verdict_json(
+    rules: Rules,
+    won: Optional[Solution],
+    findings: Sequence[Diagnostic],
+    margin: Optional[Margin] = None,
+    game_margin: Optional[Margin] = None,
+) -> Dict[str, Any]:
+    """The outcome as a JSON object; `findings` say why `won` is not true; margins where they were looked for.
 
     It is null where nobody knows: a limit was hit, or the strategy of another tool does not win.
     """
@@ -86,6 +103,11 @@ def verdict_json(rules: Rules, won: Optional[Solution], findings: Sequence[Diagn
         )
     if won:
         result.update(blocks=len(won.strategy.blocks), commands=_commands(won))
+    if won and margin:
+        playable = margin.wins > 0 and not decides_ends(won.strategy)
+        result.update(margin=margin_json(margin), playable=playable)
+    if game_margin:
+        result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]
     return result
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Optional
+from typing import Optional, Tuple
 
 from pursue_gen.console import tell, usage
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.files import write_texts
 from pursue_gen.pipeline import Rules, Solution, played, solution
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.margin import USUAL, Margin, game_margin, strategy_margin
 from pursue_gen.synthesis.plan import write_plan
+from pursue_gen.synthesis.verify import LIMIT
 from pursue_gen.synthesis.verifytga import ToolError, run_verifytga
 from pursue_gen.tga.network import Network, Objective
 
@@ -51,3 +53,10 @@ def keep_counter(problem: PursueError, network: Network, objective: Objective, p
     kept = plan.with_name(f"{plan.stem}_failed{plan.suffix}")
     write_texts({kept: write_plan(problem.counter, network, objective)})
     tell(f"The counter-strategy is in {kept}")
+
+
+def margins(won: Solution, thorough: bool, limits: Limits) -> Tuple[Margin, Optional[Margin]]:
+    """The margin of the strategy, as far as it is quickly found; `thorough`: all of it, and the game's as well."""
+    states = LIMIT if thorough else USUAL
+    margin = strategy_margin(won.network, won.objective, won.strategy, won.reaction, states, limits)
+    return margin, game_margin(won.network, won.objective, won.reaction, limits=limits) if thorough else None

@@ -140,12 +140,12 @@ class Dbm:
     def is_disjoint(self, other: Dbm) -> bool:
         """True if the two have no point in common, as one pair of opposite bounds shows (may miss; never wrong)."""
         # Opposite bounds leave no point where their sum is below `<= 0`: where their raw forms add up to less than 2.
-        return min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 2
+        return bool(min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 2)
 
     def has_gap(self, other: Dbm) -> bool:
         """True if points not in either lie between the two, as one pair of opposite bounds shows."""
         # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
-        return min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 1
+        return bool(min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 1)
 
     def intersect(self, other: Dbm) -> Optional[Dbm]:
         """The points in both; None if there are none."""

@@ -35,12 +35,14 @@ class Options:
     `controllers`: distributed (one per robot), centralized (one, without a-priori ends) or general (one, with them, as
     the original has it). `reach_obj`: who gets the commands of the objective: dedicated (a controller of their own),
     all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for.
+    `margin`: how late it really may come, in sentences for the README; empty where nobody looked.
     `time_unit`: the default length of a time unit in seconds. The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
     reach_obj: str = "dedicated"
     reaction: Fraction = Fraction(1, 10)
+    margin: str = ""
     time_unit: float = 1.0
     maintainer: str = "maintainer"
     maintainer_email: str = "maintainer@example.org"

@@ -64,7 +64,7 @@ def generate(
             files[f"src/{package.name}/{path}"] = content
     files.update(_beside(scenario, network, objective, strategy))
     files["map.svg"] = map_svg.draw(scenario, where, computed).encode()
-    files["README.md"] = _readme(jinja, values, scenario, packages, computed)
+    files["README.md"] = _readme(jinja, {**values, "margin": options.margin}, scenario, packages, computed)
     return files
 
 
