@@ -20,7 +20,11 @@ ROOT = Path(__file__).resolve().parent.parent
 GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fraction(1, 10))}
 """The two games: who controls the ends, and the reaction in time units."""
 
-SHORT, RUNS = 0.5, 7  # what takes less than so many seconds is done so often, and the median counts
+SHORT, RUNS = 0.5, 7
+"""What takes less than so many seconds is done so often, and the median counts."""
+
+MARGIN_STATES = {"family": 5_000}
+"""What the search for a margin may cost, in symbolic states of the checker; then the margin is only a lower bound."""
 
 Row = Dict[str, Any]
 
@@ -46,7 +50,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a case may cost: seconds to decide and as many again for the rest, memory of the process in MiB."""
+    """What a case may cost: seconds to decide and as many to prove, memory of the process in MiB."""
 
     seconds: float
     memory: int
@@ -57,7 +61,8 @@ def measured(case: Case, bounds: Bounds) -> Row:
 
     Keys: those of the case (without its text), verdict ("won", "lost" or None), outcome, states, zones, seconds
     (median, of the solver alone), runs, decided (seconds of one whole call, tables and strategy included), proof
-    (seconds), memory (MiB, peak of the process), blocks, commands, margin.
+    (seconds), memory (MiB, peak of the process up to there), blocks, commands, margin (time units), margin_open (it is
+    at least that).
     """
     row: Row = {"group": case.group, "name": case.name, "size": case.size, "game": case.game, "outcome": ""}
     job = json.dumps({"case": asdict(case), "bounds": asdict(bounds)})
@@ -65,7 +70,7 @@ def measured(case: Case, bounds: Bounds) -> Row:
     pipes: Dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     with subprocess.Popen(command, cwd=str(ROOT), universal_newlines=True, **pipes) as process:
         try:
-            out, err = process.communicate(job, timeout=2 * bounds.seconds + 10)
+            out, err = process.communicate(job, timeout=3 * bounds.seconds + 10)
         except subprocess.TimeoutExpired:
             process.kill()
             out, err = process.communicate()
@@ -80,36 +85,44 @@ def measured(case: Case, bounds: Bounds) -> Row:
 
 
 def _measure(case: Case, bounds: Bounds) -> None:
-    """Decides, proves and prints what it cost, as far as it gets."""
+    """Decides, proves, looks for the margin, and prints after each what it cost, as far as it gets."""
     from pursue_gen.diagnostics import PursueError
     from pursue_gen.pipeline import Rules, played, prove
+    from pursue_gen.synthesis.limits import Limits
+    from pursue_gen.synthesis.margin import strategy_margin
     from pursue_gen.synthesis.solve import solve
 
     network, objective = _game(case)
     rules = Rules(*GAMES[case.game])
     network = played(network, rules)
-    start = time.perf_counter()
+    limits = Limits(seconds=bounds.seconds, memory=bounds.memory)
+    row: Row = {}
     try:
-        verdict = solve(network, objective, reaction=rules.reaction, **_limits(bounds))
+        start = time.perf_counter()
+        verdict = solve(network, objective, reaction=rules.reaction, limits=limits)
+        row.update(decided=time.perf_counter() - start, verdict="won" if verdict.won else "lost")
+        row.update(states=verdict.stats.discrete_states, zones=verdict.stats.zones, engine=verdict.stats.engine)
+        row.update(seconds=verdict.stats.seconds, runs=1, memory=_peak())
+        _tell({**row, "outcome": "proof" if verdict.won else ""})
+        if verdict.stats.seconds < SHORT:
+            again = [solve(network, objective, reaction=rules.reaction).stats.seconds for _ in range(RUNS - 1)]
+            row.update(seconds=statistics.median([verdict.stats.seconds, *again]), runs=RUNS)
+        if verdict.strategy is None:
+            _tell(row)
+            return
+        start = time.perf_counter()
+        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, limits=limits)
+        row.update(proof=time.perf_counter() - start, blocks=len(strategy.blocks), memory=_peak())
+        row["commands"] = sum(len(block.commands) for block in strategy.blocks)
+        _tell(row)
     except PursueError as problem:
         if problem.exit_status != 5:
             raise
-        memory = "memory" in str(problem).lower()
-        _tell({"outcome": "memory" if memory else "time", "memory": _peak()})
+        trouble = "memory" if "memory" in problem.diagnostics[0].message.split(";")[0] else "time"
+        _tell({**row, "outcome": "proof" if row else trouble, "memory": _peak()})
         return
-    row: Row = {"decided": time.perf_counter() - start, "verdict": "won" if verdict.won else "lost"}
-    row.update(states=verdict.stats.discrete_states, zones=verdict.stats.zones, engine=verdict.stats.engine)
-    row.update(seconds=verdict.stats.seconds, runs=1, memory=_peak())
-    _tell({**row, "outcome": "proof" if verdict.won else ""})
-    if verdict.stats.seconds < SHORT:
-        again = [solve(network, objective, reaction=rules.reaction).stats.seconds for _ in range(RUNS - 1)]
-        row.update(seconds=statistics.median([verdict.stats.seconds, *again]), runs=RUNS)
-    if verdict.strategy is not None:
-        start = time.perf_counter()
-        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks)
-        row.update(proof=time.perf_counter() - start, blocks=len(strategy.blocks), memory=_peak())
-        row["commands"] = sum(len(block.commands) for block in strategy.blocks)
-    _tell(row)
+    found = strategy_margin(network, objective, strategy, rules.reaction, MARGIN_STATES.get(case.group, 50_000))
+    _tell({**row, "margin": float(found.wins), "margin_open": found.fails is None})
 
 
 def _game(case: Case) -> Tuple[Any, Any]:
@@ -124,19 +137,6 @@ def _game(case: Case) -> Tuple[Any, Any]:
         return read_network(file.read_text(), str(file)), read_query(query.read_text(), str(query))
     scenario = load(Path(str(case.file))) if case.text is None else parse(case.text, f"{case.name}.pur", "member")
     return translate(scenario), scenario_objective(scenario)
-
-
-def _limits(bounds: Bounds) -> Dict[str, Any]:
-    """The bounds as the solver takes them."""
-    import inspect
-
-    from pursue_gen.synthesis.solve import solve
-
-    if "limits" not in inspect.signature(solve).parameters:
-        return {"seconds": bounds.seconds}
-    from pursue_gen.synthesis.limits import Limits
-
-    return {"limits": Limits(seconds=bounds.seconds, memory=bounds.memory)}
 
 
 def _peak() -> float:

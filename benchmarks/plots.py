@@ -21,6 +21,7 @@ def pictures(rows: Sequence[Row]) -> Dict[str, str]:
     matplotlib.use("svg")
     # Text stays text: smaller, and found by a search. The salt fixes the names that clip paths get.
     settings: Dict[Any, Any] = {"svg.fonttype": "none", "svg.hashsalt": "pursue-gen", "font.size": 9}
+    settings["font.sans-serif"] = ["DejaVu Sans"]  # comes with matplotlib, so that every machine draws the same
     drawn: Dict[str, str] = {}
     with matplotlib.rc_context(settings):
         for grows in dict.fromkeys(family.grows for family in FAMILIES):
@@ -46,7 +47,7 @@ def _picture(grows: str, families: Sequence[Family], rows: Sequence[Row]) -> str
                 xs, ys = [x for x, _ in points], [y for _, y in points]
                 ax.plot(xs, ys, color="black", linewidth=1, label=f"{family.name}, {game}", **look)
         ax.set_yscale("log")
-        if grows == "distance":
+        if grows in ("distance", "POIs"):  # here growth is a power: a straight line
             ax.set_xscale("log")
         sizes = sorted({size for family in families for size in family.sizes})
         ax.set_xticks(sizes, [str(size) for size in sizes])
@@ -60,7 +61,7 @@ def _picture(grows: str, families: Sequence[Family], rows: Sequence[Row]) -> str
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, handlelength=4)
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
+    return "\n".join(line.strip() for line in stream.getvalue().splitlines()) + "\n"
 
 
 def _points(rows: Sequence[Row], family: Family, game: str, key: str) -> List[Tuple[int, float]]:

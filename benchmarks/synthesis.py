@@ -63,7 +63,7 @@ def tiga_figures(case: Case) -> Figures:
 
 
 def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
-    """A row per case. In a family, what comes after one that took too much is not tried."""
+    """A row per case. In a family, what comes after one that was not decided is not tried."""
     given_up: Set[Tuple[str, str]] = set()
     for case in cases:
         series = (case.name, case.game)
@@ -72,7 +72,7 @@ def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
             row["outcome"] = "skipped"
         else:
             row = measured(case, bounds)
-            if case.group == "family" and row["outcome"]:
+            if case.group == "family" and not row.get("verdict"):
                 given_up.add(series)
         if case.group == "reference":
             row.update({f"tiga_{what}": value for what, value in tiga_figures(case).as_json().items()})

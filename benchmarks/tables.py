@@ -16,7 +16,7 @@ DASH = "-"
 OUTCOMES = {"time": "too long", "memory": "too large", "proof": "not proven in time", "skipped": "not tried"}
 COLUMNS = (
     "group", "name", "size", "game", "verdict", "outcome", "states", "zones", "rate", "seconds", "runs", "decided",
-    "proof", "memory", "blocks", "commands", "margin",
+    "proof", "memory", "blocks", "commands", "margin", "margin_open",
     "tiga_states", "tiga_waiting", "tiga_rate", "tiga_blocks", "tiga_commands",
 )  # fmt: skip
 
@@ -65,9 +65,9 @@ def verdict(row: Row) -> str:
 
 
 def margin(row: Row) -> str:
-    """The largest reaction with which the strategy still wins, in time units."""
+    """The largest delay with which the strategy still wins, in time units; ">=" where the search ended early."""
     value = row.get("margin")
-    return DASH if value is None else str(value)
+    return DASH if value is None else f"{'>= ' * bool(row.get('margin_open'))}{value:g}"
 
 
 # Markdown ------------------------------------------------------------------------------------------------------------
@@ -201,7 +201,7 @@ def _line(xs: Sequence[float], ys: Sequence[float]) -> Tuple[float, float]:
 
 HEADLINE = (
     f"{'scenario':34} {'game':8} {'verdict':12} {'states':>9} {'states/s':>9} {'seconds':>9} {'proof':>8} {'MiB':>6} "
-    f"{'blocks':>7} {'commands':>8} {'margin':>6} | {'TIGA: states':>12} {'states/s':>8} {'blocks':>7} {'commands':>8}"
+    f"{'blocks':>7} {'commands':>8} {'margin':>8} | {'TIGA: states':>12} {'states/s':>8} {'blocks':>7} {'commands':>8}"
 )
 
 
@@ -211,7 +211,7 @@ def terminal(row: Row) -> str:
     name = full["name"] if full["size"] is None else f"{full['name']} {full['size']}"
     line = f"{name:34} {full['game']:8} {verdict(full):12} {number(full['states']):>9} {number(full['rate']):>9} "
     line += f"{seconds(full['seconds']):>9} {seconds(full['proof']):>8} {number(full['memory']):>6} "
-    line += f"{number(full['blocks']):>7} {number(full['commands']):>8} {margin(full):>6}"
+    line += f"{number(full['blocks']):>7} {number(full['commands']):>8} {margin(full):>8}"
     ideal = full["game"] == "ideal"
     tiga = [number(full[f"tiga_{what}"] if ideal else None) for what in ("states", "rate", "blocks", "commands")]
     return line + f" | {tiga[0]:>12} {tiga[1]:>8} {tiga[2]:>7} {tiga[3]:>8}"

@@ -92,7 +92,7 @@ def test_pictures_are_the_same_each_time_and_have_no_colour() -> None:
     assert drawn == pictures(rows)
     svg = drawn["distance.svg"]
     assert "one way, default" in svg and "dc:date" not in svg
-    colours = set(re.findall(r"#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})\\b", svg))
+    colours = set(re.findall(r"#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})\b", svg))
     assert colours and all(red == green == blue for red, green, blue in colours)
 
 

@@ -17,7 +17,8 @@ from benchmarks.page import filled
 WON: Dict[str, Any] = {
     "group": "reference", "name": "CT9", "size": None, "game": "ideal", "verdict": "won", "outcome": "",
     "states": 1200, "zones": 1500, "seconds": 0.025, "runs": 7, "decided": 0.03, "proof": 0.31, "memory": 40.2,
-    "blocks": 12, "commands": 9, "tiga_states": 7070, "tiga_rate": 90000, "tiga_blocks": 164, "tiga_commands": 194,
+    "blocks": 12, "commands": 9, "margin": 0.35, "margin_open": False,
+    "tiga_states": 7070, "tiga_rate": 90000, "tiga_blocks": 164, "tiga_commands": 194,
 }  # fmt: skip
 LATE: Dict[str, Any] = {"group": "reference", "name": "CT9", "size": None, "game": "default", "outcome": "time"}
 
@@ -40,7 +41,7 @@ def test_beside_each_figure_of_the_ideal_game_stands_tigas() -> None:
         ("scenario", "CT9"), ("verdict", "won"), ("states", "1,200"), ("TIGA", "7,070"),
         ("states/s", "48,000"), ("TIGA", "90,000"), ("seconds", "0.0250"),
     ]  # fmt: skip
-    assert named[9:] == [("blocks", "12"), ("TIGA", "164"), ("commands", "9"), ("TIGA", "194"), ("margin", "-")]
+    assert named[9:] == [("blocks", "12"), ("TIGA", "164"), ("commands", "9"), ("TIGA", "194"), ("margin", "0.35")]
 
 
 def test_a_game_that_took_too_long_says_so_and_has_dashes() -> None:
@@ -52,6 +53,10 @@ def test_a_game_that_took_too_long_says_so_and_has_dashes() -> None:
 def test_a_win_that_was_not_proven_in_time_is_told_from_a_proven_one() -> None:
     assert tables.verdict(WON) == "won"
     assert tables.verdict({**WON, "outcome": "proof"}) == "won, not proven in time"
+
+
+def test_a_margin_that_was_not_searched_to_its_end_is_a_lower_bound() -> None:
+    assert [tables.margin({**WON, "margin_open": bound}) for bound in (False, True)] == ["0.35", ">= 0.35"]
 
 
 def test_csv_has_all_columns_of_all_rows() -> None:
