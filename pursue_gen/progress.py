@@ -61,11 +61,10 @@ class _Line:
 
 def in_words(progress: Progress, elapsed: float) -> str:
     """One line; `elapsed` are the seconds since all of the work began."""
-    rate = progress.states / progress.seconds if progress.seconds else 0.0
-    return (
-        f"{progress.phase}: {progress.states} states, {progress.waiting} waiting, {rate:.0f} states/s, "
-        f"{progress.memory} MiB, {elapsed:.0f} s"
-    )
+    words = [f"{progress.states} states", f"{progress.waiting} waiting"]
+    if progress.seconds >= _REDRAW:  # of less time a rate says nothing
+        words.append(f"{progress.states / progress.seconds:.0f} states/s")
+    return f"{progress.phase}: {', '.join(words)}, {progress.memory} MiB, {elapsed:.0f} s"
 
 
 def _columns(stream: TextIO) -> int:

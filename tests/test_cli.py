@@ -44,6 +44,8 @@ objective: if callBot then fetch within {deadline}
 """
 """Won with a deadline of 5, only ideally with 4, lost with 3: the way takes 2 to 3, and 1 passes before and after."""
 
+NOT_DECIDED = "ends reported, reaction 0.1: not decided\nends controllable, reaction 0: not decided\n"
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -340,11 +342,45 @@ def test_a_win_in_the_ideal_game_only_is_said(tmp_path: Path) -> None:
     assert pursue("solve", file, "--ends", "controllable", "--reaction", "0").status == 0
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine, which knows limits, is not built here")
-def test_a_limit_is_no_verdict() -> None:
-    told = pursue("solve", THESIS / "catch_the_thief.pur", "--limit", "0.000001", "--json")
+@pytest.mark.parametrize("option", [["--limit", "0.000001"], ["--memory", "1"]])
+@pytest.mark.parametrize("engine", [[], ["--engine", "python"]])
+def test_a_limit_is_no_verdict(option: List[str], engine: List[str]) -> None:
+    told = pursue("solve", FIRST, *option, *engine, "--json")
     assert told.status == 5
-    assert json.loads(told.out)["won"] is None
+    verdict = json.loads(told.out)
+    assert verdict["won"] is None
+    assert [finding["code"] for finding in verdict["diagnostics"]] == ["SYN010"]
+    assert option[0] in told.err and "states were reached" in told.err
+
+
+@pytest.mark.parametrize("option", [["--limit", "0.000001"], ["--memory", "1"]])
+@pytest.mark.parametrize("command", ["report", "ws", "ws --plan", "verify"])
+def test_a_limit_ends_every_command_that_may_take_long(command: str, option: List[str], tmp_path: Path) -> None:
+    name, *given = command.split()
+    plan = tmp_path / "plan.txt"
+    if given or name == "verify":
+        assert pursue("solve", FIRST, "-o", plan).status == 0
+        given = [*given, str(plan)]
+    given += ["-o", str(tmp_path / "ws")] if name == "ws" else []
+    told = pursue(name, FIRST, *given, *option)
+    assert told.status == 5
+    assert "error SYN010" in told.err and option[0] in told.err
+    assert told.out == ("" if name != "verify" else NOT_DECIDED)
+    assert not (tmp_path / "ws").exists()
+
+
+def test_limits_that_are_no_limits_change_nothing() -> None:
+    free = pursue("solve", FIRST, "--limit", "0", "--memory", "0")
+    assert (free.status, free.out) == (0, pursue("solve", FIRST).out)
+    for option in ("--limit=-1", "--memory=-1", "--memory=much"):
+        assert pursue("solve", FIRST, option).status == 2
+
+
+def test_memory_is_limited_where_nobody_says_anything() -> None:
+    with mock.patch("pursue_gen.game_options.careful_memory", return_value=1):
+        told = pursue("solve", FIRST)
+    assert told.status == 5
+    assert "the limit of 1 MiB of memory" in told.err
 
 
 @pytest.mark.parametrize("reaction", ["soon", "1/0", "-1", "nan", "1e-9", "1e9", "", "0.1.1"])

@@ -13,6 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Callable, Tuple
+from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -271,6 +272,25 @@ def test_a_cut_strategy_is_not_used(game: Game, strategy: Strategy, tool: Tool) 
     output = winning(game, strategy)
     problem = failure(game, tool(replaying(output[: len(output) * 3 // 4])))
     assert problem.exit_status in (4, 6)
+
+
+def test_a_limit_on_memory_is_one_for_the_tool(game: Game, strategy: Strategy, tool: Tool) -> None:
+    despair = f"    {replaying('std::bad_alloc')}\n    os.abort()"
+    greedy = f"try:\n    much = bytearray(1 << 30)\nexcept MemoryError:\n{despair}"
+    program = tool(f"{greedy}\n{replaying(winning(game, strategy))}")
+    assert run_verifytga(*game, path=program).won
+    with pytest.raises(ToolError) as failure:
+        run_verifytga(*game, path=program, limits=Limits(memory=600))
+    assert failure.value.exit_status == 5
+    assert "verifytga ran out of memory (the limit is 600 MiB)" in told(failure.value)
+
+
+def test_what_is_left_of_the_time_is_for_the_proof(game: Game, strategy: Strategy, tool: Tool) -> None:
+    program = tool(replaying(winning(game, strategy)))
+    with mock.patch("pursue_gen.synthesis.verifytga.verify", wraps=verify) as checker:
+        run_verifytga(*game, path=program, limits=Limits(600))
+    left = checker.call_args[1]["limits"]
+    assert left.seconds == 600 and left.spent > 0
 
 
 @pytest.mark.parametrize("reason", ["limit", "Ctrl-C"])

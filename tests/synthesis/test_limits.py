@@ -1,0 +1,286 @@
+"""Limits on time and memory: engines and checker keep them, and say which it was, how far they were, what to do."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Iterator, List, Tuple
+from unittest import mock
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError, render
+from pursue_gen.language import load, parse
+from pursue_gen.pipeline import IDEAL, prove, solution
+from pursue_gen.synthesis import limits as limits_module
+from pursue_gen.synthesis import native, reference
+from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.limits import (
+    CAREFUL,
+    PROVING,
+    SOLVING,
+    Limits,
+    Progress,
+    Watch,
+    careful_memory,
+    limit_reached,
+    memory_in_use,
+)
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.verify import Report, verify
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from tests.conftest import thesis_scenario
+from tests.crowds import crowd
+
+Game = Tuple[Network, Objective]
+AT_ONCE = {"seconds": Limits(seconds=1e-9), "memory": Limits(memory=1)}
+
+needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
+engines = pytest.mark.parametrize("engine", [pytest.param("native", marks=needs_native), "python"])
+
+
+@pytest.fixture(scope="module")
+def game() -> Game:
+    scenario = load(thesis_scenario("1"))
+    return translate(scenario), scenario_objective(scenario)
+
+
+@pytest.fixture(scope="module")
+def strategy(game: Game) -> Strategy:
+    found = solve(*game).strategy
+    assert found is not None
+    return found
+
+
+@pytest.fixture
+def eager(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever asks a watch is looked at and told of, every time."""
+    monkeypatch.setattr(limits_module, "_LOOK", 0.0)
+    monkeypatch.setattr(limits_module, "_TELL", 0.0)
+
+
+def told(problem: PursueError) -> str:
+    assert problem.exit_status == 5
+    assert [finding.code for finding in problem.diagnostics] == ["SYN010"]
+    return render(problem.diagnostics[0])
+
+
+# Engines --------------------------------------------------------------------------------------------------------------
+
+
+@engines
+@pytest.mark.parametrize("which", AT_ONCE)
+def test_a_limit_ends_an_engine(game: Game, engine: str, which: str) -> None:
+    with pytest.raises(PursueError) as failure:
+        solve(*game, engine=engine, limits=AT_ONCE[which])
+    text = told(failure.value)
+    assert {"seconds": "the limit of 1e-09 seconds", "memory": "the limit of 1 MiB of memory"}[which] in text
+    assert {"seconds": "--limit", "memory": "--memory"}[which] in text
+    assert "states were reached" in text and "make the scenario smaller" in text
+
+
+@engines
+def test_limits_that_are_not_hit_change_nothing(game: Game, engine: str) -> None:
+    free, kept = solve(*game, engine=engine), solve(*game, engine=engine, limits=Limits(600, memory_in_use() + 4096))
+    assert (kept.won, kept.strategy) == (free.won, free.strategy)
+    assert kept.stats.discrete_states == free.stats.discrete_states
+
+
+@engines
+def test_the_progress_is_told(game: Game, engine: str, eager: None) -> None:
+    heard: List[Progress] = []
+    solve(*game, engine=engine, progress=heard.append)
+    assert heard
+    assert all(p.phase == SOLVING and p.memory > 0 and p.seconds >= 0 and p.states >= 0 for p in heard)
+    assert [p.states for p in heard] == sorted(p.states for p in heard)
+
+
+@engines
+def test_ctrl_c_while_the_progress_is_told_ends_an_engine(game: Game, engine: str) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        solve(*game, engine=engine, progress=mock.Mock(side_effect=KeyboardInterrupt))
+
+
+@engines
+def test_of_a_large_game_it_is_told_how_far_it_got(engine: str) -> None:
+    scenario = parse(crowd(), "crowd.pur")
+    with pytest.raises(PursueError) as failure:
+        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(seconds=0.5))
+    words = told(failure.value).split("; ")[1].split()
+    assert words[1:4] == ["discrete", "states", "were"] and int(words[0]) > 1
+    assert words[6] == "waiting," and int(words[5]) > 0
+
+
+@engines
+def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
+    scenario = parse(crowd(), "crowd.pur")
+    most = memory_in_use() + 24
+    with pytest.raises(PursueError) as failure:
+        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(60, most))
+    assert f"the limit of {most} MiB of memory" in told(failure.value)
+
+
+@needs_native
+def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
+    code = f"""if True:
+        import resource
+        from pursue_gen.diagnostics import PursueError
+        from pursue_gen.language import parse
+        from pursue_gen.synthesis import native
+        from pursue_gen.synthesis.game import compile_game
+        from pursue_gen.tga import scenario_objective, translate
+        scenario = parse({crowd()!r}, "crowd.pur")
+        game = compile_game(translate(scenario), scenario_objective(scenario))
+        used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + (64 << 20), resource.RLIM_INFINITY))
+        try:
+            native.solve_native(game)
+        except PursueError as problem:
+            print(problem.exit_status, problem.diagnostics[0].message)
+    """
+    if not Path("/proc/self/statm").exists():
+        pytest.skip("this system does not tell how much memory a process has")
+    root = Path(__file__).resolve().parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=str(root), stdout=subprocess.PIPE, timeout=120, universal_newlines=True
+    )
+    assert done.stdout.startswith("5 no verdict with the memory that there is")
+
+
+@pytest.mark.parametrize("engine", ["native", "python"])
+def test_memory_that_is_not_given_is_told_as_a_limit(game: Game, engine: str) -> None:
+    core = mock.Mock(solve=mock.Mock(side_effect=MemoryError), LimitReached=ZeroDivisionError)
+    with mock.patch.object(native, "_core", core), mock.patch.object(reference, "_assign", side_effect=MemoryError):
+        with pytest.raises(PursueError) as failure:
+            solve(*game, engine=engine)
+        assert "with the memory that there is" in told(failure.value)
+        with pytest.raises(PursueError) as failure:
+            solve(*game, engine=engine, limits=Limits(memory=1 << 20))
+        assert "the limit of 1048576 MiB" in told(failure.value)
+
+
+@needs_native
+def test_a_limit_on_states_is_exact(game: Game) -> None:
+    compiled = compile_game(*game)
+    states = native.solve_native(compiled).counts["discrete_states"]
+    assert native.solve_native(compiled, states=states + 1).counts["discrete_states"] == states
+    with pytest.raises(PursueError) as failure:
+        native.solve_native(compiled, states=3)
+    assert "within the limit of 3 discrete states; 3 discrete states were reached" in told(failure.value)
+
+
+# The checker ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("which", AT_ONCE)
+def test_a_limit_ends_the_checker(game: Game, strategy: Strategy, which: str) -> None:
+    with pytest.raises(PursueError) as failure:
+        verify(*game, strategy, limits=AT_ONCE[which])
+    text = told(failure.value)
+    assert "no proof within the limit of" in text and "only what is proven is used" in text
+
+
+def test_the_checker_tells_its_progress(game: Game, strategy: Strategy, eager: None) -> None:
+    heard: List[Progress] = []
+    assert verify(*game, strategy, progress=heard.append).ok
+    assert heard and {p.phase for p in heard} == {PROVING}
+
+
+def test_one_allowance_is_for_the_solver_and_the_checker(game: Game, eager: None) -> None:
+    heard: List[Progress] = []
+    solution(*game, IDEAL, Limits(600, 1 << 20), progress=heard.append)
+    phases = [p.phase for p in heard]
+    assert phases == sorted(phases, reverse=True) and set(phases) == {SOLVING, PROVING}
+    with mock.patch("pursue_gen.pipeline.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
+        solution(*game, IDEAL, Limits(600))
+    given_limits = checker.call_args[1]["limits"]
+    assert given_limits.seconds == 600 and 0 < given_limits.spent < 600
+
+
+def test_what_the_checker_does_not_decide_is_no_defeat(game: Game, strategy: Strategy) -> None:
+    undecided = Report(False, "limit: not decided within 7 symbolic states", (), frozenset(), 7)
+    with mock.patch("pursue_gen.pipeline.verify", return_value=undecided), pytest.raises(PursueError) as failure:
+        prove(*game, strategy, Fraction(0))
+    assert "not proven: limit: not decided within 7 symbolic states" in told(failure.value)
+
+
+# Limits and memory ----------------------------------------------------------------------------------------------------
+
+
+@given(seconds=st.floats(0.001, 1e6), spent=st.floats(0, 1e7))
+def test_what_is_left_is_never_no_limit(seconds: float, spent: float) -> None:
+    left = Limits(seconds, 0, spent).left
+    assert 0 < left <= seconds
+    assert left == pytest.approx(max(seconds - spent, 1e-9))
+
+
+@given(spent=st.floats(0, 1e7))
+def test_no_limit_stays_none(spent: float) -> None:
+    assert Limits(0.0, 0, spent).left == 0.0
+
+
+def test_time_that_was_spent_is_kept_in_mind() -> None:
+    now = time.monotonic()
+    later = Limits(10.0, 5).since(now - 4.0).since(now - 3.0)
+    assert (later.seconds, later.memory) == (10.0, 5)
+    assert later.spent >= 7.0 and later.left <= 3.0
+
+
+def test_the_message_names_the_whole_limit() -> None:
+    text = told(limit_reached("seconds", Limits(10.0, 0, 9.5), Progress(12, 3, 0.5, 40)))
+    assert "no verdict within the limit of 10 seconds; 12 discrete states were reached, 3 waiting, 40 MiB" in text
+
+
+def test_a_watch_is_quiet_between_two_reports() -> None:
+    heard: List[Progress] = []
+    clock = iter([0.0, 0.0, 0.01, 0.1, 0.19, 0.25])
+    with mock.patch.object(time, "monotonic", side_effect=lambda: next(clock)):
+        watch = Watch(listener=heard.append)
+        for states in range(5):
+            watch.check(states, 0)
+    assert [p.states for p in heard] == [0, 4]
+
+
+def test_memory_in_use_is_that_of_this_process() -> None:
+    before = memory_in_use()
+    ballast = b"x" * (96 << 20)
+    assert memory_in_use() - before > 64
+    del ballast
+
+
+def test_where_the_system_does_not_tell_the_peak_counts() -> None:
+    with mock.patch("builtins.open", side_effect=FileNotFoundError):
+        peak = memory_in_use()
+    assert peak >= memory_in_use() // 2 > 0
+
+
+@pytest.mark.parametrize(
+    ("free", "limit"), [([], CAREFUL), ([10**6], CAREFUL), ([1000], 800), ([1000, 500], 400), ([0], 1)]
+)
+def test_no_more_than_the_machine_has(free: List[int], limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits_module, "_available", lambda: iter(free))
+    assert careful_memory() == limit
+
+
+def test_what_is_available_is_read_from_the_machine_and_the_container() -> None:
+    files = {
+        "/proc/meminfo": "MemTotal: 8000000 kB\nMemAvailable:  2048000 kB\n",
+        "/sys/fs/cgroup/memory.max": "max\n",
+        "/sys/fs/cgroup/memory/memory.limit_in_bytes": f"{300 << 20}\n",
+    }
+
+    def opened(path: str, *_: Any, **__: Any) -> Any:
+        if path not in files:
+            raise FileNotFoundError(path)
+        return mock.mock_open(read_data=files[path])()
+
+    with mock.patch("builtins.open", opened), mock.patch.object(limits_module, "memory_in_use", return_value=50):
+        found: Iterator[int] = limits_module._available()
+        assert list(found) == [2050, 300]
