@@ -68,19 +68,21 @@ def measured(case: Case, bounds: Bounds) -> Row:
     job = json.dumps({"case": asdict(case), "bounds": asdict(bounds)})
     command = [sys.executable, "-m", "benchmarks.measure"]
     pipes: Dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    late = False
     with subprocess.Popen(command, cwd=str(ROOT), universal_newlines=True, **pipes) as process:
         try:
             out, err = process.communicate(job, timeout=3 * bounds.seconds + 10)
         except subprocess.TimeoutExpired:
+            late = True
             process.kill()
             out, err = process.communicate()
-            row["outcome"] = "time"
     whole = [line for line in out.splitlines() if line.endswith("}")]
-    row.update(json.loads(whole[-1]) if whole else {})
-    if process.returncode and not row["outcome"]:
+    row.update(json.loads(whole[-1]) if whole else {"outcome": "time" if late else ""})
+    if process.returncode and not late:
         # Killed by the system, or Python ran out of what RLIMIT_AS leaves it.
         starved = process.returncode < 0 or "MemoryError" in err or "bad_alloc" in err
-        row["outcome"] = "memory" if starved else (err.strip().splitlines() or ["failed"])[-1][:120]
+        reason = (err.strip().splitlines() or ["failed"])[-1].split("PursueError: ")[-1][:120]
+        row["outcome"] = ("proof" if whole else "memory") if starved else reason
     return row
 
 
@@ -116,10 +118,14 @@ def _measure(case: Case, bounds: Bounds) -> None:
         row["commands"] = sum(len(block.commands) for block in strategy.blocks)
         _tell(row)
     except PursueError as problem:
-        if problem.exit_status != 5:
+        message = problem.diagnostics[0].message.split(";")[0]
+        if problem.exit_status == 5:
+            trouble = "proof" if row else "memory" if "memory" in message else "time"
+        elif row:
+            trouble = "refused"
+        else:
             raise
-        trouble = "memory" if "memory" in problem.diagnostics[0].message.split(";")[0] else "time"
-        _tell({**row, "outcome": "proof" if row else trouble, "memory": _peak()})
+        _tell({**row, "outcome": trouble, "reason": message, "memory": _peak()})
         return
     found = strategy_margin(network, objective, strategy, rules.reaction, MARGIN_STATES.get(case.group, 50_000))
     _tell({**row, "margin": float(found.wins), "margin_open": found.fails is None})

@@ -13,9 +13,15 @@ from benchmarks.families import FAMILIES, Family
 Row = Dict[str, Any]
 
 DASH = "-"
-OUTCOMES = {"time": "too long", "memory": "too large", "proof": "not proven in time", "skipped": "not tried"}
+OUTCOMES = {
+    "time": "too long",
+    "memory": "too large",
+    "proof": "not proven in time",
+    "refused": "refused by the checker",
+    "skipped": "not tried",
+}
 COLUMNS = (
-    "group", "name", "size", "game", "verdict", "outcome", "states", "zones", "rate", "seconds", "runs", "decided",
+    "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "zones", "rate", "seconds", "runs", "decided",
     "proof", "memory", "blocks", "commands", "margin", "margin_open",
     "tiga_states", "tiga_waiting", "tiga_rate", "tiga_blocks", "tiga_commands",
 )  # fmt: skip
