@@ -106,12 +106,12 @@ def catch_by_places(places: int) -> str:
 
 
 def catch_by_distance(distance: int) -> str:
-    """As before with four rooms, all ways equally long."""
+    """An officer catches a thief of half the speed in a ring of four rooms; all ways have this length."""
     return _chase(_ring(4, [distance] * 4), 4, 1)
 
 
 def catch_by_one_distance(distance: int) -> str:
-    """As before with four rooms, one way of this length and three of 10."""
+    """An officer catches a thief of half the speed in a ring of four rooms; one way has this length, the others 10."""
     return _chase(_ring(4, [distance, 10, 10, 10]), 4, 1)
 
 

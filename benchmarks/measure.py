@@ -156,7 +156,8 @@ def _peak() -> float:
 
 
 def _tell(row: Row) -> None:
-    print(json.dumps({"outcome": "", **row}), flush=True)
+    rounded = {key: round(value, 6) if isinstance(value, float) else value for key, value in row.items()}
+    print(json.dumps({"outcome": "", **rounded}), flush=True)
 
 
 def main() -> None:

@@ -81,16 +81,17 @@ def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
 
 def machine() -> str:
     """What the times depend on."""
-    cpu, system = platform.machine(), platform.system()
+    cpu, system, kind = platform.machine(), platform.system(), "machine"
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
         cpu = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+        kind = "virtual machine" if any(" hypervisor" in line for line in lines) else kind
         release = dict(line.split("=", 1) for line in Path("/etc/os-release").read_text().splitlines() if "=" in line)
         system = f"{release['NAME']} {release['VERSION_ID']}".replace('"', "").replace(" GNU/Linux", "")
     except (OSError, StopIteration, KeyError, IndexError):
         pass
     python = ".".join(platform.python_version_tuple()[:2])
-    return f"{os.cpu_count()} cores ({cpu}), {system}, Python {python}"
+    return f"a {kind} with {os.cpu_count()} cores ({cpu}), {system}, Python {python}"
 
 
 def merged(old: Sequence[Row], new: Sequence[Row]) -> List[Row]:

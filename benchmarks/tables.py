@@ -21,8 +21,8 @@ OUTCOMES = {
     "skipped": "not tried",
 }
 COLUMNS = (
-    "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "zones", "rate", "seconds", "runs", "decided",
-    "proof", "memory", "blocks", "commands", "margin", "margin_open",
+    "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "zones", "rate", "seconds", "runs",
+    "decided", "proof", "memory", "blocks", "commands", "margin", "margin_open",
     "tiga_states", "tiga_waiting", "tiga_rate", "tiga_blocks", "tiga_commands",
 )  # fmt: skip
 
@@ -157,7 +157,7 @@ class Growth:
 
     def __str__(self) -> str:
         if self.kind == "power":
-            return "constant" if abs(self.k) < 0.1 else f"n^{self.k:.1f}"
+            return "constant" if abs(self.k) < 0.15 else f"n^{self.k:.1f}"
         return f"{self.k:.3g}^n"
 
 
@@ -172,7 +172,7 @@ def growth(points: Iterable[Tuple[float, float]]) -> Optional[Growth]:
         return Growth("factor", math.exp(factor), len(usable))
     power, far = _line([math.log(size) for size, _ in usable], logs)
     # Where a figure hardly moves, both fit: then it is a power close to zero.
-    if far <= off or abs(power) < 0.1:
+    if far <= off or abs(power) < 0.15:
         return Growth("power", power, len(usable))
     return Growth("factor", math.exp(factor), len(usable))
 
