@@ -6,8 +6,8 @@ from collections import deque
 from fractions import Fraction
 from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
-from pursue_gen.synthesis.dbm import INF, LE_ZERO, add, constant, is_strict
-from pursue_gen.synthesis.game import Action, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.dbm import INF, LE_ZERO, constant, is_strict
+from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 
 Matrix = Tuple[int, ...]
@@ -18,7 +18,8 @@ def to_strategy(game: Game, blocks: Iterable[RawBlock]) -> Strategy:
 
     Each zone's matrix must be canonical (raw bounds, scaled as the game's; INF or more: no bound).
     """
-    return Strategy(tuple(_block(game, block) for block in blocks))
+    known: Dict[Bound, Constraint] = {}
+    return Strategy(tuple(_block(game, block, known) for block in blocks))
 
 
 def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict[ZoneKey, int]:
@@ -54,12 +55,12 @@ def followed(game: Game, blocks: Iterable[RawBlock]) -> Tuple[RawBlock, ...]:
     return tuple(block for state, block in by_state.items() if state in met)
 
 
-def _block(game: Game, block: RawBlock) -> Block:
+def _block(game: Game, block: RawBlock, known: Dict[Bound, Constraint]) -> Block:
     locations, values, pieces = block
     by_action: Dict[Action, List[Zone]] = {}
     for matrix, action in pieces:
         key = None if action is None else tuple(action)
-        by_action.setdefault(key, []).append(zone_text(game, tuple(matrix)))
+        by_action.setdefault(key, []).append(_zone(game, tuple(matrix), known))
     state = DiscreteState(
         tuple((automaton.name, automaton.locations[k]) for automaton, k in zip(game.automata, locations)),
         tuple(zip(game.variables, values)),
@@ -78,36 +79,52 @@ def _move(game: Game, edge: int) -> Move:
 
 def zone_text(game: Game, matrix: Matrix) -> Zone:
     """The constraints that make the zone, fewest bounds, in time units; the canonical matrix has the game's scale."""
-    names = (None, *game.clocks)
-    return tuple(
-        Constraint(names[i], names[j], Fraction(constant(bound), game.scale), is_strict(bound))
-        for i, j, bound in minimal(game.dim, matrix)
-    )
+    return _zone(game, matrix, {})
 
 
-def minimal(dim: int, matrix: Matrix) -> List[Tuple[int, int, int]]:
+def _zone(game: Game, matrix: Matrix, known: Dict[Bound, Constraint]) -> Zone:
+    """The same; `known` are constraints by their bounds: few of them stand in very many zones."""
+    zone: List[Constraint] = []
+    for bound in minimal(game.dim, matrix):
+        constraint = known.get(bound)
+        if constraint is None:
+            i, j, limit = bound
+            names = (None, *game.clocks)
+            time = Fraction(constant(limit), game.scale)
+            constraint = known[bound] = Constraint(names[i], names[j], time, is_strict(limit))
+        zone.append(constraint)
+    return tuple(zone)
+
+
+def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
     """The bounds (i, j, raw) of a canonical matrix that the others, and clocks being >= 0, do not imply.
 
     Larsen, Larsson, Pettersson and Yi 1997: clocks at fixed differences form a class; each is bound to the first of its
     class, and between the first ones a bound is left out where a way round is as tight.
     """
-    first = [min(j for j in range(dim) if _fixed(dim, matrix, i, j)) for i in range(dim)]
+    rows = [matrix[i * dim : i * dim + dim] for i in range(dim)]
+    first = [min(j for j in range(i + 1) if j == i or _fixed(rows, i, j)) for i in range(dim)]
     heads = [i for i in range(dim) if first[i] == i]
-    kept: List[Tuple[int, int, int]] = []
-    for i in range(dim):
-        for j in range(dim):
-            bound = matrix[i * dim + j]
-            if i == j or bound >= INF or (i == 0 and bound == LE_ZERO):
+    from_zero = {first[k] for k in range(1, dim) if rows[0][k] == LE_ZERO}
+    kept: List[Bound] = []
+    for i, row in enumerate(rows):
+        for j, bound in enumerate(row):
+            # That a clock is >= 0 goes without saying, also where it tells how large another of its class is at least.
+            if i == j or bound >= INF or (i == 0 and (bound == LE_ZERO or j in from_zero)):
                 continue
             if first[i] == first[j]:
                 if first[i] in (i, j):
                     kept.append((i, j, bound))
-            elif i in heads and j in heads:
-                ways = (add(matrix[i * dim + k], matrix[k * dim + j]) for k in heads if k not in (i, j))
-                if all(way > bound for way in ways):
+            elif first[i] == i and first[j] == j:
+                for k in heads:
+                    there, on = row[k], rows[k][j]
+                    if there < INF and on < INF and k != i and k != j and there + on - ((there | on) & 1) <= bound:
+                        break
+                else:
                     kept.append((i, j, bound))
     return kept
 
 
-def _fixed(dim: int, matrix: Matrix, i: int, j: int) -> bool:
-    return i == j or add(matrix[i * dim + j], matrix[j * dim + i]) == LE_ZERO
+def _fixed(rows: Sequence[Sequence[int]], i: int, j: int) -> bool:
+    """True if the difference of the two clocks is one number: each bound is `<=` and they add up to `<= 0`."""
+    return rows[i][j] + rows[j][i] == 2 and bool(rows[i][j] & 1)
