@@ -10,11 +10,15 @@ from typing import Mapping, Optional
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.smaller import smaller
 from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
-from pursue_gen.synthesis.verify import pruned, verify
+from pursue_gen.synthesis.verify import pruned, pruned_ranks, verify
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+
+_LITTLE = 5_000
+"""A proof with so many symbolic states takes a second or two: then a strategy in fewer zones is proven as well."""
 
 REPORTED, CONTROLLABLE = "reported", "controllable"
 
@@ -87,17 +91,18 @@ def prove(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
+    simpler: bool = True,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
-    Raises PursueError with the play that breaks it; with exit status 5 at a limit, the checker's own one on symbolic
-    states included.
+    `simpler`: in fewer zones and bounds, proven once more, where that costs little. Raises PursueError with the play
+    that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states included.
     """
     start = time.monotonic()
     report = verify(network, objective, strategy, reaction, ranks=ranks, limits=limits, progress=progress)
     if not report.ok and ranks is not None:
-        left = limits.since(start)
-        report = verify(network, objective, strategy, reaction, limits=left, progress=progress)
+        ranks = None
+        report = verify(network, objective, strategy, reaction, limits=limits.since(start), progress=progress)
     if report.reason.startswith("limit"):
         hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
         raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)
@@ -105,7 +110,13 @@ def prove(
         play = "".join(f"\n      {step}" for step in report.play)
         hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
         raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
-    return pruned(strategy, report)
+    kept = pruned(strategy, report)
+    if not simpler or report.states > _LITTLE:
+        return kept
+    left = None if ranks is None else pruned_ranks(strategy, report, ranks)
+    fewer = smaller(network, kept, reaction, left)
+    again = verify(network, objective, fewer, reaction, limits=limits.since(start), progress=progress)
+    return pruned(fewer, again) if again.ok else kept
 
 
 def solve_scenario(

@@ -61,7 +61,8 @@ def trials(
         game = played(network, rules)
         strategy = read_plan(text, game, file)
         try:
-            proven = prove(game, objective, strategy, rules.reaction, None, limits.since(start), progress)
+            left = limits.since(start)
+            proven = prove(game, objective, strategy, rules.reaction, None, left, progress, simpler=False)
         except PursueError as problem:
             done.append(Trial(rules, None, problem.diagnostics))
             continue

@@ -114,18 +114,20 @@ class Dbm:
         if add(old[j * dim + i], bound) < LE_ZERO:
             return None
         m = list(old)
-        row_j = old[j * dim : j * dim + dim]
+        # Only these ways lead on from j, and only from where one comes to i the new bound is used.
+        onward = [(q, m_jq) for q, m_jq in enumerate(old[j * dim : j * dim + dim]) if m_jq < INF]
         for p in range(dim):
-            to_j = add(old[p * dim + i], bound)
-            if to_j >= INF:
+            to_i = old[p * dim + i]
+            if to_i >= INF:
                 continue
+            to_j = to_i + bound - ((to_i | bound) & 1)
             at = p * dim
-            for m_jq in row_j:
-                if m_jq < INF:
-                    through = to_j + m_jq - ((to_j | m_jq) & 1)
-                    if through < m[at]:
-                        m[at] = through
-                at += 1
+            if to_j >= m[at + j]:
+                continue  # the way there was as short before, and so are all that go on from j
+            for q, m_jq in onward:
+                through = to_j + m_jq - ((to_j | m_jq) & 1)
+                if through < m[at + q]:
+                    m[at + q] = through
         return Dbm(dim, tuple(m))
 
     def constrained_all(self, constraints: Iterable[Tuple[int, int, int]]) -> Optional[Dbm]:

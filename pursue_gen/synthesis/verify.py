@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.dbm import Dbm
@@ -108,6 +108,23 @@ def pruned(strategy: Strategy, report: Report) -> Strategy:
         if fewer.wait or fewer.commands:
             blocks.append(fewer)
     return replace(strategy, blocks=tuple(blocks))
+
+
+def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
+    """The ranks of the zones that are left in the pruned strategy, by where they stand there."""
+    found: Dict[ZoneKey, int] = {}
+    blocks = 0
+    for b, block in enumerate(strategy.blocks):
+        commands = -1
+        for k in range(-1, len(block.commands)):
+            part: Union[str, int] = "wait" if k < 0 else k
+            count = len(block.wait) if k < 0 else len(block.commands[k].zones)
+            left = [n for n in range(count) if (b, part, n) in report.used]
+            commands += bool(left) and k >= 0
+            for new, n in enumerate(left):
+                found[(blocks, part if k < 0 else commands, new)] = ranks.get((b, part, n), 0)
+        blocks += (blocks, "wait", 0) in found or commands >= 0
+    return found
 
 
 def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:

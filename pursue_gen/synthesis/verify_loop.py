@@ -149,14 +149,16 @@ class ClosedLoop:
         if self.won(state) or self.lost(state) or state not in self._blocks:
             return (), ()
         situation = self.arena.situation(state)
-        moves = [move for move in situation.moves if not move.controllable and move.enabled is not None]
-        moves += {act.move: None for act in self._advice_in(state, situation).acts if act.move is not None}
+        moves = {id(move): move for move in situation.moves if not move.controllable and move.enabled is not None}
         compared: List[Tuple[int, int]] = []
         for b in self._blocks[state]:
-            for c in (c for zone in _zones_of(self.strategy.blocks[b]) for c in zone):
+            block = self.strategy.blocks[b]
+            commanded = (_joint_move(command, situation)[0] for command in block.commands)
+            moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
+            for c in (c for zone in _zones_of(block) for c in zone):
                 size = abs(self._scaled(c.bound))
                 compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
-        return moves, compared
+        return tuple(moves.values()), compared
 
 
 def _joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
