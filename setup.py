@@ -27,7 +27,7 @@ def native_modules() -> List[Any]:
         [(core / "module.cpp").as_posix()],
         depends=sorted(header.as_posix() for header in core.glob("*.hpp")),
         cxx_std=17,
-        extra_compile_args=["-O2", "-g0"],
+        extra_compile_args=["-O3", "-g0"],
     )
     module.optional = True  # setuptools then goes on without it
     return [module]

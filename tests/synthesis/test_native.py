@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.synthesis import native
-from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.dbm import INF, Dbm
 from pursue_gen.synthesis.federation import Federation
 from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
 from pursue_gen.synthesis.reference import solve_reference
@@ -48,6 +50,36 @@ def test_it_agrees_with_brute_force(game: Game) -> None:
 def test_it_agrees_with_the_python_reference(game: Game) -> None:
     assert native.solve_native(game).won == solve_reference(game).won
 
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(games(EVERY_KIND, (0, 1)))
+def test_times_too_long_for_short_bounds_change_nothing(game: Game) -> None:
+    assert native.solve_native(slower(game, 100_000)).won == native.solve_native(game).won
+
+
+def slower(game: Game, factor: int) -> Game:
+    """The game with every time multiplied."""
+
+    def longer(bound: int) -> int:
+        return bound if bound >= INF else (bound >> 1) * factor * 2 + (bound & 1)
+
+    return replace(
+        game,
+        delta=game.delta * factor,
+        max_constants=tuple(max(constant, constant * factor) for constant in game.max_constants),
+        automata=tuple(
+            replace(
+                automaton,
+                invariants=tuple(tuple((x, longer(b)) for x, b in location) for location in automaton.invariants),
+            )
+            for automaton in game.automata
+        ),
+        edges=tuple(
+            replace(edge, bounds=tuple((i, j, longer(b)) for i, j, b in edge.bounds), duration=edge.duration * factor)
+            for edge in game.edges
+        ),
+    )
 
 
 def test_ranks_fall_with_every_command() -> None:

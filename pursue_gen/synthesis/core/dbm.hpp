@@ -1,7 +1,8 @@
 // Zones as difference bound matrices (Bengtsson and Yi 2004): free functions on a canonical, non-empty matrix.
 //
-// m[i * N + j] bounds x_i - x_j; x_0 is the constant 0. A bound is raw = 2 * c + (1 if "<=" else 0), so that a smaller
-// raw bound is the tighter one. N is fixed when compiled; unused clocks stay unconstrained and cost next to nothing.
+// at(i, j) bounds x_i - x_j; x_0 is the constant 0. A bound is raw = 2 * c + (1 if "<=" else 0), so that a smaller raw
+// bound is the tighter one. The size N and the integer R of the bounds are fixed when compiled; clocks that a game does
+// not have stay unconstrained. Rows are padded with INF to whole vectors of eight bounds: compilers work on rows at once.
 #pragma once
 
 #include <algorithm>
@@ -11,184 +12,201 @@
 
 namespace pursue {
 
-using raw_t = std::int32_t;
+using wide_t = std::int32_t;  // bounds as the tables of a game hold them
 
-constexpr raw_t INF = 1 << 29;
-constexpr raw_t LE_ZERO = 1;
-constexpr raw_t LT_ZERO = 0;
+// No bound. Two finite bounds add up without overflow, and INF plus a finite bound stays above zero.
+template <class R>
+constexpr R INF = static_cast<R>(R{1} << (sizeof(R) == 2 ? 14 : 29));
+
+constexpr int LE_ZERO = 1;
 
 // The sum of two bounds; infinite as soon as one is.
-inline raw_t add(raw_t a, raw_t b) { return (a >= INF || b >= INF) ? INF : a + b - ((a | b) & 1); }
-
-// The bound of the complement: not (x - y < c) is y - x <= -c.
-inline raw_t complement(raw_t a) {
-    assert(a < INF);
-    return 1 - a;
+template <class R>
+inline R add(R a, R b) {
+    return std::max(a, b) >= INF<R> ? INF<R> : static_cast<R>(a + b - ((a | b) & 1));
 }
 
-template <int N>
-struct Dbm {
-    raw_t m[N * N];
+// The bound of the complement: not (x - y < c) is y - x <= -c.
+template <class R>
+inline R complement(R a) {
+    assert(a < INF<R>);
+    return static_cast<R>(1 - a);
+}
 
-    raw_t& at(int i, int j) { return m[i * N + j]; }
-    raw_t at(int i, int j) const { return m[i * N + j]; }
+template <int N, class R>
+struct Dbm {
+    using raw_t = R;
+    static constexpr int size = N, stride = (N + 7) / 8 * 8;
+
+    R m[N * stride];
+
+    R* row(int i) { return m + i * stride; }
+    const R* row(int i) const { return m + i * stride; }
+    R& at(int i, int j) { return m[i * stride + j]; }
+    R at(int i, int j) const { return m[i * stride + j]; }
 };
 
 // All valuations: every clock >= 0.
-template <int N>
-Dbm<N> universe() {
-    Dbm<N> z;
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) z.at(i, j) = (i == j || i == 0) ? LE_ZERO : INF;
+template <class Z>
+Z universe() {
+    Z z;
+    std::fill(std::begin(z.m), std::end(z.m), INF<typename Z::raw_t>);
+    for (int i = 0; i < Z::size; ++i) z.at(0, i) = z.at(i, i) = LE_ZERO;
     return z;
 }
 
 // The first `clocks` clocks are 0, the others (padding) free.
-template <int N>
-Dbm<N> origin(int clocks) {
-    assert(clocks < N);
-    Dbm<N> z = universe<N>();
+template <class Z>
+Z origin(int clocks) {
+    assert(clocks < Z::size);
+    Z z = universe<Z>();
     for (int i = 0; i <= clocks; ++i)
-        for (int j = 0; j <= clocks; ++j) z.at(i, j) = LE_ZERO;
-    for (int i = 1; i <= clocks; ++i)
-        for (int j = clocks + 1; j < N; ++j) z.at(i, j) = LE_ZERO;
+        for (int j = 0; j < Z::size; ++j) z.at(i, j) = LE_ZERO;
     return z;
 }
 
+// row := min(row, base + other), bound by bound.
+template <class Z>
+inline void relax(typename Z::raw_t* row, typename Z::raw_t base, const typename Z::raw_t* other) {
+    using R = typename Z::raw_t;
+    for (int l = 0; l < Z::stride; ++l) {
+        const R through = add(base, other[l]);
+        row[l] = std::min(row[l], through);
+    }
+}
+
 // Requires: canonical. Ensures: true and canonical with x_i - x_j within `bound`, or false (empty, z is not to be used).
-template <int N>
-bool constrain(Dbm<N>& z, int i, int j, raw_t bound) {
+template <class Z>
+bool constrain(Z& z, int i, int j, typename Z::raw_t bound) {
+    using R = typename Z::raw_t;
     assert(i != j);
     if (bound >= z.at(i, j)) return true;
     if (add(z.at(j, i), bound) < LE_ZERO) return false;
-    z.at(i, j) = bound;
-    for (int k = 0; k < N; ++k) {
-        const raw_t through = add(z.at(k, i), bound);
-        if (through >= z.at(k, j)) continue;
-        z.at(k, j) = through;
-        for (int l = 0; l < N; ++l) z.at(k, l) = std::min(z.at(k, l), add(through, z.at(j, l)));
+    R way[Z::stride];  // from i by way of j
+    for (int l = 0; l < Z::stride; ++l) way[l] = add(bound, z.at(j, l));
+    for (int k = 0; k < Z::size; ++k) {
+        const R to = z.at(k, i);
+        if (to < INF<R> && add(to, bound) < z.at(k, j)) relax<Z>(z.row(k), to, way);
     }
-    for (int l = 0; l < N; ++l) z.at(i, l) = std::min(z.at(i, l), add(bound, z.at(j, l)));
     return true;
 }
 
 // Tightens all bounds (Floyd and Warshall). Returns false when empty.
-template <int N>
-bool close(Dbm<N>& z) {
-    for (int k = 0; k < N; ++k)
-        for (int i = 0; i < N; ++i) {
-            const raw_t ik = z.at(i, k);
-            if (ik >= INF || i == k) continue;
-            for (int j = 0; j < N; ++j) z.at(i, j) = std::min(z.at(i, j), add(ik, z.at(k, j)));
+template <class Z>
+bool close(Z& z) {
+    using R = typename Z::raw_t;
+    for (int k = 0; k < Z::size; ++k)
+        for (int i = 0; i < Z::size; ++i) {
+            const R to = z.at(i, k);
+            if (to >= INF<R> || i == k) continue;
+            relax<Z>(z.row(i), to, z.row(k));
             if (z.at(i, i) < LE_ZERO) return false;
         }
     return true;
 }
 
 // Quick test, exact in one direction only: true means disjoint.
-template <int N>
-bool clearly_disjoint(const Dbm<N>& a, const Dbm<N>& b) {
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j)
-            if (i != j && add(a.at(i, j), b.at(j, i)) < LE_ZERO) return true;
+template <class Z>
+bool clearly_disjoint(const Z& a, const Z& b) {
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
+            const int p = a.at(i, j), q = b.at(j, i);
+            if (p + q - ((p | q) & 1) < LE_ZERO) return true;
+        }
     return false;
 }
 
 // Requires: both canonical. Ensures: a is the canonical intersection and true, or false (empty).
-template <int N>
-bool intersect(Dbm<N>& a, const Dbm<N>& b) {
+template <class Z>
+bool intersect(Z& a, const Z& b) {
     if (clearly_disjoint(a, b)) return false;
     bool changed = false;
-    for (int k = 0; k < N * N; ++k)
-        if (b.m[k] < a.m[k]) {
-            a.m[k] = b.m[k];
-            changed = true;
-        }
+    for (int k = 0; k < Z::size * Z::stride; ++k) {
+        changed |= b.m[k] < a.m[k];
+        a.m[k] = std::min(a.m[k], b.m[k]);
+    }
     return !changed || close(a);
 }
 
-template <int N>
-bool includes(const Dbm<N>& big, const Dbm<N>& small) {
-    for (int k = 0; k < N * N; ++k)
-        if (small.m[k] > big.m[k]) return false;
-    return true;
+template <class Z>
+bool includes(const Z& big, const Z& small) {
+    bool outside = false;
+    for (int k = 0; k < Z::size * Z::stride; ++k) outside |= small.m[k] > big.m[k];
+    return !outside;
 }
 
 // The smallest zone around both.
-template <int N>
-Dbm<N> hull(Dbm<N> a, const Dbm<N>& b) {
-    for (int k = 0; k < N * N; ++k) a.m[k] = std::max(a.m[k], b.m[k]);
+template <class Z>
+Z hull(Z a, const Z& b) {
+    for (int k = 0; k < Z::size * Z::stride; ++k) a.m[k] = std::max(a.m[k], b.m[k]);
     return a;
 }
 
 // The future: time passes.
-template <int N>
-void up(Dbm<N>& z) {
-    for (int i = 1; i < N; ++i) z.at(i, 0) = INF;
+template <class Z>
+void up(Z& z) {
+    for (int i = 1; i < Z::size; ++i) z.at(i, 0) = INF<typename Z::raw_t>;
 }
 
 // The past: every valuation from which some delay leads into z.
-template <int N>
-void down(Dbm<N>& z) {
-    for (int j = 1; j < N; ++j) z.at(0, j) = LE_ZERO;
-    for (int j = 1; j < N; ++j)
-        for (int i = 1; i < N; ++i) z.at(0, j) = std::min(z.at(0, j), z.at(i, j));
+template <class Z>
+void down(Z& z) {
+    for (int j = 1; j < Z::size; ++j) z.at(0, j) = LE_ZERO;
+    for (int i = 1; i < Z::size; ++i)
+        for (int j = 1; j < Z::stride; ++j) z.at(0, j) = std::min(z.at(0, j), z.at(i, j));
 }
 
-// The past by at most `delay` time units (scaled). Valuations below zero are cut off.
-template <int N>
-bool down_within(Dbm<N>& z, raw_t delay) {
+// The past by at most `delay` (scaled time). Valuations below zero are cut off; false: nothing is left.
+template <class Z>
+bool down_within(Z& z, int delay) {
+    using R = typename Z::raw_t;
     if (delay == 0) return true;
-    raw_t low[N];
-    for (int j = 1; j < N; ++j) low[j] = add(z.at(0, j), 2 * delay + 1);
-    for (int j = 1; j < N; ++j) z.at(0, j) = low[j];
+    for (int j = 1; j < Z::size; ++j) z.at(0, j) = add(z.at(0, j), static_cast<R>(2 * delay + 1));
     // the shifted zone is canonical but may reach below zero
-    for (int j = 1; j < N; ++j)
+    for (int j = 1; j < Z::size; ++j)
         if (!constrain(z, 0, j, LE_ZERO)) return false;
     return true;
 }
 
-// The future by at most `delay`.
-template <int N>
-void up_within(Dbm<N>& z, raw_t delay) {
-    for (int i = 1; i < N; ++i) z.at(i, 0) = add(z.at(i, 0), 2 * delay + 1);
+// The future by at most `delay` (scaled time).
+template <class Z>
+void up_within(Z& z, int delay) {
+    using R = typename Z::raw_t;
+    for (int i = 1; i < Z::size; ++i) z.at(i, 0) = add(z.at(i, 0), static_cast<R>(2 * delay + 1));
 }
 
 // x_i := 0.
-template <int N>
-void reset(Dbm<N>& z, int i) {
-    for (int j = 0; j < N; ++j) {
-        z.at(i, j) = z.at(0, j);
-        z.at(j, i) = z.at(j, 0);
-    }
+template <class Z>
+void reset(Z& z, int i) {
+    std::copy(z.row(0), z.row(0) + Z::stride, z.row(i));
+    for (int j = 0; j < Z::size; ++j) z.at(j, i) = z.at(j, 0);
     z.at(i, i) = LE_ZERO;
 }
 
 // x_i may be anything >= 0.
-template <int N>
-void free_clock(Dbm<N>& z, int i) {
-    for (int j = 0; j < N; ++j) {
-        if (j == i) continue;
-        z.at(i, j) = INF;
-        z.at(j, i) = z.at(j, 0);
-    }
+template <class Z>
+void free_clock(Z& z, int i) {
+    std::fill(z.row(i), z.row(i) + Z::stride, INF<typename Z::raw_t>);
+    for (int j = 0; j < Z::size; ++j) z.at(j, i) = z.at(j, 0);
+    z.at(i, i) = LE_ZERO;
 }
 
 // Forgets what lies above the largest constants (Extra_M), scaled; index 0 is unused, a clock with -1 is freed.
-template <int N>
-void extrapolate(Dbm<N>& z, const std::vector<raw_t>& max) {
+template <class Z>
+void extrapolate(Z& z, const std::vector<wide_t>& max) {
+    using R = typename Z::raw_t;
     bool changed = false;
-    for (int x = 1; x < N; ++x)
+    for (int x = 1; x < Z::size; ++x)
         if (max[x] < 0) free_clock(z, x);
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) {
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
             if (i == j) continue;
-            raw_t& b = z.at(i, j);
-            if (i > 0 && max[i] >= 0 && b < INF && b > 2 * max[i] + 1) {
-                b = INF;
+            R& b = z.at(i, j);
+            if (i > 0 && max[i] >= 0 && b < INF<R> && b > 2 * max[i] + 1) {
+                b = INF<R>;
                 changed = true;
             } else if (j > 0 && max[j] >= 0 && b < -2 * max[j]) {
-                b = -2 * max[j];
+                b = static_cast<R>(-2 * max[j]);
                 changed = true;
             }
         }
@@ -196,18 +214,18 @@ void extrapolate(Dbm<N>& z, const std::vector<raw_t>& max) {
 }
 
 // Appends the parts of a outside b, pairwise disjoint.
-template <int N>
-void subtract(const Dbm<N>& a, const Dbm<N>& b, std::vector<Dbm<N>>& out) {
+template <class Z>
+void subtract(const Z& a, const Z& b, std::vector<Z>& out) {
     if (clearly_disjoint(a, b)) {
         out.push_back(a);
         return;
     }
-    Dbm<N> rest = a;
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) {
+    Z rest = a;
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
             if (i == j || b.at(i, j) >= rest.at(i, j)) continue;
-            Dbm<N> part = rest;
-            if (constrain(part, j, i, complement(b.at(i, j)))) out.push_back(part);
+            out.push_back(rest);
+            if (!constrain(out.back(), j, i, complement(b.at(i, j)))) out.pop_back();
             if (!constrain(rest, i, j, b.at(i, j))) return;
         }
 }

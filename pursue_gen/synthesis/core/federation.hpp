@@ -7,132 +7,138 @@
 
 namespace pursue {
 
-template <int N>
-using Federation = std::vector<Dbm<N>>;
+template <class Z>
+using Federation = std::vector<Z>;
 
-template <int N>
-Federation<N> minus(const Federation<N>& fed, const Dbm<N>& zone) {
-    Federation<N> out;
-    out.reserve(fed.size());
+template <class Z>
+Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
+    Federation<Z> out;
+    out.reserve(fed.size() + 2);
     for (const auto& z : fed) subtract(z, zone, out);
     return out;
 }
 
-template <int N>
-Federation<N> minus(Federation<N> fed, const Federation<N>& other) {
+template <class Z>
+bool touches(const Federation<Z>& fed, const Z& zone) {
+    for (const auto& z : fed)
+        if (!clearly_disjoint(z, zone)) return true;
+    return false;
+}
+
+template <class Z>
+Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
     for (const auto& zone : other) {
         if (fed.empty()) break;
-        fed = minus(fed, zone);
+        if (touches(fed, zone)) fed = minus(fed, zone);
     }
     return fed;
 }
 
-template <int N>
-Federation<N> intersection(const Federation<N>& a, const Dbm<N>& b) {
-    Federation<N> out;
-    for (auto z : a)
-        if (intersect(z, b)) out.push_back(z);
-    return out;
-}
-
-template <int N>
-Federation<N> intersection(const Federation<N>& a, const Federation<N>& b) {
-    Federation<N> out;
+template <class Z>
+Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
+    Federation<Z> out;
     for (const auto& zone : b)
-        for (auto z : a)
-            if (intersect(z, zone)) out.push_back(z);
+        for (const auto& other : a) {
+            out.push_back(other);
+            if (!intersect(out.back(), zone)) out.pop_back();
+        }
     return out;
 }
 
-template <int N>
-void append(Federation<N>& a, const Federation<N>& b) {
+template <class Z>
+void append(Federation<Z>& a, const Federation<Z>& b) {
     a.insert(a.end(), b.begin(), b.end());
 }
 
 // Adds a zone unless one that is there includes it; drops those that it includes.
-template <int N>
-void insert_reduced(Federation<N>& fed, const Dbm<N>& zone) {
+template <class Z>
+void insert(Federation<Z>& fed, const Z& zone) {
     for (const auto& z : fed)
         if (includes(z, zone)) return;
-    fed.erase(std::remove_if(fed.begin(), fed.end(), [&](const Dbm<N>& z) { return includes(zone, z); }), fed.end());
+    fed.erase(std::remove_if(fed.begin(), fed.end(), [&](const Z& z) { return includes(zone, z); }), fed.end());
     fed.push_back(zone);
 }
 
 // True when between a and b lies a gap, so that their union cannot be convex.
-template <int N>
-bool apart(const Dbm<N>& a, const Dbm<N>& b) {
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j < i; ++j) {
-            const raw_t p = a.at(i, j), q = b.at(j, i), r = b.at(i, j), s = a.at(j, i);
-            if (p < INF && q < INF && (p >> 1) + (q >> 1) + ((p | q) & 1) <= 0) return true;
-            if (r < INF && s < INF && (r >> 1) + (s >> 1) + ((r | s) & 1) <= 0) return true;
+template <class Z>
+bool apart(const Z& a, const Z& b) {
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
+            const int p = a.at(i, j), q = b.at(j, i);
+            if ((p >> 1) + (q >> 1) + ((p | q) & 1) <= 0 && i != j) return true;
         }
     return false;
 }
 
 // True when a and b together are exactly their hull, which is put into `whole`.
-template <int N>
-bool joins(const Dbm<N>& a, const Dbm<N>& b, Dbm<N>& whole) {
+template <class Z>
+bool joins(const Z& a, const Z& b, Z& whole) {
     if (apart(a, b)) return false;
     whole = hull(a, b);
-    Federation<N> rest;
-    subtract(whole, a, rest);
-    for (const auto& z : rest)
-        if (!includes(b, z)) return false;
+    Z rest = whole;
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
+            if (i == j || a.at(i, j) >= rest.at(i, j)) continue;
+            Z part = rest;
+            if (constrain(part, j, i, complement(a.at(i, j))) && !includes(b, part)) return false;
+            if (!constrain(rest, i, j, a.at(i, j))) return true;
+        }
     return true;
 }
 
-// The same set in fewer zones: drops what is included, merges pairs whose union is convex.
-template <int N>
-Federation<N> reduced(const Federation<N>& fed) {
-    Federation<N> out;
-    for (auto zone : fed) {
-        bool again = true;
-        while (again) {
-            again = false;
-            for (std::size_t k = 0; k < out.size(); ++k) {
-                Dbm<N> whole;
-                if (includes(out[k], zone)) {
-                    whole = out[k];
-                } else if (!joins(out[k], zone, whole)) {
-                    continue;
-                }
-                zone = whole;
-                out[k] = out.back();
-                out.pop_back();
-                again = true;
-                break;
-            }
+// Adds a zone, merged with all that it forms a convex union with.
+template <class Z>
+void absorb(Federation<Z>& fed, Z zone) {
+    for (std::size_t k = 0; k < fed.size();) {
+        Z whole;
+        if (includes(fed[k], zone)) {
+            whole = fed[k];
+        } else if (!joins(fed[k], zone, whole)) {
+            ++k;
+            continue;
         }
-        out.push_back(zone);
+        zone = whole;
+        fed[k] = fed.back();
+        fed.pop_back();
+        k = 0;
     }
+    fed.push_back(zone);
+}
+
+// The same set in fewer zones: drops what is included, merges pairs whose union is convex.
+template <class Z>
+Federation<Z> reduced(const Federation<Z>& fed) {
+    Federation<Z> out;
+    out.reserve(fed.size());
+    for (const auto& zone : fed) absorb(out, zone);
     return out;
 }
 
-template <int N>
-bool contains(const Federation<N>& big, const Dbm<N>& zone) {
+template <class Z>
+bool contains(const Federation<Z>& big, const Z& zone) {
     for (const auto& z : big)
         if (includes(z, zone)) return true;
-    return minus(Federation<N>{zone}, big).empty();
+    return minus(Federation<Z>{zone}, big).empty();
 }
 
 // { q | some t >= 0: q+t in good, and q+t' not in bad for all t' in [0, t] } (Cassez et al. 2005).
-template <int N>
-Federation<N> predt(const Federation<N>& good, const Federation<N>& bad) {
-    Federation<N> out;
+template <class Z>
+Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
+    constexpr std::size_t many = 4;
+    Federation<Z> out;
     for (const auto& g : good) {
-        Dbm<N> past = g;
+        Z past = g;
         down(past);
-        Federation<N> safe{past};
+        Federation<Z> safe{past};
         for (const auto& b : bad) {
             if (safe.empty()) break;
             if (clearly_disjoint(past, b)) continue;
-            Dbm<N> before = b;
+            Z before = b;
             down(before);
-            Federation<N> part = minus(Federation<N>{past}, before);
-            Dbm<N> in = g;
+            Federation<Z> part = minus(Federation<Z>{past}, before);
+            Z in = g;
             if (intersect(in, before)) {
-                Federation<N> early;
+                Federation<Z> early;
                 subtract(in, b, early);
                 for (auto& z : early) {
                     down(z);
@@ -140,7 +146,7 @@ Federation<N> predt(const Federation<N>& good, const Federation<N>& bad) {
                 }
             }
             safe = intersection(safe, part);
-            if (safe.size() > 4) safe = reduced(safe);
+            if (safe.size() > many) safe = reduced(safe);
         }
         append(out, safe);
     }
@@ -148,15 +154,15 @@ Federation<N> predt(const Federation<N>& good, const Federation<N>& bad) {
 }
 
 // { q | q+t' in fed for all t' in [0, delay] }.
-template <int N>
-Federation<N> lasting(const Federation<N>& fed, raw_t delay) {
+template <class Z>
+Federation<Z> lasting(const Federation<Z>& fed, int delay) {
     if (delay == 0) return fed;
-    Federation<N> out;
+    Federation<Z> out;
     for (const auto& zone : fed) {
-        Dbm<N> later = zone;
+        Z later = zone;
         up_within(later, delay);
-        Federation<N> good{zone};
-        for (auto z : minus(Federation<N>{later}, fed)) {
+        Federation<Z> good{zone};
+        for (auto z : minus(Federation<Z>{later}, fed)) {
             if (down_within(z, delay)) good = minus(good, z);
             if (good.empty()) break;
         }

@@ -2,7 +2,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "solver.hpp"
+#include "reach.hpp"
+#include "safety.hpp"
 
 namespace py = pybind11;
 using namespace pursue;
@@ -11,7 +12,7 @@ namespace {
 
 std::vector<Bound> bounds(const py::handle& list) {
     std::vector<Bound> out;
-    for (const auto& item : list.cast<std::vector<std::tuple<int, int, raw_t>>>())
+    for (const auto& item : list.cast<std::vector<std::tuple<int, int, wide_t>>>())
         out.push_back({std::get<0>(item), std::get<1>(item), std::get<2>(item)});
     return out;
 }
@@ -33,7 +34,7 @@ Game read_game(const py::dict& in) {
     const std::string kind = in["kind"].cast<std::string>();
     game.kind = kind == "reach" ? Kind::reach : kind == "safety" ? Kind::safety : Kind::reach_while_safe;
     game.clocks = in["clocks"].cast<int>();
-    game.delta = in["delta"].cast<raw_t>();
+    game.delta = in["delta"].cast<wide_t>();
     game.variables = in["variables"].cast<std::vector<int>>();
     game.goal = place(in["goal"]);
     game.bad = place(in["bad"]);
@@ -60,30 +61,34 @@ Game read_game(const py::dict& in) {
     return game;
 }
 
-template <int N>
-py::dict solve_with(const Game& game, const Limits& limits) {
-    Solver<N> solver(game, limits);
+// Bounds as the tables of a game hold them, row by row.
+template <class Z>
+std::vector<wide_t> matrix(const Z& z, int dim) {
+    std::vector<wide_t> out;
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) out.push_back(z.at(i, j) >= INF<typename Z::raw_t> ? INF<wide_t> : z.at(i, j));
+    return out;
+}
+
+template <class Z>
+py::dict outcome(Fixpoint<Z>& solver, int dim) {
     const bool won = solver.run();
     py::dict out;
     py::list states;
     std::size_t reached = 0, zones = 0;
-    const int dim = game.clocks + 1;
-    for (const auto& node : solver.nodes()) {
+    for (std::size_t k = 0; k < solver.nodes().size(); ++k) {
+        const Node<Z>& node = solver.nodes()[k];
         if (!node.reached) continue;
         ++reached;
         zones += node.set.size();
         if (!won) continue;
-        solver.check();
+        solver.look();
         py::list actions;
-        for (const auto& action : solver.plan(node)) {
-            std::vector<raw_t> matrix;
-            for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j) matrix.push_back(action.zone.at(i, j));
-            actions.append(py::make_tuple(matrix, action.move < 0 ? py::object(py::none())
-                                                                   : py::cast(node.moves[action.move].edges),
-                                           action.rank));
+        for (const auto& action : solver.plan(static_cast<int>(k))) {
+            const py::object edges = action.joint < 0 ? py::object(py::none()) : py::cast(solver.joint(action.joint).edges);
+            actions.append(py::make_tuple(matrix(action.zone, dim), edges, action.rank));
         }
-        if (!actions.empty()) states.append(py::make_tuple(node.d, actions));
+        if (!actions.empty()) states.append(py::make_tuple(solver.state(static_cast<int>(k)), actions));
     }
     out["won"] = won;
     out["states"] = states;
@@ -91,6 +96,31 @@ py::dict solve_with(const Game& game, const Limits& limits) {
     out["zones"] = zones;
     out["evaluations"] = solver.evaluations();
     return out;
+}
+
+template <int N, class R>
+py::dict solve_with(const Game& game, const Limits& limits) {
+    using Z = Dbm<N, R>;
+    if (game.kind == Kind::safety) {
+        Safety<Z> solver(game, limits);
+        return outcome<Z>(solver, game.clocks + 1);
+    }
+    Reach<Z> solver(game, limits);
+    return outcome<Z>(solver, game.clocks + 1);
+}
+
+// Whether every finite bound that can come up fits: sums along a path through all clocks.
+template <class R>
+bool fits(const Game& game) {
+    wide_t largest = game.delta;
+    const auto note = [&](const std::vector<Bound>& bounds) {
+        for (const Bound& b : bounds) largest = std::max(largest, std::abs(b.raw >> 1) + 1);
+    };
+    for (const Automaton& automaton : game.automata) {
+        for (const auto& location : automaton.invariants) note(location);
+        for (const Edge& edge : automaton.edges) note(edge.guard);
+    }
+    return (game.clocks + 2L) * (2L * largest + 2 * game.delta + 2) < INF<R>;
 }
 
 py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress) {
@@ -107,14 +137,17 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
     const int dim = game.clocks + 1;
-    if (dim <= 3) return solve_with<3>(game, limits);
-    if (dim <= 4) return solve_with<4>(game, limits);
-    if (dim <= 5) return solve_with<5>(game, limits);
-    if (dim <= 6) return solve_with<6>(game, limits);
-    if (dim <= 8) return solve_with<8>(game, limits);
-    if (dim <= 12) return solve_with<12>(game, limits);
-    if (dim <= 20) return solve_with<20>(game, limits);
-    if (dim <= 40) return solve_with<40>(game, limits);
+    if (fits<std::int16_t>(game)) {
+        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits);
+        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits);
+        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits);
+        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits);
+        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits);
+    }
+    if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
+    if (dim <= 8) return solve_with<8, wide_t>(game, limits);
+    if (dim <= 16) return solve_with<16, wide_t>(game, limits);
+    if (dim <= 40) return solve_with<40, wide_t>(game, limits);
     throw std::invalid_argument("more than 39 clocks");
 }
 
@@ -123,7 +156,7 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
 PYBIND11_MODULE(_core, module) {
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
-    module.attr("INF") = INF;
+    module.attr("INF") = INF<wide_t>;
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(),
                "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory').");

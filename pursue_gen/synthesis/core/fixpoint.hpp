@@ -1,0 +1,120 @@
+// What both kinds of game share: a set of zones per discrete state that grows until nothing changes.
+//
+// Rules and names (W, L, F, Stuck, Exp, ownU, cPre, uPre, Predt) are those of the design page on the game; a reaction
+// delay keeps a command usable only where it stays right, and the environment harmless, for the whole delay.
+#pragma once
+
+#include "arena.hpp"
+
+namespace pursue {
+
+template <class Z>
+class Fixpoint : public Arena<Z> {
+  public:
+    using Arena<Z>::Arena;
+
+    virtual ~Fixpoint() = default;
+
+    // Whether the controller wins from the initial position.
+    virtual bool run() = 0;
+
+    // What to do in a state, zones disjoint.
+    virtual std::vector<Action<Z>> plan(int k) = 0;
+
+    std::size_t evaluations() const { return evaluations_; }
+
+  protected:
+    using Arena<Z>::game_, Arena<Z>::nodes_, Arena<Z>::joints_, Arena<Z>::watch_, Arena<Z>::before;
+
+    using Part = Federation<Z> Node<Z>::*;
+    using Usable = std::vector<std::pair<int, Federation<Z>>>;  // per joint move, where it may be commanded
+
+    virtual bool evaluate(Node<Z>& n) = 0;
+
+    void wake(int k) {
+        Node<Z>& n = nodes_[k];
+        if (n.waiting || !n.reached) return;
+        n.waiting = true;
+        waiting_.push_back(k);
+    }
+
+    // First in, first out. Returns whether the initial position came into its set.
+    bool settle() {
+        const Z zero = origin<Z>(game_.clocks);
+        while (!waiting_.empty()) {
+            const int k = waiting_.front();
+            waiting_.pop_front();
+            nodes_[k].waiting = false;
+            watch_.look(nodes_.size(), waiting_.size());
+            ++evaluations_;
+            if (!evaluate(nodes_[k])) continue;
+            for (int p : nodes_[k].parents) wake(p);
+            if (k == 0 && contains(nodes_[k].set, zero)) return true;
+        }
+        return contains(nodes_[0].set, zero);
+    }
+
+    // --- discrete predecessors --------------------------------------------------------------------------------------
+
+    Federation<Z> harm(const Node<Z>& n, Part outside) const {
+        Federation<Z> out;
+        for (const Step& step : n.steps) {
+            const Joint& joint = joints_[step.joint];
+            const Node<Z>& target = nodes_[step.target];
+            if (!joint.controllable && target.reached) before(n, joint, target.*outside, out);
+        }
+        return out.size() > 1 ? reduced(out) : out;
+    }
+
+    // Per controllable move the points at which it may be commanded: right now and for the whole reaction delay.
+    Usable commands(const Node<Z>& n, const Federation<Z>& harmful, Part inside) const {
+        Usable out;
+        for (const Step& step : n.steps) {
+            const Joint& joint = joints_[step.joint];
+            const Node<Z>& target = nodes_[step.target];
+            if (!joint.controllable || !target.reached) continue;
+            Federation<Z> good;
+            before(n, joint, target.*inside, good);
+            if (game_.delta > 0 && !good.empty()) good = lasting(reduced(minus(good, harmful)), game_.delta);
+            if (!good.empty()) out.emplace_back(step.joint, reduced(good));
+        }
+        return out;
+    }
+
+    // --- sets -------------------------------------------------------------------------------------------------------
+
+    static bool fill(Node<Z>& n) {
+        if (n.rest.empty()) return false;
+        n.set = {n.hull};
+        n.rest.clear();
+        return true;
+    }
+
+    // Moves points (a part of the rest) into the set. Zones of the rest that they do not touch stay as they are.
+    static void take(Node<Z>& n, const Federation<Z>& fresh) {
+        Federation<Z> rest, cut;
+        for (const Z& r : n.rest)
+            if (touches(fresh, r)) append(cut, minus(Federation<Z>{r}, fresh));
+            else rest.push_back(r);
+        for (const Z& z : cut) absorb(rest, z);
+        n.rest = std::move(rest);
+        for (const Z& z : fresh) absorb(n.set, z);
+        // A set in many zones is often the complement of a complement in fewer.
+        shorten(n.set, n.hull, n.rest);
+        shorten(n.rest, n.hull, n.set);
+    }
+
+    static void shorten(Federation<Z>& one, const Z& hull, const Federation<Z>& other) {
+        if (one.size() <= MANY || one.size() <= other.size()) return;
+        Federation<Z> again = reduced(minus(Federation<Z>{hull}, other));
+        if (again.size() < one.size()) one = std::move(again);
+    }
+
+  private:
+    static constexpr std::size_t MANY = 4;
+
+    std::deque<int> waiting_;
+    std::size_t evaluations_ = 0;
+};
+
+}  // namespace pursue
