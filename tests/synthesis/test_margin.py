@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -19,6 +21,7 @@ from pursue_gen.tga.network import Kind, Network, Objective
 from tests.conftest import thesis_scenario
 from tests.synthesis.test_verify import REACH, automaton, block, edge, moves, network
 from tests.synthesis.test_verify_random import networks
+from tests.test_cli import pursue
 
 NOW = Fraction(0)
 NET = network(automaton("bot", "a:x<=3 win", edge("a", "win", "x>1")))
@@ -97,3 +100,22 @@ def test_margins_in_words_and_as_json() -> None:
     assert in_words(some) == "0.35, not 0.4" and in_words(most) == "at least 10"
     assert as_json(some) == {"wins": "7/20", "fails": "2/5"} and as_json(most) == {"wins": "10", "fails": None}
     assert told(some, plan("", "")) == "Margin: it still wins when commands take effect 0.35 time units late, not 0.4."
+
+
+def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
+    file = thesis_scenario("1")
+    told_ = pursue("solve", file, "--json", "--margin")
+    found = json.loads(told_.out)
+    assert found["margin"] == found["game_margin"] == {"wins": "10", "fails": None} and found["playable"] is True
+    assert "10 time units late" in told_.err and "Margin of the game" in told_.err
+    ideal = pursue("solve", file, "--json", "--ends", "controllable", "--reaction", "0")
+    found = json.loads(ideal.out)
+    assert found["playable"] is False and "game_margin" not in found and "no real robot" in ideal.err
+
+
+def test_report_and_workspaces_tell_the_margin(tmp_path: Path) -> None:
+    file = thesis_scenario("1")
+    assert "ideal game: Margin: it still wins when commands take effect 0.95" in pursue("report", file).out
+    assert json.loads(pursue("report", file, "--json").out)["margins"]["ideal"] == {"wins": "19/20", "fails": "1"}
+    pursue("ws", file, "-o", tmp_path / "ws")
+    assert "it still wins when commands take effect 10 time units late" in (tmp_path / "ws" / "README.md").read_text()
