@@ -114,6 +114,13 @@ class Federation:
                     break
         return Federation(tuple(zones))
 
+    def disjoint(self) -> Tuple[Dbm, ...]:
+        """The same points in zones that do not overlap, few of them."""
+        zones: List[Dbm] = []
+        for zone in self.reduced().zones:
+            zones += Federation((zone,)).minus(Federation(tuple(zones))).zones
+        return tuple(zones)
+
 
 def predt(good: Federation, bad: Federation) -> Federation:
     """The timed predecessor: points from which some time t leads to good, and no time in [0, t] leads to bad."""

@@ -158,9 +158,9 @@ def _assign(region: Federation, usable: Iterable[Tuple[Move, Federation]]) -> Li
     for move, before in usable:
         part = region.intersect(before)
         if part:
-            pieces += [(zone, move.joint.edges) for zone in _disjoint(part)]
+            pieces += [(zone, move.joint.edges) for zone in part.disjoint()]
             region = region.minus(part)
-    return pieces + [(zone, None) for zone in _disjoint(region)]
+    return pieces + [(zone, None) for zone in region.disjoint()]
 
 
 def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
@@ -171,14 +171,7 @@ def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
     """
     commands = tuple(piece for piece in pieces if piece[1] is not None)
     waits = Federation(tuple(zone for zone, action in pieces if action is None))
-    return commands + tuple((zone, None) for zone in _disjoint(waits))
-
-
-def _disjoint(federation: Federation) -> Tuple[Dbm, ...]:
-    zones: List[Dbm] = []
-    for zone in federation.reduced().zones:
-        zones += Federation.of(zone).minus(Federation(tuple(zones))).zones
-    return tuple(zones)
+    return commands + tuple((zone, None) for zone in waits.disjoint())
 
 
 class _Reach(_Fixpoint):
@@ -305,6 +298,6 @@ class _Safety(_Fixpoint):
                 danger, usable = self._look(number)
                 # At a bound that only the controller can leave, waiting on is not possible.
                 threatened = safe.intersect(danger.union(self._unforced[number]).down())
-                pieces: List[Piece] = [(zone, None) for zone in _disjoint(safe.minus(threatened))]
+                pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
                 blocks.append((node.state, (*pieces, *_assign(threatened, usable))))
         return tuple(blocks)

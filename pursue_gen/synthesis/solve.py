@@ -11,10 +11,11 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis import native
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.overtaking import without_overtaking
 from pursue_gen.synthesis.reference import solve_reference
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Kind, Network, Objective
 
 
 @dataclass(frozen=True)
@@ -58,15 +59,18 @@ def solve(
         hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
         raise PursueError([error("SYN011", "the native engine was not built", hint=hint)], exit_status=6)
     game = compile_game(network, objective, reaction)
-    ranks = None
     start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
         found = native.solve_native(game, limits, progress)
-        won, blocks = found.won, found.blocks
-        ranks = to_ranks(found.blocks, found.ranks)
+        won, blocks, numbers = found.won, found.blocks, found.ranks
         stats = Stats("native", found.counts["discrete_states"], found.counts["zones"], time.perf_counter() - start)
     else:
         outcome = solve_reference(game, limits=limits, progress=progress)
         won, blocks = outcome.won, outcome.raw_blocks()
+        # Not ranks that hold across states, but what was found later in one of them stands later.
+        numbers = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks)
         stats = Stats("python", outcome.stats.states, outcome.stats.zones, time.perf_counter() - start)
+    if game.delta and game.kind is not Kind.SAFETY:
+        blocks, numbers = without_overtaking(game, blocks, numbers)
+    ranks = to_ranks(blocks, numbers) if stats.engine == "native" else None
     return Verdict(won, to_strategy(game, blocks) if won else None, stats, ranks)

@@ -302,6 +302,18 @@ def test_only_the_command_that_comes_first_counts() -> None:
     assert kind(checked(net, BOTH, either, prompt=True)) == "bad"
 
 
+@pytest.mark.parametrize(("wait", "again", "outcome"), [([], "x>1", "for ever"), (["x>1,x<=3/2"], "x>3/2", "ok")])
+@pytest.mark.parametrize("by", ["bot", "mate"])
+def test_another_command_may_be_decided_while_one_is_on_its_way(
+    wait: Sequence[str], again: str, outcome: str, by: str
+) -> None:
+    bot = automaton("bot", "a win", edge("a", "win", "x<=3"), edge("a", "a", resets="x"))
+    net = network(bot, automaton("mate", "b", edge("b", "b", resets="x"), edge("b", "b", resets="x")))
+    plan = block(net, "a b", wait, ("x<=1", moves(net, ("bot", 0))), (again, moves(net, (by, 1))))
+    assert kind(checked(net, REACH, plan, reaction=HALF)) == outcome
+    assert kind(checked(net, REACH, plan)) == "ok"
+
+
 def test_limits_and_strategies_of_the_other_side() -> None:
     plan = Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),))
     assert kind(verify(STRAIGHT, REACH, plan, limit=0)) == "limit"

@@ -1,0 +1,71 @@
+"""Commands kept apart in time, so that none that is on its way is overtaken by one that leads less far.
+
+An engine's command leads to lower ranks if nothing else is decided before it takes effect. But time may take the state
+out of the command's zone meanwhile, into that of another one with a higher rank, which another robot (or the same one,
+started again) then decides: what was gained is lost, over and over. So that zone begins later: its points that time
+reaches from the first command within the reaction are waited in. That is no loss where time goes on to other points of
+the same zone, as who is there may act anywhere on the way through it.
+"""
+
+from __future__ import annotations
+
+from typing import Iterable, List, Sequence, Tuple
+
+from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.federation import Federation
+from pursue_gen.synthesis.game import Action, Game, RawBlock
+
+Piece = Tuple[Dbm, Action]
+
+Ranks = Tuple[int, ...]
+"""The rank of each of a block's pieces."""
+
+
+def without_overtaking(
+    game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]
+) -> Tuple[Tuple[RawBlock, ...], Tuple[Ranks, ...]]:
+    """The blocks of a reach game and their ranks, with later beginnings where commands may be overtaken.
+
+    The pieces of a block must be disjoint. A zone stays as it is where time takes none of its points to a part of it
+    that is out of reach: the checker will tell whether that does harm.
+    """
+    new_blocks: List[RawBlock] = []
+    new_ranks: List[Ranks] = []
+    for block, numbers in zip(blocks, ranks):
+        locations, values, raw_pieces = block
+        if len({action for _, action in raw_pieces if action is not None}) > 1:
+            pieces = [(Dbm(game.dim, tuple(matrix)), action) for matrix, action in raw_pieces]
+            apart = kept_apart(pieces, numbers, game.delta)
+            if len(apart) != len(pieces):
+                block = (locations, values, tuple((zone.m, action) for (zone, action), _ in apart))
+                numbers = tuple(rank for _, rank in apart)
+        new_blocks.append(block)
+        new_ranks.append(numbers)
+    return tuple(new_blocks), tuple(new_ranks)
+
+
+def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List[Tuple[Piece, int]]:
+    """The pieces of one discrete state with their ranks, when commands take effect up to `late` after they are due."""
+    flights = [
+        (rank, action, zone.up_within(late)) for (zone, action), rank in zip(pieces, ranks) if action is not None
+    ]
+    result: List[Tuple[Piece, int]] = []
+    for (zone, action), rank in zip(pieces, ranks):
+        before = Federation(
+            tuple(
+                flight
+                for lower, other, flight in flights
+                if action is not None and lower < rank and other != action and zone.intersect(flight) is not None
+            )
+        )
+        after = Federation((zone,)).minus(before)
+        # On each line of time the points that are met in flight come first: the other zone lies before this one.
+        met = before.intersect_zone(zone)
+        early = met.intersect(after.down())
+        if early:
+            command = after.union(met.minus(early)).disjoint()
+            result += [((part, action), rank) for part in command]
+            result += [((part, None), rank) for part in early.disjoint()]
+        else:
+            result.append(((zone, action), rank))
+    return result

@@ -1,0 +1,91 @@
+"""A command that is on its way, and another one decided meanwhile: a win does not depend on which comes first."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Optional, Tuple
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from benchmarks.families import catch_by_one_distance
+from pursue_gen.language import parse
+from pursue_gen.pipeline import Rules, played, prove
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.overtaking import kept_apart
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.verify import verify
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from tests.synthesis.zones import Point, later, points, times, zones
+
+HALF = Fraction(1, 2)
+ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
+GO, AGAIN = (0,), (1,)
+
+
+def chase(again_by: str) -> Network:
+    """The bot can win up to x = 2; it comes there later, and then it or its mate has to set x back."""
+    come = Edge("start", "here", Guard((ClockBound("x", ">=", 3),)))
+    win = Edge("here", "win", Guard((ClockBound("x", "<=", 2),)))
+    again = (Edge("here", "here", resets=("x",)),) if again_by == "bot" else ()
+    lift = (Edge("idle", "idle", resets=("x",)),) if again_by == "mate" else ()
+    bot = Automaton("bot", tuple(map(Location, ("start", "here", "win"))), "start", (come, win, *again))
+    return Network(("x",), (), (), (bot, Automaton("mate", (Location("idle"),), "idle", lift)))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("again_by", ["bot", "mate"])
+def test_a_command_that_gains_is_not_overtaken_by_one_that_starts_over(engine: str, again_by: str) -> None:
+    network, objective = chase(again_by), Objective(Kind.REACH, goal=("bot", "win"))
+    verdict = solve(network, objective, HALF, engine)
+    assert verdict.strategy is not None
+    assert verify(network, objective, verdict.strategy, HALF).ok
+    assert verdict.ranks is None or verify(network, objective, verdict.strategy, HALF, ranks=verdict.ranks).ok
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("distance", [30, 50])
+def test_an_officer_who_is_late_does_not_turn_round_for_ever(engine: str, distance: int) -> None:
+    scenario = parse(catch_by_one_distance(distance), "chase.pur", "chase")
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    verdict = solve(network, objective, Fraction(1, 10), engine)
+    assert verdict.strategy is not None
+    assert prove(network, objective, verdict.strategy, Fraction(1, 10), verdict.ranks).blocks
+
+
+@given(zones, zones, points, st.integers(1, 3))
+def test_a_later_command_begins_where_no_earlier_one_is_on_its_way(
+    first: Dbm, zone: Dbm, point: Point, late: int
+) -> None:
+    parts = zone.minus(first)
+    assume(parts)
+    second = parts[0]
+    apart = kept_apart([(first, GO), (second, AGAIN)], [1, 2], late)
+
+    def said(at: Point) -> Tuple[Optional[Tuple[int, ...]], ...]:
+        return tuple(action for (part, action), _ in apart if part.contains(at))
+
+    assert len(said(point)) == (first.contains(point) or second.contains(point))
+    assert (said(point) == (GO,)) == first.contains(point)
+    if not second.contains(point):
+        return
+    ways = [later(point, time) for time in times(point)]
+    on = [at for at in ways if second.contains(at)]
+    overtakes = first.up_within(late)
+    if any(said(at) == (AGAIN,) and not overtakes.contains(at) for at in on):
+        assert (said(point) == (None,)) == overtakes.contains(point), "wait for the rest of the zone"
+    elif all(overtakes.contains(at) for at in on):
+        assert said(point) == (AGAIN,), "there is nothing to wait for"
+
+
+def test_ranks_say_which_command_must_not_be_overtaken() -> None:
+    early, then = Dbm.of(2, [(1, 0, 5)]), Dbm.of(2, [(0, 1, -4)])
+    assert early is not None and then is not None  # x <= 2 and x > 2
+    pieces = [(early, GO), (then, AGAIN)]
+    assert kept_apart(pieces, [2, 1], 1) == [(pieces[0], 2), (pieces[1], 1)]
+    assert kept_apart(pieces, [1, 1], 1) == [(pieces[0], 1), (pieces[1], 1)]
+    assert kept_apart([pieces[0], (then, GO)], [1, 2], 1) == [(pieces[0], 1), ((then, GO), 2)]
+    assert [(action, rank) for (_, action), rank in kept_apart(pieces, [1, 2], 1)] == [(GO, 1), (AGAIN, 2), (None, 2)]
