@@ -83,11 +83,43 @@ def test_an_answered_word_is_not_repeated() -> None:
 
 
 def test_it_may_wake_late_within_the_reaction_and_not_later() -> None:
-    for late, spoken in ((0.09, True), (0.2, False)):
+    for late, spoken in ((0.09, True), (0.19, True), (0.21, False)):
         bot = player(STRATEGY.replace("Cbot <= 6", "Cbot <= 5"))
         bot.see(state(1, 100.0), 100.0)
         assert (bot.ring(105.0 + late) is not None) is spoken
         assert bot.counts["too_late"] == (not spoken)
+
+
+TWO = STRATEGY.replace("Cbot <= 6", "Cbot < 6").replace(
+    "- state: {bot: b}",
+    '  - {do: bot_c2a, agent: bot, from: c, to: going_c_to_a, when: ["6 <= Cbot"]}\n- state: {bot: b}',
+)
+"""With a second command in the first state, for later."""
+
+
+@pytest.mark.parametrize(
+    ("clock", "late", "event"),
+    [
+        (5.99, 0.05, "bot_c2b"),
+        (5.99, 0.15, "bot_c2b"),
+        (5.99, 0.25, "bot_c2a"),
+        (5.5, 0.45, "bot_c2b"),
+        (6.0, 0.0, "bot_c2a"),
+    ],
+)
+def test_what_was_due_when_the_state_began_is_said_until_the_reaction_is_over(
+    clock: float, late: float, event: str
+) -> None:
+    bot = player(TWO)
+    bot.see(state(1, 100.0, clock=clock), 100.0 + late)
+    assert bot.wake()[0] <= 100.0 + late
+    assert bot.ring(100.0 + late) == ("bot", event, 1)
+
+
+def test_a_lost_word_is_said_again_before_another_one_that_is_due_meanwhile() -> None:
+    bot = player(TWO.replace("reaction: 0.2", "reaction: 2"))
+    bot.see(state(1, 100.0, clock=5.9), 100.0)
+    assert [bot.ring(moment).event for moment in (100.0, 100.5, 101.5, 103.5)] == ["bot_c2b"] * 3 + ["bot_c2a"]
 
 
 def test_a_window_that_is_still_open_is_used_however_late() -> None:
