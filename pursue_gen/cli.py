@@ -20,6 +20,7 @@ from pursue_gen.cli_options import (
     LIMIT,
     MARGIN,
     MEMORY,
+    OPTIMIZE,
     REACH_OBJ,
     REACTION,
     SCENARIO,
@@ -29,6 +30,7 @@ from pursue_gen.cli_options import (
     Controllers,
     Ends,
     Engine,
+    Optimize,
     Solver,
 )
 from pursue_gen.console import count, guarded, show, suggest, tell, usage
@@ -142,6 +144,7 @@ def solve(
     memory: Optional[int] = MEMORY,
     solver: Optional[Solver] = SOLVER,
     verifytga: Optional[Path] = VERIFYTGA,
+    optimize: Optional[Optimize] = OPTIMIZE,
     explain: bool = EXPLAIN,
     margin: bool = MARGIN,
     as_json_: bool = typer.Option(
@@ -164,7 +167,8 @@ def solve(
     rules, limits = asked_rules(network, _value(ends), reaction, slack), asked_limits(limit, memory)
     try:
         with progress_line(as_json_) as progress:
-            won = solved(network, objective, rules, _value(solver), verifytga, limits, _value(engine), progress)
+            asked = (_value(solver), verifytga, limits, _value(engine), progress, _value(optimize))
+            won = solved(network, objective, rules, *asked)
     except PursueError as problem:
         keep_counter(problem, network, objective, output)
         explained = why(problem, files, rules, explain, limits, as_json_)
@@ -226,16 +230,17 @@ def report(
         metavar="dedicated|all|ROBOT",
         help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
     ),
+    optimize: Optional[Optimize] = OPTIMIZE,
     limit: float = LIMIT,
     memory: Optional[int] = MEMORY,
     as_json_: bool = JSON,
 ) -> None:
     """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios."""
     from pursue_gen.game_options import asked_limits
-    from pursue_gen.pipeline import IDEAL, Rules, solution
+    from pursue_gen.pipeline import IDEAL, Rules
     from pursue_gen.progress import progress_line
     from pursue_gen.report import commands
-    from pursue_gen.solvers import margins
+    from pursue_gen.solvers import margins, solved
     from pursue_gen.synthesis.margin import as_json as margin_json
     from pursue_gen.synthesis.margin import told
 
@@ -243,17 +248,22 @@ def report(
     network, objective = _game_of(read)
     limits = asked_limits(limit, memory)
     with progress_line(as_json_) as progress:
-        both = [solution(network, objective, rules, limits, progress=progress) for rules in (Rules(), IDEAL)]
+        asked = (None, None, limits, None, progress, _value(optimize))
+        both = [solved(network, objective, rules, *asked) for rules in (Rules(), IDEAL)]
         found = [margins(won, False, limits)[0] for won in both]
     game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
     table = commands.commands_table(read.name, read.agents, game, ideal, reach_obj)
     if as_json_:
         of_games = {name: margin_json(margin) for name, margin in zip(("default", "ideal"), found)}
-        print(json.dumps({**commands.as_json(table), "margins": of_games}, indent=1))
+        times = {name: won.guarantee.as_json() for name, won in zip(("default", "ideal"), both) if won.guarantee}
+        extra = {"margins": of_games, **({"times": times} if times else {})}
+        print(json.dumps({**commands.as_json(table), **extra}, indent=1))
         return
     print(commands.render_table(table))
     for name, won, margin in zip(("default", "ideal"), both, found):
         print(f"{name} game: {told(margin, won.strategy)}")
+        if won.guarantee:
+            print(f"{name} game: {won.guarantee.in_words()}")
 
 
 @app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")
@@ -276,6 +286,7 @@ def ws(
     ),
     solver: Optional[Solver] = SOLVER,
     verifytga: Optional[Path] = VERIFYTGA,
+    optimize: Optional[Optimize] = OPTIMIZE,
     limit: float = LIMIT,
     memory: Optional[int] = MEMORY,
     explain: bool = EXPLAIN,
@@ -303,7 +314,8 @@ def ws(
         rules = asked_rules(network, _value(ends), reaction, slack)
         try:
             with progress_line() as progress:
-                won = solved(network, objective, rules, _value(solver), verifytga, limits, progress=progress)
+                asked = (_value(solver), verifytga, limits, None, progress, _value(optimize))
+                won = solved(network, objective, rules, *asked)
         except PursueError as problem:
             if why(problem, (scenario,), rules, explain, limits):
                 raise typer.Exit(problem.exit_status) from None

@@ -35,6 +35,12 @@ class Solver(str, Enum):
     VERIFYTGA = "verifytga"
 
 
+class Optimize(str, Enum):
+    """What the strategy is to have least of."""
+
+    TIME = "time"
+
+
 SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 GAME = "SCENARIO | TGA.xml TCTL.q"
 ENDS = typer.Option(
@@ -59,6 +65,11 @@ SOLVER = typer.Option(
     None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
 )
 VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
+OPTIMIZE = typer.Option(
+    None,
+    help="time: look for the strategy with the least worst-case time to the goal, for a minute or as --limit says; "
+    "what is proven is told.",
+)
 EXPLAIN = typer.Option(
     True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
 )

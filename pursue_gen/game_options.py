@@ -65,10 +65,11 @@ def _slack(network: Network, options: Sequence[str]) -> Dict[str, int]:
 
 
 def verdict_text(rules: Rules, won: Solution) -> str:
-    """A line about a game that is won, and what it took."""
+    """What is said about a game that is won: what it took, and how long a play takes, where that is known."""
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    return f"won: {in_words(rules)}{took}; {count(_commands(won), 'command')}, proven"
+    text = f"won: {in_words(rules)}{took}; {count(_commands(won), 'command')}, proven"
+    return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
 
 
 def margins_told(won: Solution, margin: Margin, game: Optional[Margin] = None) -> str:
@@ -106,6 +107,8 @@ def verdict_json(
     if won and margin:
         playable = margin.wins > 0 and not decides_ends(won.strategy)
         result.update(margin=margin_json(margin), playable=playable)
+    if won and won.guarantee:
+        result["time"] = won.guarantee.as_json()
     if game_margin:
         result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]

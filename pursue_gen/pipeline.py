@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.optimize import SECONDS, Guarantee, bounds, fastest, unscaled
 from pursue_gen.synthesis.smaller import smaller
 from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.verify import pruned, pruned_ranks, verify
+from pursue_gen.synthesis.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.tga import ends_reported, scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Kind, Network, Objective
 
 _LITTLE = 5_000
 """A proof with so many symbolic states takes a second or two: then a strategy in fewer zones is proven as well."""
@@ -43,13 +45,17 @@ IDEAL = Rules(CONTROLLABLE, Fraction(0))
 
 @dataclass(frozen=True)
 class Solution:
-    """A proven strategy for the objective in `network` (the game as it is played, ends and slack included)."""
+    """A proven strategy for the objective in `network` (the game as it is played, ends and slack included).
+
+    `guarantee`: how long it takes at worst, where that was looked for.
+    """
 
     network: Network
     objective: Objective
     strategy: Strategy
     reaction: Fraction
     stats: Optional[Stats] = None
+    guarantee: Optional[Guarantee] = None
 
 
 def played(network: Network, rules: Rules) -> Network:
@@ -81,6 +87,48 @@ def solution(
         game, objective, verdict.strategy, rules.reaction, verdict.ranks, limits.since(start), progress
     )
     return Solution(game, objective, strategy, rules.reaction, verdict.stats)
+
+
+def fastest_solution(
+    network: Network,
+    objective: Objective,
+    rules: Rules,
+    limits: Limits = NO_LIMITS,
+    engine: Optional[str] = None,
+    progress: Optional[Listener] = None,
+) -> Solution:
+    """As `solution`, with the proven strategy that takes the least time to the goal at worst, as far as it is found.
+
+    Raises as `solution`, and with exit status 2 for an objective without a goal. A limit that is hit after the first
+    strategy ends the search, and the best one that is proven counts.
+    """
+    if objective.kind is Kind.SAFETY:
+        hint = "leave --optimize time out; it is for objectives with a goal: reach_objective: do ..."
+        raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)], exit_status=2)
+    start = time.monotonic()
+    won = solution(network, objective, rules, limits, engine, progress)
+    known = guaranteed(won, LIMIT, limits.since(start))
+    found, faster = fastest(won.network, objective, rules.reaction, known.worst, limits.since(start), engine, progress)
+    if faster is None:
+        return replace(won, guarantee=found)
+    delay = rules.reaction * faster.fine
+    left = limits.since(start) if limits.seconds else Limits(SECONDS, limits.memory)
+    try:
+        strategy = prove(faster.game, objective, faster.strategy, delay, faster.ranks, left, progress)
+    except PursueError as problem:
+        if problem.exit_status != 5:
+            raise
+        return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
+    counted = with_counter(won.network)
+    fast = replace(won, network=counted, strategy=unscaled(strategy, counted, faster.fine))
+    worst = guaranteed(fast, LIMIT, left).worst
+    return replace(fast, guarantee=found if worst is None else replace(found, worst=min(worst, faster.kept)))
+
+
+def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:
+    """How long the strategy of a reach game takes at worst, if so many symbolic states of the checker tell it."""
+    worst = worst_case(won.network, won.objective, won.strategy, won.reaction, states, limits)
+    return bounds(won.network, won.objective, won.reaction, worst)
 
 
 def prove(

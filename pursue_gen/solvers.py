@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Optional, Tuple
 
 from pursue_gen.console import tell, usage
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.files import write_texts
-from pursue_gen.pipeline import Rules, Solution, played, solution
+from pursue_gen.pipeline import Rules, Solution, fastest_solution, guaranteed, played, solution
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.margin import USUAL, Margin, game_margin, strategy_margin
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.verify import LIMIT
 from pursue_gen.synthesis.verifytga import ToolError, run_verifytga
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Kind, Network, Objective
 
 
 def solved(
@@ -26,22 +27,32 @@ def solved(
     limits: Limits = NO_LIMITS,
     engine: Optional[str] = None,
     progress: Optional[Listener] = None,
+    optimize: Optional[str] = None,
 ) -> Solution:
     """The proven solution, of the built-in solver (None) or of "verifytga", which is at the path `verifytga`.
 
-    The rest is as for `pipeline.solution`, and it raises as that and `run_verifytga` do; with exit status 2 for options
-    that contradict each other.
+    The rest is as for `pipeline.solution`, or with `optimize` "time" as for `pipeline.fastest_solution`, and it raises
+    as these and `run_verifytga` do; with exit status 2 for options that contradict each other.
     """
     if solver is None:
         if verifytga is not None:
             raise usage("--verifytga names a program that is not used", "add --solver verifytga")
-        return solution(network, objective, rules, limits, engine, progress)
+        if optimize is not None:
+            return fastest_solution(network, objective, rules, limits, engine, progress)
+        return _timed(solution(network, objective, rules, limits, engine, progress), limits)
+    if optimize is not None:
+        raise usage("UPPAAL-TIGA's solver does not look for the least time", "leave out --optimize or --solver")
     if engine is not None:
         raise usage(f"{engine} is an engine of the built-in solver", "use --engine or --solver verifytga, not both")
     game = played(network, rules)
     verdict = run_verifytga(game, objective, verifytga, limits, rules.reaction, progress)
     assert verdict.strategy is not None  # it raises where there is none
-    return Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats)
+    return _timed(Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats), limits)
+
+
+def _timed(won: Solution, limits: Limits) -> Solution:
+    """With what the strategy guarantees, where that is quickly found."""
+    return won if won.objective.kind is Kind.SAFETY else replace(won, guarantee=guaranteed(won, limits=limits))
 
 
 def keep_counter(problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]) -> None:

@@ -577,3 +577,40 @@ def test_the_figures_of_the_readme_are_those_that_report_prints() -> None:
     for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief"):
         for row in json.loads(pursue("report", THESIS / f"{name}.pur", "--json").out)["controllers"]:
             assert (row["controller"], str(row["commands"]), str(row["lines"])) in told
+
+
+# --optimize -----------------------------------------------------------------------------------------------------------
+
+
+def test_the_least_time_is_told_and_kept(tmp_path: Path) -> None:
+    plan = tmp_path / "plan.txt"
+    outcome = pursue("solve", FIRST, "--optimize", "time", "--json", "-o", plan)
+    found = json.loads(outcome.out)["time"]
+    assert found["optimal"] is True
+    assert (found["least"], found["most"]) == ("233/10", "233/10")
+    assert "the least worst-case time is 23.3" in outcome.err
+    assert pursue("verify", FIRST, plan).status == 0
+
+
+def test_every_command_that_solves_looks_for_the_least_time(tmp_path: Path) -> None:
+    told = "the least worst-case time is 20"
+    assert told in pursue("report", FIRST, "--optimize", "time").out
+    options = ("--ends", "controllable", "--reaction", "0", "--optimize", "time", "-o", tmp_path / "ws")
+    assert told in pursue("ws", FIRST, *options).err
+
+
+def test_a_strategy_that_is_not_the_fastest_is_not_called_so() -> None:
+    outcome = pursue("solve", FIRST, "--ends", "controllable", "--reaction", "0", "--json")
+    found = json.loads(outcome.out)["time"]
+    assert found["optimal"] is False
+    assert found["least"] == "20"
+    assert "better ones than this one may exist" in outcome.err
+
+
+def test_what_has_no_least_time_is_told(tmp_path: Path) -> None:
+    safety = tmp_path / "box.pur"
+    safety.write_text(CALLED.format(deadline=5))
+    outcome = pursue("solve", safety, "--optimize", "time")
+    assert outcome.status == 2
+    assert "no time to the goal" in outcome.err
+    assert pursue("solve", FIRST, "--optimize", "time", "--solver", "verifytga").status == 2

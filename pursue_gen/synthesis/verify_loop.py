@@ -31,10 +31,12 @@ class ClosedLoop:
         strategy: Strategy,
         reaction: Fraction,
         ranks: Optional[Mapping[ZoneKey, int]],
+        instant: Fraction = Fraction(0),
     ) -> None:
-        scale = _common_denominator(strategy, reaction) * INSTANTS
+        """`instant`, in time units: the strategy is played promptly, as `verify_time.Rules` has it."""
+        scale = _common_denominator(strategy, reaction) * (instant.denominator if instant else INSTANTS)
         self.arena, self.strategy = Arena(network, scale), strategy
-        self.rules = Rules(int(reaction * scale), False, objective.kind is not Kind.SAFETY)
+        self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
         self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
         self.bad = None if objective.kind is Kind.REACH else _place(network, objective.bad)
         self.used: Set[ZoneKey] = set()

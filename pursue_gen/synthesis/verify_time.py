@@ -77,11 +77,14 @@ class Rules:
     `reaction`: the longest delay of a command, in scaled time units. `prompt`: the controller acts before anything that
     the environment could not do when the command's zone was entered becomes possible; otherwise it may act anywhere in
     the zone on its way. `must_end`: waiting has to come to an end (reach), otherwise it may last for ever (safety).
+    `instant`: how long after it came into a zone without a first instant a prompt controller acts at the latest; 0:
+    before the environment can do anything new.
     """
 
     reaction: int
     prompt: bool
     must_end: bool
+    instant: int = 0
 
 
 def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) -> Passage:
@@ -143,7 +146,7 @@ def _wait(
                 for earlier in others.minus(common.up()):
                     first = without(first, earlier.up())
         for zone in first:
-            for part in _promptly(zone, situation) if rules.prompt else [zone]:
+            for part in _promptly(zone, situation, rules.instant) if rules.prompt else [zone]:
                 _insert(decided, k, part)
     never = [piece]
     for _, common in met:
@@ -153,11 +156,12 @@ def _wait(
     return waited
 
 
-def _promptly(zone: Dbm, situation: Situation) -> List[Dbm]:
+def _promptly(zone: Dbm, situation: Situation, instant: int) -> List[Dbm]:
     """Of a command's zone, which time enters from outside: the first instants, where there are such; where the zone is
     open, the way up to the next time at which a clock reaches a constant or the environment gets a new move.
 
     To an ideal player all instants so soon after the entry are equivalent. Each way into the zone keeps some of them.
+    With `instant` the way is as long as that.
     """
     result: List[Dbm] = []
     for start in _entrances(zone):
@@ -165,8 +169,8 @@ def _promptly(zone: Dbm, situation: Situation) -> List[Dbm]:
         if at_once is not None:
             result.append(at_once)
         for late in [start] if at_once is None else start.minus(at_once):
-            soon = _soon_after(late).intersect(zone)
-            result += [] if soon is None else _before_news(soon, situation)
+            soon = (late.up_within(instant) if instant else _soon_after(late)).intersect(zone)
+            result += [] if soon is None else [soon] if instant else _before_news(soon, situation)
     return result
 
 

@@ -14,16 +14,22 @@ PLACES = ("l0", "l1", "l2")
 
 
 @st.composite
-def games(draw: st.DrawFn, kinds: Tuple[Kind, ...], delays: Tuple[int, ...]) -> Game:
-    """Two automata over one or two clocks, a channel and a variable; small constants, a delay of so many units.
+def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> Tuple[Network, Objective]:
+    """Two automata over one or two clocks, a channel and a variable; small constants.
 
     The first automaton has most of the controller's edges, the second most of the environment's; so that a fair part of
     the games is won.
     """
-    clocks = ("x", "y")[: draw(st.integers(1, 2))]
+    clocks = ("x", "y")[: draw(st.integers(1, most_clocks))]
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
     kind = draw(st.sampled_from(kinds))
-    objective = Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+    return network, Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+
+
+@st.composite
+def games(draw: st.DrawFn, kinds: Tuple[Kind, ...], delays: Tuple[int, ...]) -> Game:
+    """The same, with a delay of so many units, as tables."""
+    network, objective = draw(networks(kinds))
     return compile_game(network, objective, Fraction(draw(st.sampled_from(delays))))
 
 
