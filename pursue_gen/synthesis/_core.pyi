@@ -2,8 +2,6 @@
 
 from typing import Any, Callable, Dict, Optional
 
-INF: int
-
 class LimitReached(Exception): ...
 
 def solve(

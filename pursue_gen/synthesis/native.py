@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.synthesis.dbm import INF
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
 
@@ -24,13 +24,15 @@ def available() -> bool:
 class Outcome:
     """Whether the controller wins, and how: per block the ranks of its pieces (reach: each step leads to lower ranks).
 
-    `counts`: discrete_states, zones, evaluations.
+    The pieces of a block are disjoint. `counts`: discrete_states, symbolic_states (zones whose successors were
+    computed), zones (of the result), evaluations. `seconds`: what exploring and deciding took.
     """
 
     won: bool
     blocks: Tuple[RawBlock, ...]
     ranks: Tuple[Tuple[int, ...], ...]
     counts: Mapping[str, int]
+    seconds: float
 
 
 def solve_native(
@@ -61,12 +63,12 @@ def solve_native(
         for d, pieces in result["states"]
     ]
     ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in result["states"])
-    counts = {key: int(result[key]) for key in ("discrete_states", "zones", "evaluations")}
-    return Outcome(bool(result["won"]), tuple(blocks), ranks, counts)
+    counts = {key: int(result[key]) for key in ("discrete_states", "symbolic_states", "zones", "evaluations")}
+    return Outcome(bool(result["won"]), tuple(blocks), ranks, counts, float(result["seconds"]))
 
 
-def _matrix(bounds: List[int]) -> Tuple[int, ...]:
-    return tuple(INF if bound >= _core.INF else bound for bound in bounds)
+def _matrix(bounds: bytes) -> Tuple[int, ...]:
+    return tuple(array("i", bounds))
 
 
 def _action(edges: Any) -> Action:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import load
+from pursue_gen.language import load, parse
 from pursue_gen.synthesis import native
 from pursue_gen.synthesis.dbm import INF, Dbm
 from pursue_gen.synthesis.federation import Federation
@@ -43,6 +44,26 @@ def test_it_agrees_with_brute_force(game: Game) -> None:
             for zone, action in zones:
                 if action is not None and zone.contains(position[1]):
                     assert regions.usable(position, moves[action], winning)
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+@given(games(EVERY_KIND, (0, 1)))
+def test_nothing_is_said_twice_of_a_position(game: Game) -> None:
+    nothing_twice(game)
+
+
+@pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10)])
+def test_nothing_is_said_twice_after_states_were_opened(reaction: Fraction) -> None:
+    scenario = load(thesis_scenario("catch_the_thief"))
+    nothing_twice(compile_game(ends_reported(translate(scenario), {}), scenario_objective(scenario), reaction))
+
+
+def nothing_twice(game: Game) -> None:
+    """The pieces of each block are disjoint."""
+    for _, _, pieces in native.solve_native(game).blocks:
+        zones = [Dbm(game.dim, matrix) for matrix, _ in pieces]
+        for k, zone in enumerate(zones):
+            assert all(zone.intersect(other) is None for other in zones[:k])
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
@@ -105,3 +126,21 @@ def test_a_limit_ends_with_a_message_and_status_five() -> None:
         native.solve_native(game, states=300)
     assert failure.value.exit_status == 5
     assert "300 discrete states" in str(failure.value)
+
+
+RING = """
+poi "a" poi "b" poi "c" poi "d"
+connect a and b distance 10 connect b and c distance 10 connect c and d distance 10 connect d and a distance 10
+event "catch" collaborative
+agent "first" controllable mobile 1 location a can_do catch
+agent "second" controllable mobile 1 location a can_do catch
+agent "thief" mobile 1 location c reacts_to catch
+reach_objective: do catch after 0
+"""
+
+
+@pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10)])
+def test_a_search_that_has_to_open_states_again_and_again_stays_right(reaction: Fraction) -> None:
+    scenario = parse(RING, "ring.pur")
+    game = compile_game(translate(scenario), scenario_objective(scenario), reaction)
+    assert not native.solve_native(game).won, "on a ring of four a thief outruns two officers"

@@ -28,8 +28,8 @@ struct Node {
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
     std::vector<Step> steps;                  // the moves that are followed
     std::vector<int> parents;
-    Federation<Z> set;                        // reach: winning; safety: losing
-    Federation<Z> rest;                       // of the hull, what is not (yet) in the set
+    Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
+    Federation<Z> done, fresh;                // the others: gathered, and not gathered yet
     std::vector<Action<Z>> plan;              // reach: in the order in which the points were won
 };
 
@@ -45,6 +45,8 @@ class Arena {
     const std::deque<Node<Z>>& nodes() const { return nodes_; }
     Discrete state(int k) const { return states_[k]; }
     const Joint& joint(int k) const { return joints_[k]; }
+    double seconds() const { return watch_.spent(); }
+    std::size_t symbolic_states() const { return symbolic_states_; }  // zones whose successors were computed
     void look() { watch_.look(nodes_.size(), touched_.size()); }
 
   protected:
@@ -138,11 +140,12 @@ class Arena {
             touched_.pop_front();
             nodes_[k].touched = false;
             changed.push_back(k);
+            ++symbolic_states_;
             for (std::size_t s = 0; s < nodes_[k].steps.size(); ++s) arrive(nodes_[k].hull, nodes_[k].steps[s]);
         }
         std::sort(changed.begin(), changed.end());
         changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-        for (int k : changed) nodes_[k].rest = minus(Federation<Z>{nodes_[k].hull}, nodes_[k].set);
+        for (int k : changed) nodes_[k].rest = minus(Federation<Z>{nodes_[k].hull}, gathered(nodes_[k]));
         return changed;
     }
 
@@ -159,10 +162,32 @@ class Arena {
             forget(target, z);
         }
         const bool fresh = !target.reached;
+        gathered(target);  // while the rest still is what this hull leaves
         target.hull = z;
         target.reached = true;
         touch(step.target);
         if (fresh) expand(step.target, game_.kind == Kind::safety);
+    }
+
+    // --- sets -------------------------------------------------------------------------------------------------------
+
+    // The points of a state that are decided, in few zones: gathered when somebody asks, which is seldom. Requires that
+    // they and the rest make up the hull.
+    static const Federation<Z>& gathered(Node<Z>& n) {
+        if (n.fresh.empty()) return n.done;
+        // A set in many zones is often the complement of a complement in fewer.
+        const bool turned = n.rest.size() <= n.done.size() + n.fresh.size();
+        if (turned && n.rest.size() <= FEW) {
+            n.done = reduced(minus(Federation<Z>{n.hull}, n.rest));
+        } else {
+            for (const Z& z : n.fresh) absorb(n.done, z);
+            if (turned && n.done.size() > n.rest.size()) {
+                Federation<Z> again = reduced(minus(Federation<Z>{n.hull}, n.rest));
+                if (again.size() < n.done.size()) n.done = std::move(again);
+            }
+        }
+        n.fresh.clear();
+        return n.done;
     }
 
     // --- symbolic steps --------------------------------------------------------------------------------------------
@@ -207,6 +232,8 @@ class Arena {
         return out;
     }
 
+    static constexpr std::size_t FEW = 8;
+
     const Game& game_;
     Watch watch_;
     RelaxedPlanner planner_;
@@ -224,6 +251,7 @@ class Arena {
     }
 
     std::vector<int> enabled_;
+    std::size_t symbolic_states_ = 0;
 };
 
 }  // namespace pursue

@@ -59,29 +59,30 @@ void insert(Federation<Z>& fed, const Z& zone) {
     fed.push_back(zone);
 }
 
-// True when between a and b lies a gap, so that their union cannot be convex.
+// True when a and b together are exactly their hull.
+//
+// What the hull h has beyond them is the union, over each bound (i, j) that is tighter in a and (k, l) that is tighter in
+// b, of the points of h that break both. As h is canonical, such a part is empty iff the one cycle through both is negative.
 template <class Z>
-bool apart(const Z& a, const Z& b) {
+bool joins(const Z& a, const Z& b) {
+    const auto gap = [&](int i, int j, int k, int l) {
+        const int p = complement(a.at(i, j)), q = complement(b.at(k, l));
+        const int r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
+        return (p >> 1) + (q >> 1) + (r >> 1) + (s >> 1) + (p & q & r & s & 1) > 0;
+    };
+    std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];
+    int count_a = 0, count_b = 0;
     for (int i = 0; i < Z::size; ++i)
         for (int j = 0; j < Z::size; ++j) {
-            const int p = a.at(i, j), q = b.at(j, i);
-            if ((p >> 1) + (q >> 1) + ((p | q) & 1) <= 0 && i != j) return true;
-        }
-    return false;
-}
-
-// True when a and b together are exactly their hull, which is put into `whole`.
-template <class Z>
-bool joins(const Z& a, const Z& b, Z& whole) {
-    if (apart(a, b)) return false;
-    whole = hull(a, b);
-    Z rest = whole;
-    for (int i = 0; i < Z::size; ++i)
-        for (int j = 0; j < Z::size; ++j) {
-            if (i == j || a.at(i, j) >= rest.at(i, j)) continue;
-            Z part = rest;
-            if (constrain(part, j, i, complement(a.at(i, j))) && !includes(b, part)) return false;
-            if (!constrain(rest, i, j, a.at(i, j))) return true;
+            if (a.at(i, j) < b.at(i, j)) {
+                for (int k = 0; k < count_b; ++k)
+                    if (gap(i, j, tighter_b[k].first, tighter_b[k].second)) return false;
+                tighter_a[count_a++] = {i, j};
+            } else if (b.at(i, j) < a.at(i, j)) {
+                for (int k = 0; k < count_a; ++k)
+                    if (gap(tighter_a[k].first, tighter_a[k].second, i, j)) return false;
+                tighter_b[count_b++] = {i, j};
+            }
         }
     return true;
 }
@@ -89,18 +90,18 @@ bool joins(const Z& a, const Z& b, Z& whole) {
 // Adds a zone, merged with all that it forms a convex union with.
 template <class Z>
 void absorb(Federation<Z>& fed, Z zone) {
-    for (std::size_t k = 0; k < fed.size();) {
-        Z whole;
-        if (includes(fed[k], zone)) {
-            whole = fed[k];
-        } else if (!joins(fed[k], zone, whole)) {
-            ++k;
-            continue;
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t k = 0; k < fed.size();) {
+            if (!joins(fed[k], zone)) {
+                ++k;
+                continue;
+            }
+            zone = hull(zone, fed[k]);
+            fed[k] = fed.back();
+            fed.pop_back();
+            again = true;
         }
-        zone = whole;
-        fed[k] = fed.back();
-        fed.pop_back();
-        k = 0;
     }
     fed.push_back(zone);
 }
@@ -111,6 +112,14 @@ Federation<Z> reduced(const Federation<Z>& fed) {
     Federation<Z> out;
     out.reserve(fed.size());
     for (const auto& zone : fed) absorb(out, zone);
+    return out;
+}
+
+// The same set in pairwise disjoint zones.
+template <class Z>
+Federation<Z> disjoint(const Federation<Z>& fed) {
+    Federation<Z> out;
+    for (const Z& zone : reduced(fed)) append(out, minus(Federation<Z>{zone}, out));
     return out;
 }
 

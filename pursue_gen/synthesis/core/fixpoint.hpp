@@ -26,10 +26,13 @@ class Fixpoint : public Arena<Z> {
   protected:
     using Arena<Z>::game_, Arena<Z>::nodes_, Arena<Z>::joints_, Arena<Z>::watch_, Arena<Z>::before;
 
-    using Part = Federation<Z> Node<Z>::*;
     using Usable = std::vector<std::pair<int, Federation<Z>>>;  // per joint move, where it may be commanded
 
+    // Looks at a state again; true: more of it is decided.
     virtual bool evaluate(Node<Z>& n) = 0;
+
+    virtual const Federation<Z>& winning(Node<Z>& n) const = 0;
+    virtual const Federation<Z>& losing(Node<Z>& n) const = 0;
 
     void wake(int k) {
         Node<Z>& n = nodes_[k];
@@ -38,7 +41,7 @@ class Fixpoint : public Arena<Z> {
         waiting_.push_back(k);
     }
 
-    // First in, first out. Returns whether the initial position came into its set.
+    // First in, first out. Returns whether the initial position is decided.
     bool settle() {
         const Z zero = origin<Z>(game_.clocks);
         while (!waiting_.empty()) {
@@ -49,70 +52,47 @@ class Fixpoint : public Arena<Z> {
             ++evaluations_;
             if (!evaluate(nodes_[k])) continue;
             for (int p : nodes_[k].parents) wake(p);
-            if (k == 0 && contains(nodes_[k].set, zero)) return true;
+            if (k == 0 && !contains(nodes_[0].rest, zero)) return true;
         }
-        return contains(nodes_[0].set, zero);
+        return !contains(nodes_[0].rest, zero);
     }
 
     // --- discrete predecessors --------------------------------------------------------------------------------------
 
-    Federation<Z> harm(const Node<Z>& n, Part outside) const {
+    Federation<Z> harm(const Node<Z>& n) {
         Federation<Z> out;
         for (const Step& step : n.steps) {
             const Joint& joint = joints_[step.joint];
-            const Node<Z>& target = nodes_[step.target];
-            if (!joint.controllable && target.reached) before(n, joint, target.*outside, out);
+            Node<Z>& target = nodes_[step.target];
+            if (!joint.controllable && target.reached) before(n, joint, losing(target), out);
         }
         return out.size() > 1 ? reduced(out) : out;
     }
 
     // Per controllable move the points at which it may be commanded: right now and for the whole reaction delay.
-    Usable commands(const Node<Z>& n, const Federation<Z>& harmful, Part inside) const {
+    Usable commands(const Node<Z>& n, const Federation<Z>& harmful) {
         Usable out;
         for (const Step& step : n.steps) {
             const Joint& joint = joints_[step.joint];
-            const Node<Z>& target = nodes_[step.target];
+            Node<Z>& target = nodes_[step.target];
             if (!joint.controllable || !target.reached) continue;
             Federation<Z> good;
-            before(n, joint, target.*inside, good);
+            before(n, joint, winning(target), good);
             if (game_.delta > 0 && !good.empty()) good = lasting(reduced(minus(good, harmful)), game_.delta);
             if (!good.empty()) out.emplace_back(step.joint, reduced(good));
         }
         return out;
     }
 
-    // --- sets -------------------------------------------------------------------------------------------------------
-
-    static bool fill(Node<Z>& n) {
+    static bool decide_all(Node<Z>& n) {
         if (n.rest.empty()) return false;
-        n.set = {n.hull};
+        n.done = {n.hull};
+        n.fresh.clear();
         n.rest.clear();
         return true;
     }
 
-    // Moves points (a part of the rest) into the set. Zones of the rest that they do not touch stay as they are.
-    static void take(Node<Z>& n, const Federation<Z>& fresh) {
-        Federation<Z> rest, cut;
-        for (const Z& r : n.rest)
-            if (touches(fresh, r)) append(cut, minus(Federation<Z>{r}, fresh));
-            else rest.push_back(r);
-        for (const Z& z : cut) absorb(rest, z);
-        n.rest = std::move(rest);
-        for (const Z& z : fresh) absorb(n.set, z);
-        // A set in many zones is often the complement of a complement in fewer.
-        shorten(n.set, n.hull, n.rest);
-        shorten(n.rest, n.hull, n.set);
-    }
-
-    static void shorten(Federation<Z>& one, const Z& hull, const Federation<Z>& other) {
-        if (one.size() <= MANY || one.size() <= other.size()) return;
-        Federation<Z> again = reduced(minus(Federation<Z>{hull}, other));
-        if (again.size() < one.size()) one = std::move(again);
-    }
-
   private:
-    static constexpr std::size_t MANY = 4;
-
     std::deque<int> waiting_;
     std::size_t evaluations_ = 0;
 };

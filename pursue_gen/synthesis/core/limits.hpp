@@ -46,6 +46,8 @@ class Watch {
   public:
     explicit Watch(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {}
 
+    double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
     // Before one more state is taken in. Throws Limit.
     void admit(std::size_t states, std::size_t waiting) const {
         if (limits_.states && states >= limits_.states) stop("states", states, waiting);
@@ -66,8 +68,6 @@ class Watch {
     }
 
   private:
-    double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
     [[noreturn]] void stop(const char* which, std::size_t states, std::size_t waiting) const {
         if (limits_.progress) limits_.progress(states, waiting, spent(), memory_in_use());
         throw Limit(which);

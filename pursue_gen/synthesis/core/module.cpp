@@ -61,26 +61,32 @@ Game read_game(const py::dict& in) {
     return game;
 }
 
-// Bounds as the tables of a game hold them, row by row.
+// What the Python side writes for no bound.
+constexpr std::int32_t UNBOUNDED = 1 << 30;
+
+// The bounds, row by row, as the bytes of native 32-bit integers.
 template <class Z>
-std::vector<wide_t> matrix(const Z& z, int dim) {
-    std::vector<wide_t> out;
+py::bytes matrix(const Z& z, int dim) {
+    std::vector<std::int32_t> out;
     for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) out.push_back(z.at(i, j) >= INF<typename Z::raw_t> ? INF<wide_t> : z.at(i, j));
-    return out;
+        for (int j = 0; j < dim; ++j) out.push_back(z.at(i, j) >= INF<typename Z::raw_t> ? UNBOUNDED : z.at(i, j));
+    return py::bytes(reinterpret_cast<const char*>(out.data()), out.size() * sizeof(std::int32_t));
 }
 
 template <class Z>
-py::dict outcome(Fixpoint<Z>& solver, int dim) {
+py::dict outcome(Fixpoint<Z>& solver, const Game& game) {
+    const int dim = game.clocks + 1;
     const bool won = solver.run();
     py::dict out;
     py::list states;
     std::size_t reached = 0, zones = 0;
+    out["seconds"] = solver.seconds();
+    out["symbolic_states"] = solver.symbolic_states();
     for (std::size_t k = 0; k < solver.nodes().size(); ++k) {
         const Node<Z>& node = solver.nodes()[k];
         if (!node.reached) continue;
         ++reached;
-        zones += node.set.size();
+        zones += game.kind == Kind::safety ? node.rest.size() : node.plan.size();
         if (!won) continue;
         solver.look();
         py::list actions;
@@ -103,10 +109,10 @@ py::dict solve_with(const Game& game, const Limits& limits) {
     using Z = Dbm<N, R>;
     if (game.kind == Kind::safety) {
         Safety<Z> solver(game, limits);
-        return outcome<Z>(solver, game.clocks + 1);
+        return outcome<Z>(solver, game);
     }
     Reach<Z> solver(game, limits);
-    return outcome<Z>(solver, game.clocks + 1);
+    return outcome<Z>(solver, game);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -156,7 +162,6 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
 PYBIND11_MODULE(_core, module) {
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
-    module.attr("INF") = INF<wide_t>;
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(),
                "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory').");

@@ -28,20 +28,32 @@ class Reach : public Fixpoint<Z> {
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_;
 
+    const Federation<Z>& winning(Node<Z>& n) const override { return this->gathered(n); }
+    const Federation<Z>& losing(Node<Z>& n) const override { return n.rest; }
+
     bool evaluate(Node<Z>& n) override {
         if (n.lost) return false;
-        if (n.won) return this->fill(n);
-        const auto won = [&](const Step& step) { return !nodes_[step.target].set.empty(); };
+        if (n.won) return this->decide_all(n);
+        const auto won = [&](const Step& step) {
+            const Node<Z>& target = nodes_[step.target];
+            return !target.done.empty() || !target.fresh.empty();
+        };
         if (n.rest.empty() || std::none_of(n.steps.begin(), n.steps.end(), won)) return false;
-        const Federation<Z> harmful = this->harm(n, &Node<Z>::rest);
-        const auto usable = this->commands(n, harmful, &Node<Z>::set);
-        Federation<Z> good = n.set;
+        const Federation<Z> harmful = this->harm(n);
+        const auto usable = this->commands(n, harmful);
+        // X need not be added: whoever can wait for X can wait for what made X winning.
+        Federation<Z> good = minus(forced(n), harmful);
         for (const auto& [joint, zones] : usable) append(good, zones);
-        append(good, minus(forced(n), harmful));
         const Federation<Z> fresh = reduced(intersection(predt(good, harmful), n.rest));
         if (fresh.empty()) return false;
+        Federation<Z> rest, cut;
+        for (const Z& r : n.rest)
+            if (touches(fresh, r)) append(cut, minus(Federation<Z>{r}, fresh));
+            else rest.push_back(r);
+        for (const Z& z : cut) absorb(rest, z);
+        n.rest = std::move(rest);
         advise(n, fresh, usable, harmful);
-        this->take(n, fresh);
+        append(n.fresh, fresh);
         return true;
     }
 
@@ -61,10 +73,10 @@ class Reach : public Fixpoint<Z> {
         Federation<Z> rest = fresh;
         for (const auto& [joint, zones] : usable) {
             const Federation<Z> now = minus(zones, harmful);
-            for (const Z& z : reduced(intersection(rest, now))) n.plan.push_back({z, joint, rank_});
+            for (const Z& z : disjoint(intersection(rest, now))) n.plan.push_back({z, joint, rank_});
             rest = minus(rest, now);
         }
-        for (const Z& z : reduced(rest)) n.plan.push_back({z, -1, rank_});
+        for (const Z& z : disjoint(rest)) n.plan.push_back({z, -1, rank_});
         ++rank_;
     }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <numeric>
 
 #include "game.hpp"
 
@@ -34,14 +35,18 @@ class RelaxedPlanner {
         }
         const auto goal = facts_.find({goal_.automaton, goal_.location});
         if (goal == facts_.end()) return {};
+        std::vector<int> open(steps_.size());
+        std::iota(open.begin(), open.end(), 0);
         for (int depth = 0; layer[goal->second] < 0; ++depth) {
             bool changed = false;
             std::vector<std::pair<int, int>> reached;
-            for (std::size_t s = 0; s < steps_.size(); ++s) {
-                if (!ready(steps_[s], layer)) continue;
+            const auto taken = [&](int s) {
+                if (!ready(steps_[s], layer)) return false;
                 for (int fact : steps_[s].effects)
-                    if (layer[fact] < 0) reached.emplace_back(fact, static_cast<int>(s));
-            }
+                    if (layer[fact] < 0) reached.emplace_back(fact, s);
+                return true;
+            };
+            open.erase(std::remove_if(open.begin(), open.end(), taken), open.end());
             for (const auto& [fact, step] : reached)
                 if (layer[fact] < 0) {
                     layer[fact] = depth + 1;

@@ -20,26 +20,25 @@ class Safety : public Fixpoint<Z> {
 
     // Safe points: where waiting for ever is safe, wait; else the command that a relaxed plan likes, else any safe one.
     std::vector<Action<Z>> plan(int k) override {
-        const Node<Z>& n = nodes_[k];
+        Node<Z>& n = nodes_[k];
         std::vector<Action<Z>> out;
         if (n.lost || n.rest.empty()) return out;
-        const Federation<Z> harmful = this->harm(n, &Node<Z>::set);
-        auto usable = this->commands(n, harmful, &Node<Z>::rest);
+        const Federation<Z> harmful = this->harm(n);
+        auto usable = this->commands(n, harmful);
         const std::vector<int> liked = this->planner_.first_edges(this->state(k));
         const auto rank = [&](int joint) { return std::find(liked.begin(), liked.end(), this->joint(joint).edges[0]) - liked.begin(); };
         std::stable_sort(usable.begin(), usable.end(), [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
-        Federation<Z> evil = n.set;
-        append(evil, harmful);
+        Federation<Z> evil = harmful;
         append(evil, obliged(n));
         const Federation<Z> duty = pasts(evil);  // from here the controller has to act some time
         Federation<Z> safe = n.rest, urgent = reduced(intersection(duty, safe));
         for (const auto& [joint, zones] : usable) {
-            const Federation<Z> here = reduced(intersection(urgent, minus(zones, harmful)));
+            const Federation<Z> here = disjoint(intersection(urgent, minus(zones, harmful)));
             for (const Z& z : here) out.push_back({z, joint, 0});
             urgent = minus(urgent, here);
             safe = minus(safe, here);
         }
-        for (const Z& z : reduced(safe)) out.push_back({z, -1, 0});
+        for (const Z& z : disjoint(safe)) out.push_back({z, -1, 0});
         return out;
     }
 
@@ -66,36 +65,38 @@ class Safety : public Fixpoint<Z> {
         return out;
     }
 
+    const Federation<Z>& winning(Node<Z>& n) const override { return n.rest; }
+    const Federation<Z>& losing(Node<Z>& n) const override { return this->gathered(n); }
+
+    // Of what is not lost yet: past(E) \ Predt(cPre(not L), E). L need not be in E: whoever comes to L by waiting
+    // comes to what made it losing.
     bool evaluate(Node<Z>& n) override {
         if (n.rest.empty()) return false;
-        if (n.lost) return this->fill(n);
-        const auto bad = [&](const Step& step) { return !joints_[step.joint].controllable && !nodes_[step.target].set.empty(); };
-        if (n.limits.empty() && n.set.empty() && std::none_of(n.steps.begin(), n.steps.end(), bad)) return false;
-        const Federation<Z> fresh = losing(n);
-        if (fresh.empty()) return false;
-        this->take(n, fresh);
-        return true;
-    }
-
-    // Of what is not lost yet: past(E) \ Predt(cPre(not L), E).
-    Federation<Z> losing(const Node<Z>& n) const {
-        Federation<Z> evil = n.set;
-        const Federation<Z> harmful = this->harm(n, &Node<Z>::set);
-        append(evil, harmful);
-        const Federation<Z> bound = obliged(n);
-        if (evil.empty() && bound.empty()) return {};
+        if (n.lost) return this->decide_all(n);
+        const Federation<Z> harmful = this->harm(n), bound = obliged(n);
+        if (harmful.empty() && bound.empty()) return false;
         Federation<Z> escapes;
-        for (const auto& [joint, zones] : this->commands(n, harmful, &Node<Z>::rest)) append(escapes, zones);
-        append(evil, minus(bound, escapes));
-        const Federation<Z> danger = pasts(evil);
-        const Federation<Z> ways = predt(minus(escapes, evil), evil);
-        Federation<Z> out;
+        for (const auto& [joint, zones] : this->commands(n, harmful)) append(escapes, zones);
+        Federation<Z> evil = minus(bound, escapes);
+        append(evil, harmful);
+        const Federation<Z> danger = pasts(evil), ways = predt(minus(escapes, evil), evil);
+        Federation<Z> lost, rest, cut;
         for (const Z& r : n.rest) {
-            if (!touches(danger, r)) continue;
-            const Federation<Z> open = minus(Federation<Z>{r}, ways);
-            for (const Z& z : intersection(danger, open)) absorb(out, z);
+            Federation<Z> gone;
+            if (touches(danger, r))
+                for (const Z& z : intersection(danger, minus(Federation<Z>{r}, ways))) absorb(gone, z);
+            if (gone.empty()) {
+                rest.push_back(r);
+                continue;
+            }
+            append(cut, minus(Federation<Z>{r}, gone));
+            append(lost, gone);
         }
-        return out;
+        if (lost.empty()) return false;
+        for (const Z& z : cut) absorb(rest, z);
+        n.rest = std::move(rest);
+        append(n.fresh, lost);
+        return true;
     }
 };
 
