@@ -11,7 +11,7 @@ from __future__ import annotations
 import operator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
 INF = 1 << 30
@@ -73,9 +73,27 @@ def _close(m: List[int], dim: int) -> bool:
                     if through < m[at]:
                         m[at] = through
                 at += 1
-        if any(m[i * dim + i] < LE_ZERO for i in range(dim)):
+        if min(m[:: dim + 1]) < LE_ZERO:
             return False
     return True
+
+
+def _tighten(m: List[int], dim: int, i: int, j: int, bound: int) -> None:
+    """Take a bound into a canonical matrix, in place; it must be tighter than what is there, and leave a point."""
+    # Only these ways lead on from j, and only from where one comes to i the new bound is used.
+    onward = [(q, m_jq) for q, m_jq in enumerate(m[j * dim : j * dim + dim]) if m_jq < INF]
+    for p in range(dim):
+        at = p * dim
+        to_i = m[at + i]
+        if to_i >= INF:
+            continue
+        to_j = to_i + bound - ((to_i | bound) & 1)
+        if to_j >= m[at + j]:
+            continue  # the way there was as short before, and so are all that go on from j
+        for q, m_jq in onward:
+            through = to_j + m_jq - ((to_j | m_jq) & 1)
+            if through < m[at + q]:
+                m[at + q] = through
 
 
 @dataclass(frozen=True)
@@ -87,6 +105,11 @@ class Dbm:
 
     dim: int
     m: Tuple[int, ...]
+
+    @cached_property
+    def _turned(self) -> Tuple[int, ...]:
+        """The matrix turned over: a strategy's zones are held against very many others."""
+        return _opposite(self.dim)(self.m)
 
     @staticmethod
     def universe(dim: int) -> Dbm:
@@ -114,20 +137,7 @@ class Dbm:
         if add(old[j * dim + i], bound) < LE_ZERO:
             return None
         m = list(old)
-        # Only these ways lead on from j, and only from where one comes to i the new bound is used.
-        onward = [(q, m_jq) for q, m_jq in enumerate(old[j * dim : j * dim + dim]) if m_jq < INF]
-        for p in range(dim):
-            to_i = old[p * dim + i]
-            if to_i >= INF:
-                continue
-            to_j = to_i + bound - ((to_i | bound) & 1)
-            at = p * dim
-            if to_j >= m[at + j]:
-                continue  # the way there was as short before, and so are all that go on from j
-            for q, m_jq in onward:
-                through = to_j + m_jq - ((to_j | m_jq) & 1)
-                if through < m[at + q]:
-                    m[at + q] = through
+        _tighten(m, dim, i, j, bound)
         return Dbm(dim, tuple(m))
 
     def constrained_all(self, constraints: Iterable[Tuple[int, int, int]]) -> Optional[Dbm]:
@@ -142,28 +152,65 @@ class Dbm:
     def is_disjoint(self, other: Dbm) -> bool:
         """True if the two have no point in common, as one pair of opposite bounds shows (may miss; never wrong)."""
         # Opposite bounds leave no point where their sum is below `<= 0`: where their raw forms add up to less than 2.
-        return bool(min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 2)
+        return bool(min(map(operator.add, self.m, other._turned)) < 2)
 
     def has_gap(self, other: Dbm) -> bool:
         """True if points not in either lie between the two, as one pair of opposite bounds shows."""
         # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
-        return bool(min(map(operator.add, self.m, _opposite(self.dim)(other.m))) < 1)
+        return bool(min(map(operator.add, self.m, other._turned)) < 1)
 
     def intersect(self, other: Dbm) -> Optional[Dbm]:
         """The points in both; None if there are none."""
         if self.is_disjoint(other):
             return None
-        tighter = tuple(map(min, self.m, other.m))
-        if tighter == self.m:
+        its = sum(map(operator.lt, other.m, self.m))
+        if not its:
             return self
-        if tighter == other.m:
+        mine = sum(map(operator.lt, self.m, other.m))
+        if not mine:
             return other
-        m = list(tighter)
-        return Dbm(self.dim, tuple(m)) if _close(m, self.dim) else None
+        # The bounds of the one, one by one, on the other: most of them are implied by then.
+        dim, m, bounds = self.dim, list(self.m), other.m
+        if mine < its:
+            m, bounds = list(other.m), self.m
+        for k, bound in enumerate(bounds):
+            if bound < m[k]:
+                i, j = divmod(k, dim)
+                if add(m[j * dim + i], bound) < LE_ZERO:
+                    return None
+                _tighten(m, dim, i, j, bound)
+        return Dbm(dim, tuple(m))
 
     def hull(self, other: Dbm) -> Dbm:
         """The smallest zone that includes both."""
         return Dbm(self.dim, tuple(map(max, self.m, other.m)))
+
+    def joined(self, other: Dbm) -> Optional[Dbm]:
+        """The points in either, if they make one zone; else None.
+
+        They do where no point of the hull breaks a bound of the one and a bound of the other. The hull is canonical, so
+        two more bounds leave a point unless the way round through both of them is shorter than 0.
+        """
+        if self.has_gap(other):
+            return None
+        dim, m = self.dim, tuple(map(max, self.m, other.m))
+        if m == self.m:
+            return self
+        if m == other.m:
+            return other
+        mine = [(k // dim, k % dim, 1 - bound) for k, bound in enumerate(self.m) if bound < m[k]]
+        for k, bound in enumerate(other.m):
+            if bound < m[k]:
+                broken, p, q = 1 - bound, k // dim, k % dim
+                for i, j, outside in mine:
+                    there, back = m[i * dim + q], m[p * dim + j]
+                    if there >= INF or back >= INF:
+                        return None
+                    # add(outside, add(there, add(broken, back))) < LE_ZERO, written out
+                    odd = outside & there & broken & back & 1
+                    if ((outside >> 1) + (there >> 1) + (broken >> 1) + (back >> 1)) * 2 + odd >= LE_ZERO:
+                        return None
+        return Dbm(dim, m)
 
     def includes(self, other: Dbm) -> bool:
         """True if every point of the other is in this one."""

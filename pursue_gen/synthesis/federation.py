@@ -7,7 +7,7 @@ analysis of timed games, CONCUR 2005), here with a closed interval: a tie is los
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Iterable, List, Sequence, Tuple
 
 from pursue_gen.synthesis.dbm import Dbm, Number
 
@@ -104,7 +104,7 @@ class Federation:
             merged = False
             for k in range(len(zones)):
                 for n in range(k + 1, len(zones)):
-                    hull = _convex_union(zones[k], zones[n])
+                    hull = zones[k].joined(zones[n])
                     if hull is not None:
                         rest = zones[:k] + zones[k + 1 : n] + zones[n + 1 :]
                         zones = [zone for zone in rest if not hull.includes(zone)] + [hull]
@@ -163,11 +163,3 @@ def _maximal(zones: Iterable[Dbm]) -> Tuple[Dbm, ...]:
         kept = [other for other in kept if not zone.includes(other)]
         kept.append(zone)
     return tuple(kept)
-
-
-def _convex_union(a: Dbm, b: Dbm) -> Optional[Dbm]:
-    """The union of the two as one zone, or None if it is not convex."""
-    if a.has_gap(b):
-        return None
-    hull = a.hull(b)
-    return hull if all(b.includes(piece) for piece in hull.minus(a)) else None

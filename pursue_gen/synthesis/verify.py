@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import reduce
 from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
@@ -27,6 +28,9 @@ LIMIT = 300_000
 
 _EXACT = 3_000
 """So many states, and four times those of the first look, the second look with exact clock values may take."""
+
+_CROWD = 8
+"""So many zones of a discrete state become their hull, which adds plays; where one of those fails, they do not."""
 
 _OFTEN = 8
 """A discrete state that stands so often on one play of a reach game is looked at for a loop that only clocks hide."""
@@ -134,8 +138,11 @@ def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watc
     return search(loop, (loop.arena.initial, Dbm.zero(loop.arena.dim)), exact, limit, watch)
 
 
-def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch) -> Report:
-    """Everything that is reachable, breadth first."""
+def _check_all(
+    loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch, crowd: Optional[int] = _CROWD
+) -> Report:
+    """Everything that is reachable, breadth first; `crowd` zones of a discrete state (None: never) become one."""
+    crowded = False
     found: List[Tuple[Entry, int, Optional[JointMove]]] = [(start, -1, None)]
     passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
     pending: Deque[int] = deque([0])
@@ -156,6 +163,9 @@ def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: W
         try:
             followers = loop.followers((state, zone))
         except Broken as broken:
+            if crowded:
+                loop.used = set()
+                return _check_all(loop, start, exact, limit, watch, None)
             return _failed(loop, broken.reason, steps_to(n), state, broken.zone, len(found))
         for move, (target, after) in followers:
             after = after if exact else loop.horizon.forget(after, target)
@@ -164,7 +174,11 @@ def _check_all(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: W
                 continue
             if len(found) >= limit:
                 return _failed(loop, _out_of(limit), steps_to(n) + [move], target, after, len(found))
-            after = after if exact else with_neighbours(after, known)
+            if not exact:
+                if crowd is not None and len(known) >= crowd:
+                    after, crowded = reduce(Dbm.hull, known, after), True
+                else:
+                    after = with_neighbours(after, known)
             known[:] = [other for other in known if not after.includes(other)] + [after]
             found.append(((target, after), n, move))
             pending.append(len(found) - 1)

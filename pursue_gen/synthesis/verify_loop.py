@@ -93,9 +93,11 @@ class ClosedLoop:
         rest = [zone]
         if state in self._blocks:
             for other, key in self._advice_in(state, self.arena.situation(state)).zones():
-                if rest and self.ranks.get(key, 0) < rank:
-                    rest = without(rest, other)
-        return not rest
+                if self.ranks.get(key, 0) < rank:
+                    rest = [] if other.includes(zone) else without(rest, other)
+                    if not rest:
+                        return True
+        return False
 
     def _steps(self, state: State, zone: Dbm) -> List[Tuple[JointMove, Entry]]:
         situation = self.arena.situation(state)

@@ -329,11 +329,11 @@ def merged(zones: Sequence[Dbm]) -> List[Dbm]:
             if other.includes(zone):
                 zone = other
             elif not zone.includes(other):
-                hull = None if zone.has_gap(other) else zone.hull(other)
-                if hull is None or without(hull.minus(zone), other):
+                both = zone.joined(other)
+                if both is None:
                     k += 1
                     continue
-                zone = hull
+                zone = both
             del result[k]
             k = 0
         result.append(zone)
@@ -346,10 +346,9 @@ def with_neighbours(zone: Dbm, others: Sequence[Dbm]) -> Dbm:
     while grown:
         grown = False
         for other in others:
-            if not zone.includes(other) and not zone.has_gap(other):
-                hull = zone.hull(other)
-                if all(other.includes(part) for part in hull.minus(zone)):
-                    zone, grown = hull, True
+            both = None if zone.includes(other) else zone.joined(other)
+            if both is not None:
+                zone, grown = both, True
     return zone
 
 

@@ -51,6 +51,21 @@ def _is_canonical(zone: Dbm) -> bool:
     )
 
 
+@given(zones, zones, zones, delays)
+def test_two_zones_are_joined_exactly_where_they_make_one(a: Dbm, b: Dbm, cut: Dbm, delay: int) -> None:
+    parts = a.minus(cut)
+    for one, other in [(a, b), *((part, cut) for part in parts), *((part.up_within(delay), cut) for part in parts)]:
+        hull, joined = one.hull(other), one.joined(other)
+        between = [rest for piece in hull.minus(one) for rest in piece.minus(other)]
+        assert joined == (None if between else hull)
+
+
+@given(zones, zones)
+def test_an_intersection_is_canonical(a: Dbm, b: Dbm) -> None:
+    common = a.intersect(b)
+    assert common is None or _is_canonical(common)
+
+
 @given(zones, delays, resets)
 def test_what_operations_give_is_canonical(zone: Dbm, delay: int, clocks: Tuple[int, ...]) -> None:
     made = [zone, zone.up(), zone.down(), zone.up_within(delay), zone.up_after(delay), zone.down_within(delay)]
