@@ -11,10 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from benchmarks.families import clean_by_robots
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.pipeline import Rules, played
+from pursue_gen.synthesis import native
+from pursue_gen.synthesis import verify as verify_module
 from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.synthesis.verify import Report, pruned, verify
+from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,
@@ -318,6 +325,24 @@ def test_limits_and_strategies_of_the_other_side() -> None:
     plan = Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),))
     assert kind(verify(STRAIGHT, REACH, plan, limit=0)) == "limit"
     assert kind(verify(STRAIGHT, REACH, replace(plan, counter=True))) == "counter-strategy"
+
+
+@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
+def test_where_the_hull_of_many_zones_fails_they_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario = parse(clean_by_robots(1), "cleaning.pur", "cleaning")
+    net, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    reaction = Fraction(1, 10)
+    strategy = solve(net, objective, reaction).strategy
+    assert strategy is not None
+    look, looks = verify_module._check_all, []
+
+    def at_once(*arguments: object) -> Report:
+        looks.append(len(arguments))
+        return look(*arguments, *[1][len(arguments) - 5 :])
+
+    monkeypatch.setattr(verify_module, "_check_all", at_once)
+    assert verify(net, objective, strategy, reaction).ok
+    assert looks == [5, 6]
 
 
 def test_unused_parts_are_pruned() -> None:
