@@ -67,7 +67,7 @@ SOLVER = typer.Option(
 VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
 OPTIMIZE = typer.Option(
     None,
-    help="time: look for the strategy with the least worst-case time to the goal, for a minute or as --limit says; "
+    help="time: look for the strategy with the least worst-case time to the goal, for two minutes or as --limit says; "
     "what is proven is told.",
 )
 EXPLAIN = typer.Option(

@@ -121,8 +121,11 @@ def fastest_solution(
         return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
     counted = with_counter(won.network)
     fast = replace(won, network=counted, strategy=unscaled(strategy, counted, faster.fine))
-    worst = guaranteed(fast, LIMIT, left).worst
-    return replace(fast, guarantee=found if worst is None else replace(found, worst=min(worst, faster.kept)))
+    took = guaranteed(fast, LIMIT, left)
+    if took.worst is None or took.most is None or found.most is None:
+        return replace(fast, guarantee=found)
+    most = min(found.most, max(took.most, found.least))
+    return replace(fast, guarantee=replace(found, worst=min(took.worst, faster.kept), most=most))
 
 
 def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:

@@ -3,7 +3,8 @@
 What is looked for is v, the infimum of the times that strategies guarantee. Guards are strict in most networks, so v
 itself is seldom kept, but every time above it is. Three things enclose it:
 
-- the goal cannot be reached sooner than against a lazy environment (`least_time`): a lower bound, at once;
+- the goal cannot be reached sooner than against a lazy environment (`least_time`): a lower bound, at once; so is v of
+  the game without a reaction delay, which is smaller;
 - what a strategy at hand takes at worst (`worst_case`) is an upper bound;
 - the game with a deadline b, in which the goal may be entered only while a clock that nothing resets is at most b, is
   won where v < b and lost where v > b.
@@ -23,19 +24,25 @@ from math import gcd
 from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.synthesis.game import compile_game, initial_state
-from pursue_gen.synthesis.least_time import LeastTime
+from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.least_time import least_time
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.worst_case import with_counter, with_deadline
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
 
-SECONDS = 60.0
+SECONDS = 120.0
 """So long it is looked for where nobody sets a limit; then the best that was found counts."""
 
 TOLERANCE = Fraction(1, 10)
 """A strategy that is made for a deadline keeps v and at most so many time units more."""
+
+_SHARE = 0.4
+"""The part of the time that is left which one game of the search may take."""
+
+_NEAR = 8
+"""A reaction delay that is the unit of the search costs so much or less, as a rule: once per command of a play."""
 
 _LEAST_SECONDS = 0.05
 """With less time left no game is begun."""
@@ -95,7 +102,7 @@ def bounds(
 ) -> Guarantee:
     """What is known of v at once, with a strategy that takes `worst`."""
     game = compile_game(network, objective, reaction)
-    least = LeastTime(game).to_goal(initial_state(game), set(range(game.dim)))
+    least = least_time(game)
     unit, low = reaction.denominator, 0 if least is None else least
     most = None if worst is None else Fraction(max(low, int(worst * unit)), unit)
     return Guarantee(worst, Fraction(low, unit), most)
@@ -115,9 +122,20 @@ def fastest(
     `known`: what a strategy at hand takes at worst; `engine` and `progress` as in `solve`. With it the strategy that
     takes v, or the best one that was found; None: the one at hand is as good.
     """
-    first, unit = bounds(network, objective, reaction, known), reaction.denominator
-    search = _Search(with_counter(network), objective, reaction, limits, engine, progress)
-    search.run(int(first.least * unit), None if first.most is None else int(first.most * unit))
+    start, unit = time.monotonic(), reaction.denominator
+    limits = limits if limits.seconds else replace(limits, seconds=SECONDS, spent=0.0)
+    first, counted = bounds(network, objective, reaction, known), with_counter(network)
+    low = int(first.least * unit)
+    if reaction and known is not None and not first.exact:
+        # Who may be late has no advantage of it, and commands that come at once make a smaller game.
+        prompt = bounds(network, objective, Fraction(0), known)
+        some = replace(limits, seconds=limits.spent + limits.left / 2)
+        search = _Search(counted, objective, Fraction(0), some, engine, progress)
+        search.run(int(prompt.least), None if prompt.most is None else int(prompt.most))
+        low = max(low, search.low * unit)
+    near = low > first.least * unit
+    search = _Search(counted, objective, reaction, limits.since(start), engine, progress)
+    search.run(low, None if first.most is None else int(first.most * unit), near)
     most = None if search.high is None else Fraction(search.high, unit)
     worst = known if search.faster is None else search.faster.kept
     return Guarantee(worst, Fraction(search.low, unit), most), search.faster
@@ -136,8 +154,7 @@ class _Search:
         progress: Optional[Listener],
     ) -> None:
         self._objective, self._engine, self._progress = objective, engine, progress
-        self._limits = limits if limits.seconds else replace(limits, seconds=SECONDS, spent=0.0)
-        self._start = time.monotonic()
+        self._limits, self._start = limits, time.monotonic()
         self._unit = reaction.denominator
         self._fine = _common_multiple(2 * self._unit, TOLERANCE.denominator)
         self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
@@ -145,30 +162,32 @@ class _Search:
         self.high: Optional[int] = None
         self.faster: Optional[Faster] = None
 
-    def run(self, low: int, high: Optional[int]) -> None:
-        """Narrows down what is known already, as far as the time allows."""
+    def run(self, low: int, high: Optional[int], near: bool = False) -> None:
+        """Narrows down what is known already, as far as the time allows.
+
+        The lower bound is tried first; `near`: what is not far above it, because v is likely to be there.
+        """
         self.low, self.high = low, high
-        floor, at, leap = self.low, self.low, self._unit
+        floor, leap = low, _NEAR if near else 1
         while (self.high is None or floor < self.high) and self._left() > _LEAST_SECONDS:
+            at = floor + leap - 1
+            at = at if self.high is None else min(at, (floor + self.high) // 2)
             won = self._won(at)
             if won:
                 self.high = at
             else:
                 floor = at + 1  # not lost for sure, if nobody knows; but what is larger is won sooner
                 self.low = self.low if won is None else floor
-            if self.high is None:
-                at, leap = at + leap, 2 * leap
-            else:
-                at = (floor + self.high) // 2
+            leap = 2 * max(leap, self._unit) if self.high is None or near else self.high
 
     def _left(self) -> float:
         return self._limits.since(self._start).left
 
     def _won(self, at: int) -> Optional[bool]:
-        """Whether v is at most `at`; None: not decided in half the time that is left."""
+        """Whether v is at most `at`; None: not decided in its share of the time that is left."""
         deadline = at * self._fine // self._unit + 1
         game = with_deadline(self._network, self._objective, deadline)
-        limits = Limits(self._left() / 2, self._limits.memory)
+        limits = Limits(self._left() * _SHARE, self._limits.memory)
         try:
             verdict = solve(game, self._objective, self._reaction, self._engine, limits, self._progress)
         except PursueError as problem:

@@ -15,8 +15,8 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.pipeline import IDEAL, Rules, fastest_solution, guaranteed, solution
 from pursue_gen.synthesis import native
-from pursue_gen.synthesis.game import compile_game, initial_state
-from pursue_gen.synthesis.least_time import LeastTime
+from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.least_time import least_time
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.optimize import TOLERANCE, fastest, scaled, unscaled
 from pursue_gen.synthesis.solve import solve
@@ -216,7 +216,7 @@ def test_the_least_time_agrees_with_brute_force(drawn: Tuple[Network, Objective]
 def test_no_game_is_faster_than_against_a_lazy_environment(drawn: Tuple[Network, Objective], delay: int) -> None:
     (network, objective), reaction = drawn, Fraction(delay)
     game = compile_game(network, objective, reaction)
-    least = LeastTime(game).to_goal(initial_state(game), set(range(game.dim)))
+    least = least_time(game)
     if least is None:
         assert not solve(network, objective, reaction).won
     elif least:
