@@ -136,6 +136,7 @@ def fastest(
     near = low > first.least * unit
     search = _Search(counted, objective, reaction, limits.since(start), engine, progress)
     search.run(low, None if first.most is None else int(first.most * unit), near)
+    search.leave_room()
     most = None if search.high is None else Fraction(search.high, unit)
     worst = known if search.faster is None else search.faster.kept
     return Guarantee(worst, Fraction(search.low, unit), most), search.faster
@@ -180,12 +181,20 @@ class _Search:
                 self.low = self.low if won is None else floor
             leap = 2 * max(leap, self._unit) if self.high is None or near else self.high
 
+    def leave_room(self) -> None:
+        """Makes the strategy that was found anew, for v and the whole tolerance: its windows are wider."""
+        deadline = 0 if self.high is None else self.high * self._fine // self._unit + int(TOLERANCE * self._fine)
+        if self.faster is not None and Fraction(deadline, self._fine) > self.faster.kept:
+            self._met(deadline)
+
     def _left(self) -> float:
         return self._limits.since(self._start).left
 
     def _won(self, at: int) -> Optional[bool]:
         """Whether v is at most `at`; None: not decided in its share of the time that is left."""
-        deadline = at * self._fine // self._unit + 1
+        return self._met(at * self._fine // self._unit + 1)
+
+    def _met(self, deadline: int) -> Optional[bool]:
         game = with_deadline(self._network, self._objective, deadline)
         limits = Limits(self._left() * _SHARE, self._limits.memory)
         try:

@@ -126,6 +126,14 @@ def test_the_least_time_of_small_games() -> None:
     assert _least(_race(Edge("start", "goal"))) == 0
 
 
+def test_a_strategy_may_use_the_whole_tolerance() -> None:
+    network = _race(_edge("start", "half", ">", 2, reset=True), _edge("half", "goal", ">=", 3))
+    for reaction in (Fraction(0), Fraction(1, 10), Fraction(1, 4)):
+        guarantee, faster = fastest(network, REACH, reaction, None)
+        assert faster is not None
+        assert faster.kept == guarantee.least + TOLERANCE
+
+
 def test_the_strategy_of_a_network_without_a_counting_clock_brings_one() -> None:
     quick = _edge("start", "half", ">", 2, reset=True)
     network = _race(_edge("start", "goal", ">", 7), quick, _edge("half", "goal", ">", 3))
