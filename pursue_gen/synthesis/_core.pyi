@@ -10,4 +10,5 @@ def solve(
     states: int = 0,
     memory_mib: int = 0,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
+    moment: float = 2e6,
 ) -> Dict[str, Any]: ...

@@ -36,11 +36,17 @@ class Outcome:
 
 
 def solve_native(
-    game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, states: int = 0
+    game: Game,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
+    states: int = 0,
+    moment: float = 2e6,
 ) -> Outcome:
     """Decides the game.
 
-    `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises PursueError with exit status 5.
+    `moment` is the work (pairs of zones looked at) that a safety game gets as it is, before searches with few moves
+    take turns: about a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises
+    PursueError with exit status 5.
     Ctrl-C raises KeyboardInterrupt at once.
     """
     reached = NOTHING_YET
@@ -52,7 +58,7 @@ def solve_native(
             progress(reached)
 
     try:
-        result = _core.solve(_tables(game), limits.left, states, limits.memory, told)
+        result = _core.solve(_tables(game), limits.left, states, limits.memory, told, moment)
     except _core.LimitReached as limit:
         raise limit_reached(str(limit), limits, reached, states) from None
     except MemoryError:

@@ -29,9 +29,19 @@ EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 @given(games(EVERY_KIND, (0, 0, 1)))
 def test_it_agrees_with_brute_force(game: Game) -> None:
+    is_right(game, native.solve_native(game))
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(games((Kind.SAFETY,), (0, 0, 1)))
+def test_searches_with_few_moves_agree_with_brute_force(game: Game) -> None:
+    is_right(game, native.solve_native(game, moment=0))
+
+
+def is_right(game: Game, outcome: native.Outcome) -> None:
+    """The verdict is that of regions, what is called won is, and commands are usable where they are given."""
     regions = RegionGame(game)
     winning = regions.winning()
-    outcome = native.solve_native(game)
     assert outcome.won == (regions.start in winning)
     for locations, values, pieces in outcome.blocks:
         state = State(locations, values)

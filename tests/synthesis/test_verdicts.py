@@ -39,6 +39,10 @@ def published(reference_dir: Path, name: str):
         ("WC2a", False, False),
         ("EB1", True, False),
         ("EB3", True, False),
+        ("EB2", True, False),
+        ("EB2x", True, False),
+        ("CT3b", True, True),
+        ("EB4", True, False),
     ],
 )
 def test_published_scenarios_are_decided_as_tiga_does_and_as_a_robot_must(reference_dir, name, ideal, default):

@@ -1,10 +1,11 @@
 // The arena of a game: discrete states with one hull of zones each, the moves that are followed, symbolic steps.
 #pragma once
 
+#include <limits>
+
 #include "federation.hpp"
 #include "limits.hpp"
-#include "moves.hpp"
-#include "relaxed.hpp"
+#include "policy.hpp"
 
 namespace pursue {
 
@@ -19,6 +20,9 @@ struct Step {
     int joint, target;
 };
 
+// Whose moves a search keeps to a few at first; it opens the rest later.
+enum class Few { controllers, environments, nobodys };
+
 template <class Z>
 struct Node {
     Z hull{};
@@ -27,6 +31,7 @@ struct Node {
     std::vector<wide_t> max;                  // the largest constants that matter here
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
     std::vector<Step> steps;                  // the moves that are followed
+    std::vector<Step> others;                 // uncontrollable moves that are not, but oblige the environment at a bound
     std::vector<int> parents;
     Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
     Federation<Z> done, fresh;                // the others: gathered, and not gathered yet
@@ -38,8 +43,8 @@ class Arena {
   public:
     using R = typename Z::raw_t;
 
-    Arena(const Game& game, const Limits& limits)
-        : game_(game), watch_(limits), planner_(game, wish(game)), horizon_(game), joints_(game),
+    Arena(const Game& game, const Limits& limits, Few few)
+        : game_(game), few_(few), watch_(limits), policy_(game), horizon_(game), joints_(game),
           states_(game.automata.size() + game.variables.size()) {}
 
     const std::deque<Node<Z>>& nodes() const { return nodes_; }
@@ -63,7 +68,8 @@ class Arena {
         if (!n.reached) return false;
         elapse(n, n.hull);
         n.rest = {n.hull};
-        expand(0, game_.kind == Kind::safety);
+        touch(0);
+        expand(0, false);
         return true;
     }
 
@@ -99,23 +105,38 @@ class Arena {
         invariant(n, z);
     }
 
-    // Decides which moves of a state are followed: all, or every uncontrollable one and one controllable one.
+    // Follows the moves of a state that the policy likes, or all.
     void expand(int k, bool full) {
         if (nodes_[k].full || nodes_[k].won || nodes_[k].lost) return;
         nodes_[k].full = full;
+        nodes_[k].others.clear();
         const Discrete d = states_[k];
         joints_.enabled(d, enabled_);
-        const std::vector<int> liked = full ? std::vector<int>{} : planner_.first_edges(d);
+        const std::vector<int> wished = full ? std::vector<int>{} : wishes(d);
         bool chosen = false;
         for (const int j : enabled_) {
             const Joint& joint = joints_[j];
-            if (joint.controllable && !full) {
-                if (chosen || liked.empty() || joint.edges[0] != liked[0]) continue;
-                chosen = true;
-            }
-            follow(k, j, node(joint.target(d)));
+            if (full || follows(d, joint, wished, chosen)) follow(k, j, node(joint.target(d)));
+            else if (!joint.controllable) nodes_[k].others.push_back({j, node(joint.target(d))});
         }
         touch(k);
+    }
+
+    std::vector<int> wishes(const Discrete& d) const {
+        if (few_ == Few::nobodys) return {};
+        if (game_.kind != Kind::safety) return policy_.towards_goal(d);
+        return few_ == Few::controllers ? policy_.towards_rest(d) : policy_.towards_loss(d);
+    }
+
+    // Reach: one controllable move; safety: those that serve the side's wishes.
+    bool follows(const Discrete& d, const Joint& joint, const std::vector<int>& wished, bool& chosen) const {
+        if (few_ == Few::nobodys || joint.controllable != (few_ == Few::controllers)) return true;
+        if (game_.kind == Kind::safety && few_ == Few::controllers) return policy_.serves(d, joint, wished);
+        const bool liked = std::find(wished.begin(), wished.end(), joint.edges[0]) != wished.end();
+        if (few_ == Few::environments) return liked || policy_.ends(d, joint);
+        const bool first = liked && !chosen;
+        chosen = chosen || first;
+        return first;
     }
 
     void follow(int k, int joint, int target) {
@@ -131,10 +152,11 @@ class Arena {
         touched_.push_back(k);
     }
 
-    // Grows the hulls until every followed move of every reached point leads into a hull. Returns the states that changed.
-    std::vector<int> explore() {
+    // Grows the hulls until every followed move of every reached point leads into a hull, or there are `most` symbolic
+    // states. Returns the states that changed.
+    std::vector<int> explore(std::size_t most = std::numeric_limits<std::size_t>::max()) {
         std::vector<int> changed;
-        while (!touched_.empty()) {
+        while (!touched_.empty() && symbolic_states_ < most) {
             watch_.look(nodes_.size(), touched_.size());
             const int k = touched_.front();
             touched_.pop_front();
@@ -166,7 +188,7 @@ class Arena {
         target.hull = z;
         target.reached = true;
         touch(step.target);
-        if (fresh) expand(step.target, game_.kind == Kind::safety);
+        if (fresh) expand(step.target, all_);
     }
 
     // --- sets -------------------------------------------------------------------------------------------------------
@@ -177,7 +199,7 @@ class Arena {
         if (n.fresh.empty()) return n.done;
         // A set in many zones is often the complement of a complement in fewer.
         const bool turned = n.rest.size() <= n.done.size() + n.fresh.size();
-        if (turned && n.rest.size() <= FEW) {
+        if (turned && n.rest.size() <= 8) {
             n.done = reduced(minus(Federation<Z>{n.hull}, n.rest));
         } else {
             for (const Z& z : n.fresh) absorb(n.done, z);
@@ -221,22 +243,24 @@ class Arena {
         return out;
     }
 
-    // The points where automaton a can make an uncontrollable move of its own.
+    // The points where automaton a can make an uncontrollable move of its own, followed or not.
     Federation<Z> own_moves(const Node<Z>& n, int a) const {
         Federation<Z> out;
-        for (const Step& step : n.steps) {
-            const Joint& joint = joints_[step.joint];
-            const Node<Z>& target = nodes_[step.target];
-            if (joint.owner == a && !joint.controllable && target.reached) before(n, joint, {target.hull}, out);
-        }
+        for (const std::vector<Step>* steps : {&n.steps, &n.others})
+            for (const Step& step : *steps) {
+                const Joint& joint = joints_[step.joint];
+                if (joint.owner != a || joint.controllable) continue;
+                Z anywhere = universe<Z>();
+                if (invariant(nodes_[step.target], anywhere)) before(n, joint, {anywhere}, out);
+            }
         return out;
     }
 
-    static constexpr std::size_t FEW = 8;
-
     const Game& game_;
+    const Few few_;
+    bool all_ = false;  // new states get all their moves at once
     Watch watch_;
-    RelaxedPlanner planner_;
+    Policy policy_;
     Horizon horizon_;
     Joints joints_;
     States states_;
@@ -244,12 +268,6 @@ class Arena {
     std::deque<int> touched_;  // hulls that grew, moves that came
 
   private:
-    // What the controller wishes for when it may choose: the goal, or to have the duty of the safety objective behind it.
-    static Place wish(const Game& game) {
-        if (game.kind != Kind::safety) return game.goal;
-        return {game.bad.automaton, game.automata[game.bad.automaton].initial};
-    }
-
     std::vector<int> enabled_;
     std::size_t symbolic_states_ = 0;
 };

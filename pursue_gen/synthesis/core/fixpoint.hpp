@@ -15,9 +15,6 @@ class Fixpoint : public Arena<Z> {
 
     virtual ~Fixpoint() = default;
 
-    // Whether the controller wins from the initial position.
-    virtual bool run() = 0;
-
     // What to do in a state, zones disjoint.
     virtual std::vector<Action<Z>> plan(int k) = 0;
 
@@ -41,21 +38,24 @@ class Fixpoint : public Arena<Z> {
         waiting_.push_back(k);
     }
 
-    // First in, first out. Returns whether the initial position is decided.
-    bool settle() {
+    // First in, first out, until the initial position is decided (true), nothing changes any more, or the work is done.
+    bool settle(double work = std::numeric_limits<double>::infinity()) {
         const Z zero = origin<Z>(game_.clocks);
-        while (!waiting_.empty()) {
+        for (work_ = 0; !waiting_.empty() && work_ < work;) {
             const int k = waiting_.front();
             waiting_.pop_front();
             nodes_[k].waiting = false;
             watch_.look(nodes_.size(), waiting_.size());
             ++evaluations_;
+            ++work_;
             if (!evaluate(nodes_[k])) continue;
             for (int p : nodes_[k].parents) wake(p);
             if (k == 0 && !contains(nodes_[0].rest, zero)) return true;
         }
         return !contains(nodes_[0].rest, zero);
     }
+
+    bool settled() const { return waiting_.empty(); }
 
     // --- discrete predecessors --------------------------------------------------------------------------------------
 
@@ -91,6 +91,8 @@ class Fixpoint : public Arena<Z> {
         n.rest.clear();
         return true;
     }
+
+    double work_ = 0;  // pairs of zones that were looked at, roughly: the same on every machine
 
   private:
     std::deque<int> waiting_;

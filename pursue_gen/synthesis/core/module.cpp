@@ -74,9 +74,8 @@ py::bytes matrix(const Z& z, int dim) {
 }
 
 template <class Z>
-py::dict outcome(Fixpoint<Z>& solver, const Game& game) {
+py::dict outcome(bool won, Fixpoint<Z>& solver, const Game& game) {
     const int dim = game.clocks + 1;
-    const bool won = solver.run();
     py::dict out;
     py::list states;
     std::size_t reached = 0, zones = 0;
@@ -105,14 +104,15 @@ py::dict outcome(Fixpoint<Z>& solver, const Game& game) {
 }
 
 template <int N, class R>
-py::dict solve_with(const Game& game, const Limits& limits) {
+py::dict solve_with(const Game& game, const Limits& limits, double moment) {
     using Z = Dbm<N, R>;
     if (game.kind == Kind::safety) {
-        Safety<Z> solver(game, limits);
-        return outcome<Z>(solver, game);
+        const auto [won, solver] = solve_safety<Z>(game, limits, moment);
+        return outcome<Z>(won, *solver, game);
     }
     Reach<Z> solver(game, limits);
-    return outcome<Z>(solver, game);
+    const bool won = solver.run();
+    return outcome<Z>(won, solver, game);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -129,7 +129,8 @@ bool fits(const Game& game) {
     return (game.clocks + 2L) * (2L * largest + 2 * game.delta + 2) < INF<R>;
 }
 
-py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress) {
+py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
+               double moment) {
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
@@ -144,16 +145,16 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     };
     const int dim = game.clocks + 1;
     if (fits<std::int16_t>(game)) {
-        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits);
-        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits);
-        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits);
-        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits);
-        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits);
+        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, moment);
+        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, moment);
+        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, moment);
+        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, moment);
+        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, moment);
     }
     if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
-    if (dim <= 8) return solve_with<8, wide_t>(game, limits);
-    if (dim <= 16) return solve_with<16, wide_t>(game, limits);
-    if (dim <= 40) return solve_with<40, wide_t>(game, limits);
+    if (dim <= 8) return solve_with<8, wide_t>(game, limits, moment);
+    if (dim <= 16) return solve_with<16, wide_t>(game, limits, moment);
+    if (dim <= 40) return solve_with<40, wide_t>(game, limits, moment);
     throw std::invalid_argument("more than 39 clocks");
 }
 
@@ -163,6 +164,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
-               py::arg("memory_mib") = 0, py::arg("progress") = py::none(),
-               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory').");
+               py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("moment") = 2e6,
+               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory'). `moment` is the work, in pairs\n"
+               "of zones, that a safety game gets before searches with few moves take turns.");
 }

@@ -8,10 +8,10 @@ namespace pursue {
 template <class Z>
 class Reach : public Fixpoint<Z> {
   public:
-    using Fixpoint<Z>::Fixpoint;
+    Reach(const Game& game, const Limits& limits) : Fixpoint<Z>(game, limits, Few::controllers) {}
 
-    // With few moves first; after a loss, states that are not won get all of theirs.
-    bool run() override {
+    // Whether the controller wins. With few moves first; after a loss, states that are not won get all of theirs.
+    bool run() {
         if (!this->start()) return false;
         while (true) {
             for (int k : this->explore()) this->wake(k);

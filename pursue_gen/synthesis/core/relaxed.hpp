@@ -13,11 +13,17 @@ namespace pursue {
 
 class RelaxedPlanner {
   public:
-    RelaxedPlanner(const Game& game, Place goal) : game_(game), goal_(goal) {
+    // Safety: the fact that a duty has been done, as a place.
+    static constexpr Place DUTY_DONE{-1, 0};
+    // The fact that a duty has come.
+    static constexpr Place DUTY_COME{-2, 0};
+
+    // `optimistic`: every uncontrollable edge counts, as if the environment helped.
+    explicit RelaxedPlanner(const Game& game, bool optimistic = false) : game_(game) {
         for (int a = 0; a < static_cast<int>(game.automata.size()); ++a)
             for (const Edge& edge : game.automata[a].edges) {
                 if (edge.channel >= 0 && !edge.sends) continue;
-                if (!edge.controllable && game.automata[a].invariants[edge.source].empty()) continue;
+                if (!optimistic && !edge.controllable && game.automata[a].invariants[edge.source].empty()) continue;
                 add_step(a, edge, -1, nullptr);
                 if (edge.channel < 0) continue;
                 for (int b = 0; b < static_cast<int>(game.automata.size()); ++b)
@@ -26,14 +32,20 @@ class RelaxedPlanner {
             }
     }
 
-    // The ids of controllable sender edges that a relaxed plan from d takes first; empty when there is no plan.
-    std::vector<int> first_edges(const Discrete& d) const {
+    struct Plan {
+        std::vector<int> first[2];  // sender edges that it takes first: uncontrollable ones, controllable ones
+        bool acts[2] = {false, false};  // whether there are such steps at all, now or later
+        std::vector<int> uses;          // the automata and (behind them) variables on whose state it builds
+    };
+
+    // A relaxed plan from d to a place; an empty one where there is none.
+    Plan plan(const Discrete& d, Place to) const {
         std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1);
         for (std::size_t k = 0; k < d.size(); ++k) {
             const auto fact = facts_.find({static_cast<int>(k), d[k]});
             if (fact != facts_.end()) layer[fact->second] = 0;
         }
-        const auto goal = facts_.find({goal_.automaton, goal_.location});
+        const auto goal = facts_.find({to.automaton, to.location});
         if (goal == facts_.end()) return {};
         std::vector<int> open(steps_.size());
         std::iota(open.begin(), open.end(), 0);
@@ -66,7 +78,11 @@ class RelaxedPlanner {
         std::vector<int> effects;
     };
 
-    int fact(int what, int value) { return facts_.emplace(std::make_pair(what, value), static_cast<int>(facts_.size())).first->second; }
+    int fact(int what, int value) {
+        const auto [it, fresh] = facts_.emplace(std::make_pair(what, value), static_cast<int>(facts_.size()));
+        if (fresh) what_.push_back(what);
+        return it->second;
+    }
 
     void add_part(Step& step, int automaton, const Edge& edge) {
         const int base = static_cast<int>(game_.automata.size());
@@ -77,6 +93,11 @@ class RelaxedPlanner {
             step.needs.push_back(any);
         }
         step.effects.push_back(fact(automaton, edge.target));
+        if (automaton == game_.bad.automaton && edge.source != edge.target) {
+            const int rest = game_.automata[automaton].initial;
+            if (edge.target == rest) step.effects.push_back(fact(DUTY_DONE.automaton, DUTY_DONE.location));
+            if (edge.source == rest) step.effects.push_back(fact(DUTY_COME.automaton, DUTY_COME.location));
+        }
         for (const auto& set : edge.assign) step.effects.push_back(fact(base + set.variable, set.value));
     }
 
@@ -96,15 +117,19 @@ class RelaxedPlanner {
         return true;
     }
 
-    std::vector<int> extract(int goal, const std::vector<int>& layer, const std::vector<int>& achiever) const {
-        std::vector<int> first, open{goal};
+    Plan extract(int goal, const std::vector<int>& layer, const std::vector<int>& achiever) const {
+        Plan plan;
+        std::vector<int> open{goal};
         std::vector<bool> seen(facts_.size(), false);
         while (!open.empty()) {
             const int fact = open.back();
             open.pop_back();
-            if (seen[fact] || layer[fact] == 0) continue;
+            if (seen[fact]) continue;
             seen[fact] = true;
+            if (what_[fact] >= 0) plan.uses.push_back(what_[fact]);
+            if (layer[fact] == 0) continue;
             const Step& step = steps_[achiever[fact]];
+            plan.acts[step.controllable] = true;
             bool now = true;
             for (const auto& any : step.needs) {
                 int best = -1;
@@ -113,15 +138,15 @@ class RelaxedPlanner {
                 now = now && layer[best] == 0;
                 open.push_back(best);
             }
-            if (now && step.controllable && std::find(first.begin(), first.end(), step.edge) == first.end())
-                first.push_back(step.edge);
+            auto& first = plan.first[step.controllable];
+            if (now && std::find(first.begin(), first.end(), step.edge) == first.end()) first.push_back(step.edge);
         }
-        return first;
+        return plan;
     }
 
     const Game& game_;
-    Place goal_;
-    std::map<std::pair<int, int>, int> facts_;
+    std::map<std::pair<int, int>, int> facts_;  // by what (an automaton, or a variable behind them) and its value
+    std::vector<int> what_;                     // per fact
     std::vector<Step> steps_;
 };
 

@@ -1,6 +1,8 @@
 // Safety: the least fixpoint of losing positions, L.
 #pragma once
 
+#include <memory>
+
 #include "fixpoint.hpp"
 
 namespace pursue {
@@ -10,13 +12,30 @@ class Safety : public Fixpoint<Z> {
   public:
     using Fixpoint<Z>::Fixpoint;
 
-    bool run() override {
-        if (!this->start()) return false;
-        const std::vector<int> changed = this->explore();
-        // What leads to a loss is looked at after what it leads to.
-        for (auto k = changed.rbegin(); k != changed.rend(); ++k) this->wake(*k);
-        return !this->settle();
+    enum class Verdict { open, won, lost };
+
+    // Goes on for a while. "Won" and "lost" are final. A search with few moves of the controller that loses says "open",
+    // as they may be too few, and is `finished`.
+    Verdict go_on(double work) {
+        if (this->nodes_.empty() && !begin()) return Verdict::lost;
+        if (this->settle(work)) return lost();
+        if (!this->settled()) return Verdict::open;
+        if (this->few_ == Few::controllers || this->all_) return Verdict::won;
+        open_all();
+        return Verdict::open;
     }
+
+    // A look at the game that decides it if it is small.
+    Verdict glance(double work) {
+        constexpr double per_state = 64;
+        if (!this->start()) return Verdict::lost;
+        wake_all(this->explore(static_cast<std::size_t>(work / per_state)));
+        if (!this->touched_.empty()) return Verdict::open;
+        if (this->settle(work)) return Verdict::lost;
+        return this->settled() ? Verdict::won : Verdict::open;
+    }
+
+    bool finished() const { return finished_; }
 
     // Safe points: where waiting for ever is safe, wait; else the command that a relaxed plan likes, else any safe one.
     std::vector<Action<Z>> plan(int k) override {
@@ -25,7 +44,7 @@ class Safety : public Fixpoint<Z> {
         if (n.lost || n.rest.empty()) return out;
         const Federation<Z> harmful = this->harm(n);
         auto usable = this->commands(n, harmful);
-        const std::vector<int> liked = this->planner_.first_edges(this->state(k));
+        const std::vector<int> liked = this->policy_.liked(this->state(k));
         const auto rank = [&](int joint) { return std::find(liked.begin(), liked.end(), this->joint(joint).edges[0]) - liked.begin(); };
         std::stable_sort(usable.begin(), usable.end(), [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
         Federation<Z> evil = harmful;
@@ -44,6 +63,32 @@ class Safety : public Fixpoint<Z> {
 
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_, Fixpoint<Z>::joints_;
+
+    bool begin() {
+        if (!this->start()) return false;
+        wake_all(this->explore());
+        return true;
+    }
+
+    // What leads to a loss is looked at after what it leads to.
+    void wake_all(const std::vector<int>& states) {
+        for (auto k = states.rbegin(); k != states.rend(); ++k) this->wake(*k);
+    }
+
+    Verdict lost() {
+        finished_ = true;
+        return this->few_ == Few::controllers ? Verdict::open : Verdict::lost;
+    }
+
+    // What is lost against few moves of the environment is lost against all of them, so the fixpoint goes on.
+    void open_all() {
+        this->all_ = true;
+        for (std::size_t k = 0, count = nodes_.size(); k < count; ++k)
+            if (nodes_[k].reached) this->expand(static_cast<int>(k), true);
+        wake_all(this->explore());
+    }
+
+    bool finished_ = false;
 
     // Stuck before escapes are taken off: at the bound of an automaton that the environment cannot move.
     Federation<Z> obliged(const Node<Z>& n) const {
@@ -80,6 +125,7 @@ class Safety : public Fixpoint<Z> {
         Federation<Z> evil = minus(bound, escapes);
         append(evil, harmful);
         const Federation<Z> danger = pasts(evil), ways = predt(minus(escapes, evil), evil);
+        this->work_ += static_cast<double>(n.rest.size() + evil.size()) * static_cast<double>(danger.size() + ways.size());
         Federation<Z> lost, rest, cut;
         for (const Z& r : n.rest) {
             Federation<Z> gone;
@@ -99,5 +145,25 @@ class Safety : public Fixpoint<Z> {
         return true;
     }
 };
+
+// Small games, for which `moment` is enough work, are decided as they are. Otherwise two searches take turns, each with twice the work of its turn before: one
+// keeps the controller to few moves, so that what it wins is won; the other keeps the environment to few, so that what it
+// loses is lost, and plays the whole game when those are not enough.
+template <class Z>
+std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, const Limits& limits, double moment) {
+    using Verdict = typename Safety<Z>::Verdict;
+    auto glance = std::make_unique<Safety<Z>>(game, limits, Few::nobodys);
+    const Verdict seen = glance->glance(moment);
+    if (seen != Verdict::open) return {seen == Verdict::won, std::move(glance)};
+    glance.reset();
+    auto careful = std::make_unique<Safety<Z>>(game, limits, Few::controllers);
+    auto whole = std::make_unique<Safety<Z>>(game, limits, Few::environments);
+    for (double work = std::max(moment, 1.0);; work *= 2) {
+        if (careful && careful->go_on(work) == Verdict::won) return {true, std::move(careful)};
+        if (careful && careful->finished()) careful.reset();
+        const Verdict verdict = whole->go_on(work);
+        if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(whole)};
+    }
+}
 
 }  // namespace pursue
