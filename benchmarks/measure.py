@@ -104,7 +104,7 @@ def _measure(case: Case, bounds: Bounds) -> None:
         verdict = solve(network, objective, reaction=rules.reaction, limits=limits)
         row.update(decided=time.perf_counter() - start, verdict="won" if verdict.won else "lost")
         row.update(states=verdict.stats.discrete_states, zones=verdict.stats.zones, engine=verdict.stats.engine)
-        row.update(seconds=verdict.stats.seconds, runs=1, memory=_peak())
+        row.update(symbolic=verdict.stats.symbolic_states, seconds=verdict.stats.seconds, runs=1, memory=_peak())
         _tell({**row, "outcome": "proof" if verdict.won else ""})
         if verdict.stats.seconds < SHORT:
             again = [solve(network, objective, reaction=rules.reaction).stats.seconds for _ in range(RUNS - 1)]

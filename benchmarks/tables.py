@@ -21,17 +21,18 @@ OUTCOMES = {
     "skipped": "not tried",
 }
 COLUMNS = (
-    "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "zones", "rate", "seconds", "runs",
-    "decided", "proof", "memory", "blocks", "commands", "margin", "margin_open",
+    "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "symbolic", "zones", "rate",
+    "seconds", "runs", "decided", "proof", "memory", "blocks", "commands", "margin", "margin_open",
     "tiga_states", "tiga_waiting", "tiga_rate", "tiga_blocks", "tiga_commands",
 )  # fmt: skip
 
 
 def complete(row: Row) -> Row:
-    """The row with every column, states per second among them; None for what is not known."""
+    """The row with every column, symbolic states per second among them; None for what is not known."""
     full = {column: row.get(column) for column in COLUMNS}
-    if row.get("states") and row.get("seconds"):
-        full["rate"] = round(row["states"] / row["seconds"])
+    counted = row.get("symbolic") or row.get("states")
+    if counted and row.get("seconds"):
+        full["rate"] = round(counted / row["seconds"])
     return full
 
 

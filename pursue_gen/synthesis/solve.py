@@ -20,12 +20,16 @@ from pursue_gen.tga.network import Kind, Network, Objective
 
 @dataclass(frozen=True)
 class Stats:
-    """What it took: the engine (native or python), discrete states, zones of the result, seconds."""
+    """What it took: the engine (native or python), discrete states, zones of the result, seconds to decide.
+
+    `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted.
+    """
 
     engine: str
     discrete_states: int
     zones: int
     seconds: float
+    symbolic_states: int = 0
 
 
 @dataclass(frozen=True)
@@ -59,12 +63,15 @@ def solve(
         hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
         raise PursueError([error("SYN011", "the native engine was not built", hint=hint)], exit_status=6)
     game = compile_game(network, objective, reaction)
-    start = time.perf_counter()
     if engine == "native" or (engine is None and native.available()):
         found = native.solve_native(game, limits, progress)
         won, blocks, numbers = found.won, found.blocks, found.ranks
-        stats = Stats("native", found.counts["discrete_states"], found.counts["zones"], time.perf_counter() - start)
+        counts = found.counts
+        stats = Stats(
+            "native", counts["discrete_states"], counts["zones"], found.seconds, counts["symbolic_states"]
+        )
     else:
+        start = time.perf_counter()
         outcome = solve_reference(game, limits=limits, progress=progress)
         won, blocks = outcome.won, outcome.raw_blocks()
         # Not ranks that hold across states, but what was found later in one of them stands later.
