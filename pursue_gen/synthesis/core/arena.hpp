@@ -28,6 +28,7 @@ struct Node {
     Z hull{};
     bool won = false, lost = false;           // by its locations alone
     bool reached = false, full = false, touched = false, waiting = false;
+    int travellers = 0;                       // automata of the environment alone that stop time here
     std::vector<wide_t> max;                  // the largest constants that matter here
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
     std::vector<Step> steps;                  // the moves that are followed
@@ -81,8 +82,11 @@ class Arena {
         n.won = game_.kind != Kind::safety && at(d, game_.goal);
         n.lost = !n.won && at(d, game_.bad);
         n.max = horizon_.at(d, Z::size);
-        for (std::size_t a = 0; a < game_.automata.size(); ++a)
-            for (const Bound& b : game_.automata[a].invariants[d[a]]) n.limits.emplace_back(static_cast<int>(a), b);
+        for (std::size_t a = 0; a < game_.automata.size(); ++a) {
+            const auto& bounds = game_.automata[a].invariants[d[a]];
+            for (const Bound& b : bounds) n.limits.emplace_back(static_cast<int>(a), b);
+            n.travellers += !bounds.empty() && policy_.of_environment(static_cast<int>(a));
+        }
         return k;
     }
 

@@ -4,6 +4,9 @@
 // delay keeps a command usable only where it stays right, and the environment harmless, for the whole delay.
 #pragma once
 
+#include <queue>
+#include <tuple>
+
 #include "arena.hpp"
 
 namespace pursue {
@@ -35,15 +38,15 @@ class Fixpoint : public Arena<Z> {
         Node<Z>& n = nodes_[k];
         if (n.waiting || !n.reached) return;
         n.waiting = true;
-        waiting_.push_back(k);
+        waiting_.emplace(n.travellers, order_++, k);
     }
 
-    // First in, first out, until the initial position is decided (true), nothing changes any more, or the work is done.
+    // Until the initial position is decided (true), nothing changes any more, or the work is done.
     bool settle(double work = std::numeric_limits<double>::infinity()) {
         const Z zero = origin<Z>(game_.clocks);
         for (work_ = 0; !waiting_.empty() && work_ < work;) {
-            const int k = waiting_.front();
-            waiting_.pop_front();
+            const int k = std::get<2>(waiting_.top());
+            waiting_.pop();
             nodes_[k].waiting = false;
             watch_.look(nodes_.size(), waiting_.size());
             ++evaluations_;
@@ -95,7 +98,13 @@ class Fixpoint : public Arena<Z> {
     double work_ = 0;  // pairs of zones that were looked at, roughly: the same on every machine
 
   private:
-    std::deque<int> waiting_;
+    // How many are under way, order of arrival, state. An agent of the environment that is under way stops time when it
+    // arrives, so sets grow slice by slice, an arrival at a time. Where nobody is under way they are simple; known first,
+    // they spare the others most of their slices.
+    using Waiting = std::tuple<int, std::size_t, int>;
+
+    std::priority_queue<Waiting, std::vector<Waiting>, std::greater<Waiting>> waiting_;
+    std::size_t order_ = 0;
     std::size_t evaluations_ = 0;
 };
 

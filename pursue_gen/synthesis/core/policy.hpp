@@ -72,6 +72,12 @@ class Policy {
         return joint.owner != game_.bad.automaton && !game_.automata[joint.owner].invariants[d[joint.owner]].empty();
     }
 
+    // Whether the controller has no part in an automaton, nor in whether the duty is done.
+    bool of_environment(int a) const {
+        const auto& edges = game_.automata[a].edges;
+        return a != game_.bad.automaton && std::none_of(edges.begin(), edges.end(), [](const Edge& e) { return e.controllable; });
+    }
+
     // What the controller of a safety game likes to do, best first.
     std::vector<int> liked(const Discrete& d) const { return sure_.plan(d, duty_done()).first[true]; }
 
