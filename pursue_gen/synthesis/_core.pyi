@@ -10,5 +10,5 @@ def solve(
     states: int = 0,
     memory_mib: int = 0,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
-    moment: float = 2e6,
+    moment: float = 5e5,
 ) -> Dict[str, Any]: ...

@@ -40,12 +40,12 @@ def solve_native(
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
     states: int = 0,
-    moment: float = 2e6,
+    moment: float = 5e5,
 ) -> Outcome:
     """Decides the game.
 
     `moment` is the work (pairs of zones looked at) that a safety game gets as it is, before searches with few moves
-    take turns: about a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises
+    take turns: some tenths of a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises
     PursueError with exit status 5.
     Ctrl-C raises KeyboardInterrupt at once.
     """

@@ -28,7 +28,7 @@ struct Node {
     Z hull{};
     bool won = false, lost = false;           // by its locations alone
     bool reached = false, full = false, touched = false, waiting = false;
-    int travellers = 0;                       // automata of the environment alone that stop time here
+    int travellers = 0;                       // automata that stop time here until the environment moves them
     std::vector<wide_t> max;                  // the largest constants that matter here
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
     std::vector<Step> steps;                  // the moves that are followed
@@ -85,7 +85,7 @@ class Arena {
         for (std::size_t a = 0; a < game_.automata.size(); ++a) {
             const auto& bounds = game_.automata[a].invariants[d[a]];
             for (const Bound& b : bounds) n.limits.emplace_back(static_cast<int>(a), b);
-            n.travellers += !bounds.empty() && policy_.of_environment(static_cast<int>(a));
+            n.travellers += !bounds.empty() && policy_.left_to_others(static_cast<int>(a), d[a]);
         }
         return k;
     }

@@ -98,9 +98,9 @@ class Fixpoint : public Arena<Z> {
     double work_ = 0;  // pairs of zones that were looked at, roughly: the same on every machine
 
   private:
-    // How many are under way, order of arrival, state. An agent of the environment that is under way stops time when it
-    // arrives, so sets grow slice by slice, an arrival at a time. Where nobody is under way they are simple; known first,
-    // they spare the others most of their slices.
+    // How many are under way, order of arrival, state. An agent that is under way to an end which the environment
+    // chooses stops time there, so sets grow slice by slice, an end at a time. Where nobody is under way they are simple;
+    // known first, they spare the others most of their slices.
     using Waiting = std::tuple<int, std::size_t, int>;
 
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<Waiting>> waiting_;

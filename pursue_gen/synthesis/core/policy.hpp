@@ -72,10 +72,11 @@ class Policy {
         return joint.owner != game_.bad.automaton && !game_.automata[joint.owner].invariants[d[joint.owner]].empty();
     }
 
-    // Whether the controller has no part in an automaton, nor in whether the duty is done.
-    bool of_environment(int a) const {
+    // Whether only the environment can take an automaton out of a location.
+    bool left_to_others(int a, int location) const {
         const auto& edges = game_.automata[a].edges;
-        return a != game_.bad.automaton && std::none_of(edges.begin(), edges.end(), [](const Edge& e) { return e.controllable; });
+        return a != game_.bad.automaton &&
+               std::none_of(edges.begin(), edges.end(), [&](const Edge& e) { return e.controllable && e.source == location; });
     }
 
     // What the controller of a safety game likes to do, best first.

@@ -27,7 +27,7 @@ class Safety : public Fixpoint<Z> {
 
     // A look at the game that decides it if it is small.
     Verdict glance(double work) {
-        constexpr double per_state = 64;
+        constexpr double per_state = 24;
         if (!this->start()) return Verdict::lost;
         wake_all(this->explore(static_cast<std::size_t>(work / per_state)));
         if (!this->touched_.empty()) return Verdict::open;
