@@ -85,7 +85,7 @@ class Arena {
         for (std::size_t a = 0; a < game_.automata.size(); ++a) {
             const auto& bounds = game_.automata[a].invariants[d[a]];
             for (const Bound& b : bounds) n.limits.emplace_back(static_cast<int>(a), b);
-            n.travellers += !bounds.empty() && policy_.left_to_others(static_cast<int>(a), d[a]);
+            n.travellers += !bounds.empty() && policy_.comes_late(static_cast<int>(a), d[a]);
         }
         return k;
     }

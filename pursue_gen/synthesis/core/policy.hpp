@@ -72,11 +72,14 @@ class Policy {
         return joint.owner != game_.bad.automaton && !game_.automata[joint.owner].invariants[d[joint.owner]].empty();
     }
 
-    // Whether only the environment can take an automaton out of a location.
-    bool left_to_others(int a, int location) const {
+    // Whether states in which an automaton is at such a location come after others. In a reach game the controller's
+    // agents do not count: they would be won for one after the other, and not be under way together.
+    bool comes_late(int a, int location) const {
+        if (a == game_.bad.automaton) return false;
         const auto& edges = game_.automata[a].edges;
-        return a != game_.bad.automaton &&
-               std::none_of(edges.begin(), edges.end(), [&](const Edge& e) { return e.controllable && e.source == location; });
+        return std::none_of(edges.begin(), edges.end(), [&](const Edge& e) {
+            return e.controllable && (game_.kind != Kind::safety || e.source == location);
+        });
     }
 
     // What the controller of a safety game likes to do, best first.
