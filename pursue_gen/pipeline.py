@@ -166,7 +166,7 @@ def prove(
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
     fewer = smaller(network, kept, reaction, left)
-    again = verify(network, objective, fewer, reaction, limits=limits.since(start), progress=progress)
+    again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
     return pruned(fewer, again) if again.ok else kept
 
 

@@ -233,18 +233,18 @@ class Dbm:
         """The points that are not in the other, as disjoint zones."""
         if self.is_disjoint(other):
             return (self,)
-        dim = self.dim
+        dim, theirs = self.dim, other.m
         rest: Optional[Dbm] = self
         pieces: List[Dbm] = []
-        for i in range(dim):
-            for j in range(dim):
-                bound = other.m[i * dim + j]
-                if rest is None or bound >= rest.m[i * dim + j]:
-                    continue
-                outside = rest.constrained(j, i, complement(bound))
-                if outside is not None:
-                    pieces.append(outside)
-                rest = rest.constrained(i, j, bound)
+        for k, mine in enumerate(self.m):
+            bound = theirs[k]
+            if bound >= mine or rest is None or bound >= rest.m[k]:
+                continue
+            i, j = divmod(k, dim)
+            outside = rest.constrained(j, i, complement(bound))
+            if outside is not None:
+                pieces.append(outside)
+            rest = rest.constrained(i, j, bound)
         # No common point after all: then it is the whole, in one piece.
         return tuple(pieces) if rest is not None else (self,)
 

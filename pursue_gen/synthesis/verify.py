@@ -2,7 +2,8 @@
 
 The closed loop of network and strategy is explored symbolically from the start. Nothing here is shared with the solver
 but the zone library: network and strategy are read anew (verify_moves: joint moves; verify_time: waiting and acting;
-verify_loop: the two together; verify_clocks: what may be forgotten). See the design of the game for the rules.
+verify_loop: the two together; verify_clocks: what may be forgotten; verify_invariant: all that a strategy covers, at
+once). See the design of the game for the rules.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pursue_gen.synthesis.dbm import Dbm
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, Limits, Listener, Watch
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.verify_clocks import Horizon
+from pursue_gen.synthesis.verify_invariant import is_invariant
 from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry, in_words, sample
 from pursue_gen.synthesis.verify_moves import JointMove, State
 from pursue_gen.synthesis.verify_time import Broken, with_neighbours
@@ -25,6 +27,9 @@ from pursue_gen.tga.network import Network, Objective
 
 LIMIT = 300_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000."""
+
+_LARGE, _SOON = 20_000, 10_000
+"""Of a safety strategy with more zones all is looked at first; with fewer, where so many symbolic states do not do."""
 
 _EXACT = 3_000
 """So many states, and four times those of the first look, the second look with exact clock values may take."""
@@ -87,7 +92,8 @@ def verify(
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
     watch = Watch(limits, progress, PROVING)
     try:
-        report = _played(loop, False, False, limit, watch)
+        walked = _played if loop.rules.must_end else _safe
+        report = walked(loop, False, False, limit, watch)
         if prompt and not report.ok:
             report = _played(loop, True, False, limit, watch)
         if report.ok or ranks is not None:
@@ -136,6 +142,21 @@ def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watc
     loop.rules, loop.used = replace(loop.rules, prompt=prompt), set()
     search = _check_ends if loop.rules.must_end and loop.ranks is None else _check_all
     return search(loop, (loop.arena.initial, Dbm.zero(loop.arena.dim)), exact, limit, watch)
+
+
+def _safe(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:
+    """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers."""
+    size = _size(loop.strategy)
+    if size <= _LARGE:
+        report = _played(loop, prompt, exact, min(limit, _SOON), watch)
+        if limit <= _SOON or not report.reason.startswith("limit"):
+            return report
+    if size <= limit:
+        loop.rules, loop.used = replace(loop.rules, prompt=False), set()
+        looked = is_invariant(loop, watch)
+        if looked is not None:
+            return Report(True, "", (), frozenset(loop.used), looked)
+    return _played(loop, prompt, exact, limit, watch)
 
 
 def _check_all(
@@ -251,6 +272,11 @@ def _comes_back(on_path: Sequence[Dbm], zone: Dbm, horizon: Horizon, state: Stat
         return False
     blurred = horizon.forget(zone, state)
     return any(blurred == horizon.forget(other, state) for other in on_path)
+
+def _size(strategy: Strategy) -> int:
+    """The number of its zones."""
+    return sum(len(b.wait) + sum(len(c.zones) for c in b.commands) for b in strategy.blocks)
+
 
 def _failed(
     loop: ClosedLoop, reason: str, steps: Iterable[JointMove], state: State, zone: Dbm, states: int

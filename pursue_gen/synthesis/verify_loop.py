@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from math import gcd
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
@@ -11,7 +12,7 @@ from pursue_gen.synthesis.dbm import INF, Dbm, constant, is_strict, raw
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.verify_clocks import Described, Horizon
 from pursue_gen.synthesis.verify_moves import Arena, JointMove, Situation, State
-from pursue_gen.synthesis.verify_time import Act, Advice, Broken, Rules, pass_time, without
+from pursue_gen.synthesis.verify_time import Act, Advice, Broken, Passage, Rules, pass_time, without
 from pursue_gen.tga.network import Kind, Network, Objective
 
 INSTANTS = 4
@@ -47,7 +48,11 @@ class ClosedLoop:
             if state is not None:
                 self._blocks.setdefault(state, []).append(b)
         self._advice: Dict[State, Advice] = {}
-        self.horizon = Horizon(self.arena, self._described, self.rules.reaction)
+
+    @cached_property
+    def horizon(self) -> Horizon:
+        """What may be forgotten of the clocks."""
+        return Horizon(self.arena, self._described, self.rules.reaction)
 
     def won(self, state: State) -> bool:
         """True in the goal."""
@@ -99,14 +104,39 @@ class ClosedLoop:
                         return True
         return False
 
+    def covered(self, state: State) -> Tuple[Dbm, ...]:
+        """The points of the discrete state for which there is advice; none where the game is lost."""
+        if self.lost(state) or state not in self._blocks:
+            return ()
+        return self._advice_in(state, self.arena.situation(state)).covered
+
+    def steps_from_all(self, state: State) -> List[Tuple[JointMove, Entry]]:
+        """All that may follow if each of the covered points may be entered. Raises Broken where the strategy fails."""
+        situation, covered = self.arena.situation(state), self.covered(state)
+        passage = self._passage(state, covered)
+        # Nobody waits or decides elsewhere.
+        flights = (part for _, part in passage.taken if not any(zone.includes(part) for zone in covered))
+        return self._entries(situation, passage, (*covered, *flights))
+
     def _steps(self, state: State, zone: Dbm) -> List[Tuple[JointMove, Entry]]:
+        passage = self._passage(state, (zone,))
+        return self._entries(self.arena.situation(state), passage, passage.active)
+
+    def _passage(self, state: State, entries: Sequence[Dbm]) -> Passage:
         situation = self.arena.situation(state)
-        passage = pass_time(zone, situation, self._advice_in(state, situation), self.rules)
+        passage = pass_time(entries, situation, self._advice_in(state, situation), self.rules)
         self.used.update(passage.used)
+        return passage
+
+    @staticmethod
+    def _entries(
+        situation: Situation, passage: Passage, active: Sequence[Dbm]
+    ) -> List[Tuple[JointMove, Entry]]:
+        """Where commands lead that take effect, and what the environment may do at the active points."""
         steps = list(passage.taken)
         for move in situation.moves:
             if not move.controllable and move.enabled is not None:
-                common = (part.intersect(move.enabled) for part in passage.active)
+                common = (part.intersect(move.enabled) for part in active)
                 steps += [(move, part) for part in common if part is not None]
         return [(move, (move.target, part.reset(move.resets))) for move, part in steps]
 

@@ -7,6 +7,7 @@ instant, but it acts before time leaves that zone.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.synthesis.dbm import INF, Dbm, is_strict, raw
@@ -43,6 +44,16 @@ class Advice:
     disputed: Tuple[Tuple[Dbm, ...], ...]
     """For each act the points at which the strategy says to wait as well."""
 
+    @cached_property
+    def waits(self) -> Tuple[Dbm, ...]:
+        """All points to wait at, in few zones."""
+        return tuple(merged([zone for zone, _ in self.wait]))
+
+    @cached_property
+    def covered(self) -> Tuple[Dbm, ...]:
+        """All points for which there is advice, in few zones."""
+        return tuple(merged([*self.waits, *(act.zone for act in self.acts)]))
+
     def zones(self) -> Iterator[Tuple[Dbm, ZoneKey]]:
         """All zones of the advice."""
         yield from self.wait
@@ -63,11 +74,16 @@ class Advice:
 
 @dataclass(frozen=True)
 class Passage:
-    """What may happen from an entry: all points at which the game may be, and where which command may take effect."""
+    """What may happen from an entry: the points that are waited in, and where which command may take effect."""
 
-    active: Tuple[Dbm, ...]
+    waited: Tuple[Dbm, ...]
     taken: Tuple[Tuple[JointMove, Dbm], ...]
     used: Tuple[ZoneKey, ...]
+
+    @property
+    def active(self) -> Tuple[Dbm, ...]:
+        """All points at which the game may be."""
+        return tuple(merged([*self.waited, *(flight for _, flight in self.taken)]))
 
 
 @dataclass(frozen=True)
@@ -87,21 +103,25 @@ class Rules:
     instant: int = 0
 
 
-def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) -> Passage:
-    """Follow the strategy from the points of the entry until a discrete step. Raises Broken where it fails."""
+def pass_time(entries: Sequence[Dbm], situation: Situation, advice: Advice, rules: Rules) -> Passage:
+    """Follow the strategy from the points of the entries until a discrete step. Raises Broken where it fails."""
     assert situation.invariant is not None
     acts = advice.acts
     decided: Dict[int, List[Dbm]] = {}
-    pieces: List[Dbm] = [entry]
+    pieces: Sequence[Dbm] = entries
     for k, act in enumerate(acts):
-        common = entry.intersect(act.zone)
-        if common is not None:
-            _insert(decided, k, common if rules.prompt else _future_in(common, act.zone))
+        for entry in entries:
+            common = entry.intersect(act.zone)
+            if common is not None:
+                _insert(decided, k, common if rules.prompt else _future_in(common, act.zone))
+        if k in decided:
             pieces = without(pieces, act.zone)
     waiting: List[Dbm] = []
     used: List[ZoneKey] = []
-    for piece in pieces:
-        waiting += _wait(piece, situation, advice, rules, decided)
+    for piece in sorted(pieces, key=_lateness):
+        # What is met on the way from another piece was followed with that.
+        if not any(zone.includes(piece) for zone in waiting):
+            waiting += _wait(piece, situation, advice, rules, decided)
     for zone, key in advice.wait:
         if any(not zone.is_disjoint(part) and zone.intersect(part) is not None for part in waiting):
             used.append(key)
@@ -115,7 +135,7 @@ def pass_time(entry: Dbm, situation: Situation, advice: Advice, rules: Rules) ->
         for other, effect in _met_in_flight(k, flights, advice, rules.reaction):
             used.append(acts[other].key)
             taken += _effects(acts[other], effect)
-    return Passage(tuple(merged(waiting + [flight for _, flight in taken])), tuple(taken), tuple(used))
+    return Passage(tuple(waiting), tuple(taken), tuple(used))
 
 
 def _wait(
@@ -134,12 +154,15 @@ def _wait(
     waited: List[Dbm] = [future]
     for _, common in met:
         waited = without(waited, common.up())
-    uncovered = waited
-    for zone, _ in advice.wait:
+    home = next((zone for zone in advice.waits if zone.includes(piece)), None)
+    uncovered = waited if home is None else without(waited, home)
+    for zone in advice.waits:
         uncovered = without(uncovered, zone)
     if uncovered:
         raise Broken("not covered: the strategy does not say what to do here", uncovered[0])
     for k, common in met:
+        if any(zone.includes(common) for zone in decided.get(k, ())):
+            continue
         first: List[Dbm] = [common]
         for other, others in met:
             if other != k:
@@ -148,11 +171,7 @@ def _wait(
         for zone in first:
             for part in _promptly(zone, situation, rules.instant) if rules.prompt else [zone]:
                 _insert(decided, k, part)
-    never = [piece]
-    for _, common in met:
-        never = without(never, common.down())
-    for part in never:
-        _check_end(part, situation, rules.must_end)
+    _check_end(piece, waited, [common for _, common in met], situation, rules.must_end)
     return waited
 
 
@@ -212,18 +231,23 @@ def _before_news(zone: Dbm, situation: Situation) -> List[Dbm]:
     return result
 
 
-def _check_end(part: Dbm, situation: Situation, must_end: bool) -> None:
-    """The points of `part` meet no command: whoever is at the bound of an invariant must be able to move by itself."""
-    if not situation.bounds:
-        if must_end:
-            raise Broken("waits for ever: no command comes and nothing obliges anyone to move", part)
-        return
-    if any(is_strict(bound) for _, _, bound in situation.bounds):
-        raise Broken("time is blocked: it cannot reach the end of a strict invariant", part)
-    assert situation.invariant is not None
-    future = part.up().intersect(situation.invariant)
-    assert future is not None
-    _check_obliged(future, situation, must_end)
+def _check_end(
+    piece: Dbm, waited: Sequence[Dbm], met: Sequence[Dbm], situation: Situation, must_end: bool
+) -> None:
+    """Whoever is at the bound of an invariant must be able to move by itself: no command comes at the points that are
+    waited in. From the piece time leads there, and to those of commands that are `met`."""
+    strict = any(is_strict(bound) for _, _, bound in situation.bounds)
+    if situation.bounds and not strict:
+        for part in waited:
+            _check_obliged(part, situation, must_end)
+    elif strict or must_end:
+        never = [piece]
+        for common in met:
+            never = without(never, common.down())
+        if never and strict:
+            raise Broken("time is blocked: it cannot reach the end of a strict invariant", never[0])
+        if never:
+            raise Broken("waits for ever: no command comes and nothing obliges anyone to move", never[0])
 
 
 def _check_obliged(points: Dbm, situation: Situation, must_end: bool) -> None:
@@ -350,6 +374,11 @@ def with_neighbours(zone: Dbm, others: Sequence[Dbm]) -> Dbm:
             if both is not None:
                 zone, grown = both, True
     return zone
+
+
+def _lateness(zone: Dbm) -> int:
+    """Less for what time passes first: the sum of the clocks' lower bounds."""
+    return -sum(zone.m[: zone.dim])
 
 
 def _future_in(zone: Dbm, within: Dbm) -> Dbm:
