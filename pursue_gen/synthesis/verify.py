@@ -22,7 +22,8 @@ from pursue_gen.synthesis.verify_clocks import Horizon
 from pursue_gen.synthesis.verify_invariant import is_invariant
 from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry, in_words, sample
 from pursue_gen.synthesis.verify_moves import JointMove, State
-from pursue_gen.synthesis.verify_time import Broken, with_neighbours
+from pursue_gen.synthesis.verify_time import Broken
+from pursue_gen.synthesis.verify_zones import with_neighbours
 from pursue_gen.tga.network import Network, Objective
 
 LIMIT = 300_000

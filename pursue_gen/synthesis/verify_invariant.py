@@ -13,13 +13,14 @@ the reached points would find, it finds here; the reverse does not hold, as cove
 from __future__ import annotations
 
 from collections import deque
-from typing import Deque, Dict, Optional, Sequence, Set
+from typing import Deque, Dict, Optional, Set
 
 from pursue_gen.synthesis.dbm import Dbm
 from pursue_gen.synthesis.limits import Watch
 from pursue_gen.synthesis.verify_loop import ClosedLoop
 from pursue_gen.synthesis.verify_moves import State
-from pursue_gen.synthesis.verify_time import Broken, without
+from pursue_gen.synthesis.verify_time import Broken
+from pursue_gen.synthesis.verify_zones import outside
 
 
 def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
@@ -29,7 +30,7 @@ def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
     and only those are among what the loop then has as used.
     """
     start = loop.arena.initial
-    if not _is_covered(Dbm.zero(loop.arena.dim), loop.covered(start)):
+    if outside(Dbm.zero(loop.arena.dim), loop.covered(start)):
         return None
     known: Dict[State, Set[Dbm]] = {start: set()}
     pending: Deque[State] = deque([start])
@@ -44,17 +45,7 @@ def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
                 known[target] = set()
                 pending.append(target)
             if after not in known[target]:
-                if not _is_covered(after, loop.covered(target)):
+                if outside(after, loop.covered(target)):
                     return None
                 known[target].add(after)
     return sum(len(loop.covered(state)) for state in known)
-
-
-def _is_covered(zone: Dbm, covered: Sequence[Dbm]) -> bool:
-    """True if every point of the zone is covered."""
-    if any(other.includes(zone) for other in covered):
-        return True
-    rest = [zone]
-    for other in covered:
-        rest = without(rest, other)
-    return not rest

@@ -12,7 +12,8 @@ from pursue_gen.synthesis.dbm import INF, Dbm, constant, is_strict, raw
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.verify_clocks import Described, Horizon
 from pursue_gen.synthesis.verify_moves import Arena, JointMove, Situation, State
-from pursue_gen.synthesis.verify_time import Act, Advice, Broken, Passage, Rules, pass_time, without
+from pursue_gen.synthesis.verify_time import Act, Advice, Broken, Passage, Rules, pass_time
+from pursue_gen.synthesis.verify_zones import without
 from pursue_gen.tga.network import Kind, Network, Objective
 
 INSTANTS = 4

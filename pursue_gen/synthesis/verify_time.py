@@ -13,6 +13,7 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 from pursue_gen.synthesis.dbm import INF, Dbm, is_strict, raw
 from pursue_gen.synthesis.strategy import ZoneKey
 from pursue_gen.synthesis.verify_moves import JointMove, Situation
+from pursue_gen.synthesis.verify_zones import merged, outside, without
 
 
 class Broken(Exception):
@@ -52,7 +53,7 @@ class Advice:
     @cached_property
     def covered(self) -> Tuple[Dbm, ...]:
         """All points for which there is advice, in few zones."""
-        return tuple(merged([*self.waits, *(act.zone for act in self.acts)]))
+        return (*self.waits, *merged([act.zone for act in self.acts]))
 
     def zones(self) -> Iterator[Tuple[Dbm, ZoneKey]]:
         """All zones of the advice."""
@@ -154,10 +155,7 @@ def _wait(
     waited: List[Dbm] = [future]
     for _, common in met:
         waited = without(waited, common.up())
-    home = next((zone for zone in advice.waits if zone.includes(piece)), None)
-    uncovered = waited if home is None else without(waited, home)
-    for zone in advice.waits:
-        uncovered = without(uncovered, zone)
+    uncovered = [part for zone in waited for part in outside(zone, advice.waits)]
     if uncovered:
         raise Broken("not covered: the strategy does not say what to do here", uncovered[0])
     for k, common in met:
@@ -336,44 +334,6 @@ def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
     if not act.move.enabled.includes(points):
         raise Broken(_TOO_LATE, points.minus(act.move.enabled)[0])
     return [(act.move, points)]
-
-
-def without(pieces: Sequence[Dbm], zone: Dbm) -> List[Dbm]:
-    """The points of the pieces that are not in the zone."""
-    return [part for piece in pieces for part in piece.minus(zone)]
-
-
-def merged(zones: Sequence[Dbm]) -> List[Dbm]:
-    """The same points in fewer zones where two make one."""
-    result: List[Dbm] = []
-    for zone in zones:
-        k = 0
-        while k < len(result):
-            other = result[k]
-            if other.includes(zone):
-                zone = other
-            elif not zone.includes(other):
-                both = zone.joined(other)
-                if both is None:
-                    k += 1
-                    continue
-                zone = both
-            del result[k]
-            k = 0
-        result.append(zone)
-    return result
-
-
-def with_neighbours(zone: Dbm, others: Sequence[Dbm]) -> Dbm:
-    """The zone together with those of the others with which it makes one zone."""
-    grown = True
-    while grown:
-        grown = False
-        for other in others:
-            both = None if zone.includes(other) else zone.joined(other)
-            if both is not None:
-                zone, grown = both, True
-    return zone
 
 
 def _lateness(zone: Dbm) -> int:

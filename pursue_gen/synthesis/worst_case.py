@@ -17,7 +17,8 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Watch
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry
 from pursue_gen.synthesis.verify_moves import State
-from pursue_gen.synthesis.verify_time import Broken, with_neighbours
+from pursue_gen.synthesis.verify_time import Broken
+from pursue_gen.synthesis.verify_zones import with_neighbours
 from pursue_gen.tga.network import ClockBound, Kind, Location, Network, Objective
 
 INSTANT = Fraction(1, 1000)
