@@ -45,8 +45,8 @@ def solve_native(
     """Decides the game.
 
     `moment` is the work (pairs of zones looked at) that a safety game gets as it is, before searches with few moves
-    take turns: some tenths of a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit raises
-    PursueError with exit status 5.
+    take turns: some tenths of a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit
+    raises PursueError with exit status 5.
     Ctrl-C raises KeyboardInterrupt at once.
     """
     reached = NOTHING_YET
