@@ -19,7 +19,7 @@ from pursue_gen.synthesis.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
 
-_LITTLE = 5_000
+_LITTLE = 6_000
 """A proof with so many symbolic states takes a second or two: then a strategy in fewer zones is proven as well."""
 
 REPORTED, CONTROLLABLE = "reported", "controllable"
