@@ -4,9 +4,6 @@
 // edges count only where an invariant will force them (ends of movements and actions): nobody may hope for the rest.
 #pragma once
 
-#include <map>
-#include <numeric>
-
 #include "game.hpp"
 
 namespace pursue {
@@ -40,34 +37,36 @@ class RelaxedPlanner {
 
     // A relaxed plan from d to a place; an empty one where there is none.
     Plan plan(const Discrete& d, Place to) const {
-        std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1);
+        const int goal = known(to.automaton, to.location);
+        if (goal < 0) return {};
+        std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1), missing(missing_), ready, fresh;
+        std::vector<bool> met(needs_.size(), false);
         for (std::size_t k = 0; k < d.size(); ++k) {
-            const auto fact = facts_.find({static_cast<int>(k), d[k]});
-            if (fact != facts_.end()) layer[fact->second] = 0;
+            const int fact = known(static_cast<int>(k), d[k]);
+            if (fact < 0) continue;
+            layer[fact] = 0;
+            fresh.push_back(fact);
         }
-        const auto goal = facts_.find({to.automaton, to.location});
-        if (goal == facts_.end()) return {};
-        std::vector<int> open(steps_.size());
-        std::iota(open.begin(), open.end(), 0);
-        for (int depth = 0; layer[goal->second] < 0; ++depth) {
-            bool changed = false;
-            std::vector<std::pair<int, int>> reached;
-            const auto taken = [&](int s) {
-                if (!ready(steps_[s], layer)) return false;
-                for (int fact : steps_[s].effects)
-                    if (layer[fact] < 0) reached.emplace_back(fact, s);
-                return true;
-            };
-            open.erase(std::remove_if(open.begin(), open.end(), taken), open.end());
-            for (const auto& [fact, step] : reached)
-                if (layer[fact] < 0) {
-                    layer[fact] = depth + 1;
-                    achiever[fact] = step;
-                    changed = true;
+        for (int depth = 0; layer[goal] < 0; ++depth) {
+            ready.clear();
+            for (int fact : fresh)
+                for (int need : met_by_[fact]) {
+                    if (met[need]) continue;
+                    met[need] = true;
+                    if (--missing[needs_[need]] == 0) ready.push_back(needs_[need]);
                 }
-            if (!changed) return {};
+            std::sort(ready.begin(), ready.end());
+            fresh.clear();
+            for (int step : ready)
+                for (int fact : steps_[step].effects)
+                    if (layer[fact] < 0) {
+                        layer[fact] = depth + 1;
+                        achiever[fact] = step;
+                        fresh.push_back(fact);
+                    }
+            if (fresh.empty()) return {};
         }
-        return extract(goal->second, layer, achiever);
+        return extract(goal, layer, achiever);
     }
 
   private:
@@ -79,9 +78,14 @@ class RelaxedPlanner {
     };
 
     int fact(int what, int value) {
-        const auto [it, fresh] = facts_.emplace(std::make_pair(what, value), static_cast<int>(facts_.size()));
-        if (fresh) what_.push_back(what);
-        return it->second;
+        const int old = known(what, value);
+        if (old >= 0) return old;
+        const int number = static_cast<int>(facts_.size());
+        if (what + FIRST >= static_cast<int>(values_.size())) values_.resize(what + FIRST + 1);
+        values_[what + FIRST].emplace_back(value, number);
+        facts_.push_back(what);
+        met_by_.emplace_back();
+        return number;
     }
 
     void add_part(Step& step, int automaton, const Edge& edge) {
@@ -105,16 +109,21 @@ class RelaxedPlanner {
         Step step{sender.id, sender.controllable && (!receiver || receiver->controllable), {}, {}};
         add_part(step, a, sender);
         if (receiver) add_part(step, b, *receiver);
+        const int number = static_cast<int>(steps_.size());
+        for (const auto& any : step.needs) {
+            for (int fact : any) met_by_[fact].push_back(static_cast<int>(needs_.size()));
+            needs_.push_back(number);
+        }
+        missing_.push_back(static_cast<int>(step.needs.size()));
         steps_.push_back(std::move(step));
     }
 
-    static bool ready(const Step& step, const std::vector<int>& layer) {
-        for (const auto& any : step.needs) {
-            bool found = false;
-            for (int fact : any) found = found || layer[fact] >= 0;
-            if (!found) return false;
-        }
-        return true;
+    // The number of a fact, -1: no step knows it.
+    int known(int what, int value) const {
+        if (what + FIRST >= static_cast<int>(values_.size())) return -1;
+        for (const auto& [of, fact] : values_[what + FIRST])
+            if (of == value) return fact;
+        return -1;
     }
 
     Plan extract(int goal, const std::vector<int>& layer, const std::vector<int>& achiever) const {
@@ -126,7 +135,7 @@ class RelaxedPlanner {
             open.pop_back();
             if (seen[fact]) continue;
             seen[fact] = true;
-            if (what_[fact] >= 0) plan.uses.push_back(what_[fact]);
+            if (facts_[fact] >= 0) plan.uses.push_back(facts_[fact]);
             if (layer[fact] == 0) continue;
             const Step& step = steps_[achiever[fact]];
             plan.acts[step.controllable] = true;
@@ -145,8 +154,13 @@ class RelaxedPlanner {
     }
 
     const Game& game_;
-    std::map<std::pair<int, int>, int> facts_;  // by what (an automaton, or a variable behind them) and its value
-    std::vector<int> what_;                     // per fact
+    static constexpr int FIRST = 2;  // what is below 0: DUTY_DONE and DUTY_COME
+
+    std::vector<int> facts_;                                // per fact what it is about: an automaton, or a variable behind them
+    std::vector<std::vector<std::pair<int, int>>> values_;  // per what, from FIRST on: values and their facts
+    std::vector<int> needs_;                                // per need the step that has it
+    std::vector<std::vector<int>> met_by_;                  // per fact the needs that it meets
+    std::vector<int> missing_;                              // per step how many needs it has
     std::vector<Step> steps_;
 };
 
