@@ -47,7 +47,7 @@ IDEAL = Rules(CONTROLLABLE, Fraction(0))
 class Solution:
     """A proven strategy for the objective in `network` (the game as it is played, ends and slack included).
 
-    `guarantee`: how long it takes at worst, where that was looked for.
+    `rules` are those of that game; `guarantee`: how long it takes at worst, where that was looked for.
     """
 
     network: Network
@@ -56,6 +56,7 @@ class Solution:
     reaction: Fraction
     stats: Optional[Stats] = None
     guarantee: Optional[Guarantee] = None
+    rules: Rules = Rules()
 
 
 def played(network: Network, rules: Rules) -> Network:
@@ -86,7 +87,7 @@ def solution(
     strategy = prove(
         game, objective, verdict.strategy, rules.reaction, verdict.ranks, limits.since(start), progress
     )
-    return Solution(game, objective, strategy, rules.reaction, verdict.stats)
+    return Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
 
 
 def fastest_solution(
@@ -166,7 +167,12 @@ def prove(
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
     fewer = smaller(network, kept, reaction, left)
-    again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
+    try:
+        again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
+    except PursueError as problem:
+        if problem.exit_status != 5:
+            raise
+        return kept  # what is proven stays so when there is no time left to make it smaller
     return pruned(fewer, again) if again.ok else kept
 
 

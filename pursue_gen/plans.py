@@ -66,7 +66,7 @@ def trials(
         except PursueError as problem:
             done.append(Trial(rules, None, problem.diagnostics))
             continue
-        done.append(Trial(rules, Solution(game, objective, proven, rules.reaction)))
+        done.append(Trial(rules, Solution(game, objective, proven, rules.reaction, rules=rules)))
         break
     return tuple(done)
 

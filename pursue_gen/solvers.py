@@ -47,7 +47,8 @@ def solved(
     game = played(network, rules)
     verdict = run_verifytga(game, objective, verifytga, limits, rules.reaction, progress)
     assert verdict.strategy is not None  # it raises where there is none
-    return _timed(Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats), limits)
+    won = Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats, rules=rules)
+    return _timed(won, limits)
 
 
 def _timed(won: Solution, limits: Limits) -> Solution:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.dbm import constant, is_strict
@@ -146,21 +146,7 @@ class Controller:
     def _span(self, here: Position) -> Callable[[Zone], Optional[Window]]:
         """When a zone holds, seen from here; None: time does not get there."""
         clocks = dict(zip(self._game.clocks, here.clocks))
-
-        def span(zone: Zone) -> Optional[Window]:
-            result = Window()
-            for c in zone:
-                if c.left is not None and c.right is not None:
-                    difference = clocks[c.left] - clocks[c.right]
-                    if difference > c.bound or (difference == c.bound and c.strict):
-                        return None
-                elif c.left is not None:
-                    result = result.at_most(c.bound - clocks[c.left], c.strict)
-                elif c.right is not None:
-                    result = result.at_least(-c.bound - clocks[c.right], c.strict)
-            return result
-
-        return span
+        return lambda zone: span(zone, clocks)
 
 
 def _both(a: Window, b: Window) -> Window:
@@ -198,3 +184,18 @@ def moments(windows: Sequence[Tuple[JointMove, Window]], grain: Fraction) -> Ite
         for moment in (open_.earliest(grain), open_.latest()):
             if moment is not None:
                 yield moment
+
+
+def span(zone: Zone, clocks: Mapping[str, Fraction]) -> Optional[Window]:
+    """The delays after which clocks that have these values now are in a zone; None: none of them are."""
+    result = Window()
+    for c in zone:
+        if c.left is not None and c.right is not None:
+            difference = clocks[c.left] - clocks[c.right]
+            if difference > c.bound or (difference == c.bound and c.strict):
+                return None
+        elif c.left is not None:
+            result = result.at_most(c.bound - clocks[c.left], c.strict)
+        elif c.right is not None:
+            result = result.at_least(-c.bound - clocks[c.right], c.strict)
+    return result

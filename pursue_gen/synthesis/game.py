@@ -9,10 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from math import gcd
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
-from pursue_gen.synthesis.dbm import constant, raw
+from pursue_gen.synthesis.dbm import Dbm, constant, raw
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
 
 Bound = Tuple[int, int, int]
@@ -54,11 +55,15 @@ class GameEdge:
 
 @dataclass(frozen=True)
 class GameAutomaton:
-    """An automaton: `invariants[location]` are upper bounds (clock, raw); `edges` are indices into the game's."""
+    """An automaton: `invariants[location]` are upper bounds (clock, raw); `edges` are indices into the game's.
+
+    It starts in `initial`, and is in `home` when nothing has begun.
+    """
 
     name: str
     locations: Tuple[str, ...]
     initial: int
+    home: int
     invariants: Tuple[Tuple[Tuple[int, int], ...], ...]
     edges: Tuple[int, ...]
 
@@ -68,6 +73,7 @@ class Game:
     """The game. `delta` is the scaled reaction delay; `max_constants[i]` the largest scaled constant of clock i.
 
     `goal` and `bad` are (automaton, location) or None. `edges[k]` is made from `origins[k]`, an edge of the network.
+    `start` bounds the clocks at the start (see `start_zone`); empty: they are 0.
     """
 
     kind: Kind
@@ -83,6 +89,7 @@ class Game:
     automata: Tuple[GameAutomaton, ...]
     edges: Tuple[GameEdge, ...]
     origins: Tuple[Edge, ...]
+    start: Tuple[Bound, ...] = ()
 
     @property
     def dim(self) -> int:
@@ -117,12 +124,12 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
     """The tables of a network and an objective, with a reaction delay in time units.
 
     Raises PursueError with everything that the game does not support: clock guards on receiving edges, invariants that
-    are not upper bounds with <=, unknown names.
+    are not upper bounds with <=, unknown names, a start that no clock values satisfy.
     """
     problems: List[Diagnostic] = []
     if reaction < 0:
         problems.append(error("SYN001", f"the reaction delay is {reaction}, expected 0 or more time units"))
-    tables = _Tables(network, reaction.denominator, problems)
+    tables = _Tables(network, _common_denominator(network, reaction), problems)
     goal, bad = tables.position(objective.goal), tables.position(objective.bad)
     if objective.kind is not Kind.SAFETY and objective.goal is None:
         problems.append(error("SYN002", "the objective names no location to reach"))
@@ -134,6 +141,7 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
         first = len(edges)
         edges += [tables.edge(number, automaton, edge) for edge in automaton.edges]
         automata.append(tables.automaton(automaton, range(first, len(edges))))
+    start = tables.start(network)
     if problems:
         raise PursueError(problems)
     return Game(
@@ -150,7 +158,16 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
         automata=tuple(automata),
         edges=tuple(edges),
         origins=tuple(edge for automaton in network.automata for edge in automaton.edges),
+        start=start,
     )
+
+
+def _common_denominator(network: Network, reaction: Fraction) -> int:
+    """What all times have to be multiplied by to be integers."""
+    scale = reaction.denominator
+    for constraint in network.start:
+        scale = scale * constraint.bound.denominator // gcd(scale, constraint.bound.denominator)
+    return scale
 
 
 class _Tables:
@@ -196,10 +213,29 @@ class _Tables:
         return GameAutomaton(
             name=automaton.name,
             locations=tuple(location.name for location in automaton.locations),
-            initial=self._index(self._locations[number], f"location of {automaton.name}", automaton.initial),
+            initial=self._place(number, automaton.name, automaton.initial),
+            home=self._place(number, automaton.name, automaton.home or automaton.initial),
             invariants=tuple(invariants),
             edges=tuple(edges),
         )
+
+    def start(self, network: Network) -> Tuple[Bound, ...]:
+        """The bounds on the clocks at the start."""
+        bounds = tuple(
+            (
+                0 if c.left is None else self._index(self._clocks, "clock", c.left),
+                0 if c.right is None else self._index(self._clocks, "clock", c.right),
+                raw(int(c.bound * self.scale), c.strict),
+            )
+            for c in network.start
+        )
+        if Dbm.of(len(network.clocks) + 1, (bound for bound in bounds if bound[0] != bound[1])) is None:
+            hint = "give bounds that the clocks can have together, all of them 0 or more"
+            self._problems.append(error("SYN008", "no values of the clocks satisfy the bounds at the start", hint=hint))
+        return bounds
+
+    def _place(self, number: int, automaton: str, location: str) -> int:
+        return self._index(self._locations[number], f"location of {automaton}", location)
 
     def edge(self, number: int, automaton: Automaton, edge: Edge) -> GameEdge:
         """The table of one edge."""
@@ -261,8 +297,15 @@ def _max_constants(dim: int, automata: Sequence[GameAutomaton], edges: Sequence[
 
 
 def initial_state(game: Game) -> State:
-    """Where the game starts; all clocks are 0 there."""
+    """Where the game starts; for the clocks there see `start_zone`."""
     return State(tuple(automaton.initial for automaton in game.automata), game.initial_values)
+
+
+def start_zone(game: Game) -> Dbm:
+    """The clocks where the game starts."""
+    zone = Dbm.of(game.dim, game.start) if game.start else Dbm.zero(game.dim)
+    assert zone is not None, "compile_game rejects it"
+    return zone
 
 
 def invariant(game: Game, state: State) -> Tuple[Bound, ...]:

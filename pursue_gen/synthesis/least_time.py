@@ -12,8 +12,8 @@ import heapq
 from dataclasses import dataclass
 from typing import Dict, FrozenSet, List, Optional, Set, Tuple
 
-from pursue_gen.synthesis.dbm import constant
-from pursue_gen.synthesis.game import NO_CHANNEL, Game, GameEdge, initial_state
+from pursue_gen.synthesis.dbm import INF, constant
+from pursue_gen.synthesis.game import NO_CHANNEL, Game, GameEdge, initial_state, start_zone
 
 Fact = Tuple[str, int, int]
 """("at", automaton, location), ("is", variable, value) or ("heard", channel, 0)."""
@@ -23,7 +23,7 @@ Fact = Tuple[str, int, int]
 class _Step:
     """An edge in the relaxed problem: when all of the needs (any fact of each) are there, the facts of `gives` come.
 
-    It waits until `wait` if the game starts in its source, and for `dwell` after the source was entered; then comes the
+    It waits for `wait` if the game starts in its source, and for `dwell` after the source was entered; then comes the
     `delay` of a command.
     """
 
@@ -83,6 +83,8 @@ def _steps(game: Game) -> List[_Step]:
         if edge.source != edge.target:  # a loop makes nobody come sooner
             entering.setdefault((edge.automaton, edge.target), []).append(edge)
     # A command that an uncontrollable edge may receive need not be one.
+    first = start_zone(game)
+    most = [first.m[clock * game.dim] for clock in range(game.dim)]
     unsure = {edge.channel for edge in game.edges if not edge.sends and not edge.controllable}
     steps: List[_Step] = []
     for edge in game.edges:
@@ -97,7 +99,7 @@ def _steps(game: Game) -> List[_Step]:
         dwell = [c for clock, c in waits if all(clock in other.resets for other in before)]
         late = edge.sends and edge.controllable and edge.channel not in unsure
         source, needs, gives = _facts(edge)
-        wait = max([0] + [c for _, c in waits])
+        wait = max([0] + [c - constant(most[clock]) for clock, c in waits if most[clock] < INF])
         steps.append(_Step(source, needs, gives, wait, max([0] + dwell), game.delta if late else 0))
     return steps
 

@@ -102,11 +102,13 @@ def _tables(game: Game) -> Dict[str, Any]:
         "clocks": len(game.clocks),
         "delta": game.delta,
         "variables": list(game.initial_values),
+        "start": game.start,
         "goal": game.goal,
         "bad": game.bad,
         "automata": [
             {
                 "initial": automaton.initial,
+                "home": automaton.home,
                 "invariants": [[(clock, 0, bound) for clock, bound in location] for location in automaton.invariants],
                 "edges": [edge(k) for k in automaton.edges],
             }

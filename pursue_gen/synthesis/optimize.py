@@ -225,7 +225,8 @@ def scaled(network: Network, factor: int) -> Network:
     def automaton(one: Automaton) -> Automaton:
         return replace(one, locations=tuple(map(location, one.locations)), edges=tuple(map(edge, one.edges)))
 
-    return replace(network, automata=tuple(map(automaton, network.automata)))
+    start = tuple(replace(constraint, bound=constraint.bound * factor) for constraint in network.start)
+    return replace(network, automata=tuple(map(automaton, network.automata)), start=start)
 
 
 def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:

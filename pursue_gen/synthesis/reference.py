@@ -111,10 +111,6 @@ class _Fixpoint:
         self.rest[number] = self.rest[number].minus(new).reduced()
         self.push(self.arena.nodes[number].sources | {number})
 
-    def has_start(self) -> bool:
-        """True if the initial position is among what was found."""
-        return self.found[0].includes_zone(Dbm.zero(self.arena.game.dim))
-
     def usable(self, number: int, targets: List[Federation], spoilt: Federation) -> List[Tuple[Move, Federation]]:
         """Of each of the controller's moves, from where it leads into the targets however late within the delay.
 
@@ -186,7 +182,7 @@ class _Reach(_Fixpoint):
         """The fixpoint; after each round without a win, nodes that are not won get all their moves."""
         self._refresh(self.arena.explore())
         self._run()
-        while not self.has_start():
+        while not self._won():
             narrow = [k for k, node in enumerate(self.arena.nodes) if node.omitted and self.rest[k]]
             if not narrow:
                 break
@@ -196,9 +192,13 @@ class _Reach(_Fixpoint):
             self._refresh(self.arena.explore())
             self.push(narrow)
             self._run()
-        won = self.has_start()
+        won = self._won()
         found = sorted(self._pieces.items()) if won else []
         return Outcome(won, tuple((self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in found), self.stats())
+
+    def _won(self) -> bool:
+        """True if all of the start is won."""
+        return bool(self.found) and self.found[0].includes_zone(self.arena.start)
 
     def _refresh(self, changed: Set[int]) -> None:
         """Take in new nodes, and those in which more is reached: what was won there stays won."""
@@ -219,7 +219,7 @@ class _Reach(_Fixpoint):
 
     def _run(self) -> None:
         number = self.pop()
-        while number is not None and not self.has_start():
+        while number is not None and not self._won():
             if not is_bad(self.arena.game, self.arena.nodes[number].state):
                 self._evaluate(number)
             number = self.pop()
@@ -258,7 +258,7 @@ class _Safety(_Fixpoint):
         self._unforced: List[Federation] = []
 
     def solve(self) -> Outcome:
-        """The fixpoint, given up as soon as the initial position is lost."""
+        """The fixpoint, given up as soon as some of the start is lost."""
         arena = self.arena
         arena.explore()
         for k, node in enumerate(arena.nodes):
@@ -271,15 +271,18 @@ class _Safety(_Fixpoint):
         # What can be lost first is found from the end.
         self.push(reversed(range(len(arena.nodes))))
         number = self.pop()
-        while number is not None and not self.has_start():
+        while number is not None and not self._lost():
             danger, usable = self._look(number)
             lost = danger.down().minus(predt(_union(before for _, before in usable), danger))
             new = lost.intersect(self.rest[number]).reduced()
             if new:
                 self.grow(number, new)
             number = self.pop()
-        won = not self.has_start()
+        won = not self._lost()
         return Outcome(won, self._blocks() if won else (), self.stats())
+
+    def _lost(self) -> bool:
+        return not self.rest or not self.rest[0].includes_zone(self.arena.start)
 
     def _look(self, number: int) -> Tuple[Federation, List[Tuple[Move, Federation]]]:
         """E, where something bad is at hand, and where each of the controller's moves is safe."""

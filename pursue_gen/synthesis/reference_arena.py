@@ -12,7 +12,17 @@ from typing import Callable, Deque, Dict, Iterable, List, Optional, Sequence, Se
 
 from pursue_gen.synthesis.dbm import Dbm, complement
 from pursue_gen.synthesis.federation import Federation
-from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, invariant, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.game import (
+    Game,
+    JointMove,
+    State,
+    initial_state,
+    invariant,
+    is_bad,
+    is_goal,
+    joint_moves,
+    start_zone,
+)
 from pursue_gen.synthesis.limits import Watch
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
@@ -42,7 +52,10 @@ class Node:
 
 
 class Arena:
-    """The part of the game that is looked at; it grows by `explore` and `widen`. Node 0 is where the game starts."""
+    """The part of the game that is looked at; it grows by `explore` and `widen`. Node 0 is where the game starts.
+
+    There is none where an invariant does not hold at the start.
+    """
 
     def __init__(self, game: Game, watch: Watch, choose: Optional[Chooser] = None) -> None:
         self.game = game
@@ -52,7 +65,10 @@ class Arena:
         self._index: Dict[State, int] = {}
         self._waiting: Deque[int] = deque()
         self._queued: Set[int] = set()
-        self._enter(initial_state(game), Dbm.zero(game.dim))
+        self.start = start_zone(game)
+        within = Dbm.universe(game.dim).constrained_all(invariant(game, initial_state(game)))
+        if within is not None and within.includes(self.start):
+            self._enter(initial_state(game), self.start)
 
     def explore(self) -> Set[int]:
         """Follow the moves until nothing new is reached; returns the nodes in which more is reached than before."""

@@ -6,24 +6,10 @@ All bounds are exact (Fraction, in time units): a reaction delay of 1/10 gives b
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Optional, Tuple, Union
+from typing import Tuple, Union
 
+from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
-
-
-@dataclass(frozen=True)
-class Constraint:
-    """`left - right < bound` (strict) or `<= bound`; left or right None is the constant 0 (never both).
-
-    So `C <= 5` is (C, None, 5, False) and `1 < C` is (None, C, -1, True).
-    """
-
-    left: Optional[str]
-    right: Optional[str]
-    bound: Fraction
-    strict: bool
-
 
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""

@@ -88,8 +88,7 @@ def verify(
     prompt = reaction == 0 if prompt is None else prompt
     loop = ClosedLoop(network, objective, strategy, reaction, ranks)
     start = loop.arena.situation(loop.arena.initial).invariant
-    zero = Dbm.zero(loop.arena.dim)
-    if start is None or not start.includes(zero):
+    if start is None or not start.includes(loop.arena.start):
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
     watch = Watch(limits, progress, PROVING)
     try:
@@ -142,7 +141,7 @@ def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watc
     """What becomes of all plays when the strategy is played so; `exact`: forget nothing about the clocks."""
     loop.rules, loop.used = replace(loop.rules, prompt=prompt), set()
     search = _check_ends if loop.rules.must_end and loop.ranks is None else _check_all
-    return search(loop, (loop.arena.initial, Dbm.zero(loop.arena.dim)), exact, limit, watch)
+    return search(loop, (loop.arena.initial, loop.arena.start), exact, limit, watch)
 
 
 def _safe(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:

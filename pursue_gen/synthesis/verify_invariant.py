@@ -4,7 +4,7 @@ Plays are not followed. Each discrete state is looked at once, as if every point
 could be entered: from there time, commands (on their way, too) and all that the environment can do must lead to points
 that are covered again.
 
-Why that is enough: the game starts at a covered point, and from all covered points of a discrete state the closed loop
+Why that is enough: the game starts at covered points, and from all covered points of a discrete state the closed loop
 finds no failure and no step but to covered points, so by induction over the steps of a play each is taken from a
 covered point, and none fails. A play from one point is among those from all of them, so what the checker's walk through
 the reached points would find, it finds here; the reverse does not hold, as covered points need not be reached.
@@ -30,7 +30,7 @@ def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
     and only those are among what the loop then has as used.
     """
     start = loop.arena.initial
-    if outside(Dbm.zero(loop.arena.dim), loop.covered(start)):
+    if outside(loop.arena.start, loop.covered(start)):
         return None
     known: Dict[State, Set[Dbm]] = {start: set()}
     pending: Deque[State] = deque([start])

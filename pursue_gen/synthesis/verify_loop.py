@@ -36,7 +36,7 @@ class ClosedLoop:
         instant: Fraction = Fraction(0),
     ) -> None:
         """`instant`, in time units: the strategy is played promptly, as `verify_time.Rules` has it."""
-        scale = _common_denominator(strategy, reaction) * (instant.denominator if instant else INSTANTS)
+        scale = _common_denominator(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
         self.arena, self.strategy = Arena(network, scale), strategy
         self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
         self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
@@ -227,10 +227,11 @@ def _zones_of(block: Block) -> Iterator[Zone]:
         yield from command.zones
 
 
-def _common_denominator(strategy: Strategy, reaction: Fraction) -> int:
+def _common_denominator(network: Network, strategy: Strategy, reaction: Fraction) -> int:
     """What all bounds have to be multiplied by to be integers."""
     zones = (zone for block in strategy.blocks for zone in _zones_of(block))
     denominators = {reaction.denominator} | {c.bound.denominator for zone in zones for c in zone}
+    denominators |= {c.bound.denominator for c in network.start}
     scale = 1
     for d in denominators:
         scale = scale * d // gcd(scale, d)

@@ -12,7 +12,7 @@ from typing import Dict, Iterable, List, Optional, Set, Tuple
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.dbm import Dbm, raw
 from pursue_gen.synthesis.strategy import DiscreteState, Move
-from pursue_gen.tga.network import ClockBound, Edge, Guard, Location, Network
+from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
 
 State = Tuple[Tuple[str, ...], Tuple[int, ...]]
 """The location of every automaton and the value of every variable, in the network's order."""
@@ -58,6 +58,7 @@ class Arena:
         self.clock = {name: k + 1 for k, name in enumerate(network.clocks)}
         self.variable = {name: k for k, (name, _) in enumerate(network.variables)}
         self.initial: State = (tuple(a.initial for a in network.automata), tuple(v for _, v in network.variables))
+        self.start = self._start()
         self._locations: List[Dict[str, Location]] = [{loc.name: loc for loc in a.locations} for a in network.automata]
         self._edges: Dict[Tuple[int, str], List[Edge]] = {}
         for k, automaton in enumerate(network.automata):
@@ -65,6 +66,22 @@ class Arena:
                 self._edges.setdefault((k, edge.source), []).append(edge)
         self._situations: Dict[State, Situation] = {}
         self._refuse()
+
+    def _start(self) -> Dbm:
+        """The clocks at the start: 0, or what the network says."""
+        if not self.network.start:
+            return Dbm.zero(self.dim)
+        zone: Optional[Dbm] = Dbm.universe(self.dim)
+        for c in self.network.start:
+            i, j = (0 if name is None else self.clock.get(name, -1) for name in (c.left, c.right))
+            zone = None if zone is None or min(i, j) < 0 else zone.constrained(i, j, self._raw(c))
+        if zone is None:
+            hint = f"give bounds that the clocks {', '.join(self.clock)} can have together, all of them 0 or more"
+            raise PursueError([error("SYN106", "no values of the clocks satisfy the bounds at the start", hint=hint)])
+        return zone
+
+    def _raw(self, constraint: Constraint) -> int:
+        return raw(int(constraint.bound * self.scale), constraint.strict)
 
     def _refuse(self) -> None:
         for automaton in self.network.automata:

@@ -19,7 +19,7 @@ from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry
 from pursue_gen.synthesis.verify_moves import State
 from pursue_gen.synthesis.verify_time import Broken
 from pursue_gen.synthesis.verify_zones import with_neighbours
-from pursue_gen.tga.network import ClockBound, Kind, Location, Network, Objective
+from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
 
 INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units."""
@@ -32,19 +32,26 @@ LONGEST = 100_000
 
 
 def counting_clock(network: Network) -> Optional[str]:
-    """A clock of the network that no edge resets, so that it counts the time from the start."""
-    reset = {clock for automaton in network.automata for edge in automaton.edges for clock in edge.resets}
-    return next((clock for clock in network.clocks if clock not in reset), None)
+    """A clock of the network that is 0 at the start and that no edge resets, so that it counts the time from there."""
+    other = {clock for automaton in network.automata for edge in automaton.edges for clock in edge.resets}
+    if network.start:
+        other |= {clock for clock in network.clocks if _is_zero(clock) not in network.start}
+    return next((clock for clock in network.clocks if clock not in other), None)
+
+
+def _is_zero(clock: str) -> Constraint:
+    return Constraint(clock, None, Fraction(0), False)
 
 
 def with_counter(network: Network) -> Network:
-    """The network, with a clock that nothing resets if it has none."""
+    """The network, with a clock that counts from the start if it has none."""
     if counting_clock(network) is not None:
         return network
     name = "elapsed"
     while name in network.clocks:
         name += "_"
-    return replace(network, clocks=(*network.clocks, name))
+    start = (*network.start, _is_zero(name)) if network.start else ()
+    return replace(network, clocks=(*network.clocks, name), start=start)
 
 
 def with_deadline(network: Network, objective: Objective, bound: int) -> Network:
@@ -96,7 +103,7 @@ def worst_case(
 def _latest(loop: ClosedLoop, count: int, limit: int, watch: Watch) -> Optional[int]:
     """The largest value of the counting clock at the goal, breadth first."""
     latest = 0
-    start: Entry = (loop.arena.initial, Dbm.zero(loop.arena.dim))
+    start: Entry = (loop.arena.initial, loop.arena.start)
     passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
     pending: Deque[Entry] = deque([start])
     met = 1

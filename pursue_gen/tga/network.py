@@ -1,13 +1,15 @@
 """The value of the translation stage: a network of timed game automata over broadcast channels, and an objective.
 
-Clocks start at 0 and count time units. Integer variables carry what guards read. See the design of the game: one
-sending (or channel-less) edge moves, and with it every automaton that has an enabled receiving edge on that channel.
+Clocks start at 0, unless the network says otherwise, and count time units. Integer variables carry what guards read.
+See the design of the game: one sending (or channel-less) edge moves, and with it every automaton that has an enabled
+receiving edge on that channel.
 """
 
 from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Optional, Tuple
 
 
@@ -18,6 +20,20 @@ class ClockBound:
     clock: str
     op: str
     bound: int
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """`left - right < bound` (strict) or `<= bound`, exact, in time units; left or right None is the constant 0 (never
+    both).
+
+    So `C <= 5` is (C, None, 5, False) and `1 < C` is (None, C, -1, True).
+    """
+
+    left: Optional[str]
+    right: Optional[str]
+    bound: Fraction
+    strict: bool
 
 
 @dataclass(frozen=True)
@@ -77,22 +93,32 @@ class Location:
 
 @dataclass(frozen=True)
 class Automaton:
-    """One automaton (an agent, a rule, the states or an objective)."""
+    """One automaton (an agent, a rule, the states or an objective).
+
+    `home` is where it is when nothing has begun, "" for the initial location: a network may start in the middle of a
+    play, and searches like to know. It changes no verdict.
+    """
 
     name: str
     locations: Tuple[Location, ...]
     initial: str
     edges: Tuple[Edge, ...]
+    home: str = ""
 
 
 @dataclass(frozen=True)
 class Network:
-    """Automata in system order; clocks, variables (with first values) and broadcast channels as declared."""
+    """Automata in system order; clocks, variables (with first values) and broadcast channels as declared.
+
+    `start`: what is known of the clocks at the start; those that it does not name are anything >= 0. Empty: all are 0.
+    An objective is met only if it is met from every valuation in there.
+    """
 
     clocks: Tuple[str, ...]
     variables: Tuple[Tuple[str, int], ...]
     channels: Tuple[str, ...]
     automata: Tuple[Automaton, ...]
+    start: Tuple[Constraint, ...] = ()
 
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""

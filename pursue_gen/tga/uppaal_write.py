@@ -12,6 +12,7 @@ from collections import Counter
 from typing import Dict, Iterable, Iterator, List, Tuple
 from xml.sax.saxutils import escape, quoteattr
 
+from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 
 _HEADER = """<?xml version="1.0" encoding="utf-8"?>
@@ -26,7 +27,13 @@ _Point = Tuple[int, int]
 
 
 def write_network(network: Network, objective: Objective) -> str:
-    """The text of a network's file, with its objective as a query."""
+    """The text of a network's file, with its objective as a query.
+
+    Raises PursueError for a network whose clocks do not start at 0: UPPAAL's all do.
+    """
+    if network.start:
+        message = "UPPAAL has no way to write a network whose clocks do not start at 0"
+        raise PursueError([error("TGA030", message, hint="write the network of the scenario, from its beginning")])
     lines = [_HEADER, "<nta>", _tag("declaration", "\n".join(_declarations(network)), "\t")]
     ids = _ids(network)
     for automaton in network.automata:

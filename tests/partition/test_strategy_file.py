@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from fractions import Fraction
 from typing import List, Tuple
@@ -12,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.partition import SubStrategy, partition
-from pursue_gen.partition.strategy_file import render, render_cover, zone_text
+from pursue_gen.partition.strategy_data import cover_data, strategy_data, zone_text
+from pursue_gen.partition.strategy_file import render, render_cover
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Edge, Sync
@@ -105,6 +107,16 @@ def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
                 )
                 assert found["do"] == event_word(first.automaton, first.edge)
                 assert [read_zone(text) for text in found["when"]] == once(command.zones)
+
+
+@QUICK
+@given(random_strategies(), st.sampled_from((Fraction(0), TENTH, Fraction(1, 3), Fraction(1, 1000))))
+def test_files_hold_the_very_data_that_is_sent_when_plans_change(strategy: Strategy, reaction: Fraction) -> None:
+    for sub in partition(strategy, game(), AGENTS):
+        data = strategy_data(sub, reaction)
+        assert yaml.safe_load(render(sub, "game", "0.1.0", reaction)) == data == json.loads(json.dumps(data))
+    cover = cover_data(strategy)
+    assert yaml.safe_load(render_cover(strategy, "game", "0.1.0")) == cover == json.loads(json.dumps(cover))
 
 
 @QUICK

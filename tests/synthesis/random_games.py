@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
+from itertools import permutations
+from math import ceil
 from typing import List, Tuple
 
 from hypothesis import strategies as st
 
 from pursue_gen.synthesis.game import Game, compile_game
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
+from pursue_gen.tga.network import (
+    Automaton,
+    ClockBound,
+    Constraint,
+    Edge,
+    Guard,
+    Kind,
+    Location,
+    Network,
+    Objective,
+    Sync,
+    Test,
+)
 
 PLACES = ("l0", "l1", "l2")
 
@@ -24,6 +39,30 @@ def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> 
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
     kind = draw(st.sampled_from(kinds))
     return network, Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+
+
+@st.composite
+def started(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> Tuple[Network, Objective]:
+    """The same, started somewhere in the middle: any locations, a zone of clocks."""
+    network, objective = draw(networks(kinds, most_clocks))
+    automata = tuple(
+        replace(automaton, initial=draw(st.sampled_from(PLACES[:2])), home="l0") for automaton in network.automata
+    )
+    bounds = _start(draw, network.clocks)
+    return replace(network, variables=(("v", draw(st.integers(0, 1))),), automata=automata, start=bounds), objective
+
+
+def _start(draw: st.DrawFn, clocks: Tuple[str, ...]) -> Tuple[Constraint, ...]:
+    """Bounds that are around one of a few points, some of them beyond the constants of the games."""
+    point = {clock: Fraction(draw(st.sampled_from((0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 13))), 4) for clock in clocks}
+    bounds: List[Constraint] = []
+    for left, right in permutations((None, *clocks), 2):
+        value = point.get(left or "", Fraction(0)) - point.get(right or "", Fraction(0))
+        room = draw(st.integers(0, 3))
+        if room < 3:
+            top = Fraction(ceil(value)) + max(0, room - 1)
+            bounds.append(Constraint(left, right, top, strict=value < top and draw(st.booleans())))
+    return tuple(bounds) or (Constraint(None, clocks[0], Fraction(0), False),)
 
 
 @st.composite

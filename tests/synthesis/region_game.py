@@ -7,9 +7,10 @@ Time takes a region through a finite sequence of regions, so the timed predecess
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from typing import Dict, Iterator, List, Optional, Set, Tuple
 
-from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.synthesis.dbm import Dbm, constant
 from pursue_gen.synthesis.game import (
     Bound,
     Game,
@@ -20,6 +21,7 @@ from pursue_gen.synthesis.game import (
     is_bad,
     is_goal,
     joint_moves,
+    start_zone,
 )
 from pursue_gen.tga.network import Kind
 
@@ -34,8 +36,13 @@ class RegionGame:
         self.game = game
         self._beyond = max(game.max_constants) + game.delta + 1
         self._moves: Dict[State, List[JointMove]] = {}
-        self.start: Position = (initial_state(game), self._representative((Fraction(0),) * len(game.clocks)))
+        self.starts = self._starts()
         self.positions = self._reachable()
+
+    def won(self, winning: Set[Position]) -> bool:
+        """True if the controller wins wherever the game starts."""
+        bounds = invariant(self.game, initial_state(self.game))
+        return all(start in winning and self._holds(start[1], bounds) for start in self.starts)
 
     def winning(self) -> Set[Position]:
         """The positions from which the controller wins."""
@@ -153,9 +160,20 @@ class RegionGame:
     def _shift(self, region: Region, time: Fraction) -> Region:
         return tuple(x if x >= self._beyond else x + time for x in region)
 
+    def _starts(self) -> List[Position]:
+        """Where the game starts: of all regions those in the zone."""
+        zone, count = start_zone(self.game), len(self.game.clocks)
+        if not self.game.start:
+            return [(initial_state(self.game), (Fraction(0),) * count)]
+        # Beyond all constants the zone may still tell values apart: two more units, and all above is alike.
+        largest = 2 + max([self._beyond, *(abs(constant(bound)) for _, _, bound in self.game.start)])
+        values = [Fraction(k, count + 1) for k in range((count + 1) * largest + 1)]
+        points = (point for point in product(values, repeat=count) if zone.contains(point))
+        return [(initial_state(self.game), region) for region in sorted({self._representative(p) for p in points})]
+
     def _reachable(self) -> Set[Position]:
-        met: Set[Position] = {self.start}
-        waiting = [self.start]
+        met: Set[Position] = set(self.starts)
+        waiting = list(self.starts)
         while waiting:
             position = waiting.pop()
             followers = list(self.path(position))

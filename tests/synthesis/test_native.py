@@ -42,7 +42,7 @@ def is_right(game: Game, outcome: native.Outcome) -> None:
     """The verdict is that of regions, what is called won is, and commands are usable where they are given."""
     regions = RegionGame(game)
     winning = regions.winning()
-    assert outcome.won == (regions.start in winning)
+    assert outcome.won == regions.won(winning)
     for locations, values, pieces in outcome.blocks:
         state = State(locations, values)
         zones = [(Dbm(game.dim, matrix), action) for matrix, action in pieces]

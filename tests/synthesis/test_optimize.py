@@ -188,7 +188,7 @@ KINDS = (Kind.REACH, Kind.REACH_WHILE_SAFE)
 def _won_by_regions(network: Network, objective: Objective, reaction: Fraction, deadline: Optional[int]) -> bool:
     game = network if deadline is None else with_deadline(with_counter(network), objective, deadline)
     regions = RegionGame(compile_game(game, objective, reaction))
-    return regions.start in regions.winning()
+    return regions.won(regions.winning())
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -181,7 +181,7 @@ def _agrees(game: Game, outcomes: List[Outcome]) -> None:
     regions = RegionGame(game)
     winning = regions.winning()
     for outcome in outcomes:
-        assert outcome.won == (regions.start in winning)
+        assert outcome.won == regions.won(winning)
         for state, pieces in outcome.blocks:
             whole = Federation(tuple(zone for zone, _ in pieces))
             moves = {move.edges: move for move in joint_moves(game, state)}

@@ -58,14 +58,23 @@ class Arena {
   protected:
     // --- discrete states -------------------------------------------------------------------------------------------
 
-    // Enters the initial state; false: its invariants do not hold.
+    // The clocks at the start.
+    Z beginning() const {
+        if (game_.start.empty()) return origin<Z>(game_.clocks);
+        Z z = universe<Z>();
+        for (const Bound& b : game_.start)
+            if (!within(b, z)) throw std::invalid_argument("no clock values satisfy the bounds at the start");
+        return z;
+    }
+
+    // Enters the initial state; false: its invariants do not hold for all clocks at the start.
     bool start() {
         Discrete d;
         for (const auto& a : game_.automata) d.push_back(a.initial);
         d.insert(d.end(), game_.variables.begin(), game_.variables.end());
         Node<Z>& n = nodes_[node(d)];
-        n.hull = origin<Z>(game_.clocks);
-        n.reached = invariant(n, n.hull);
+        const Z start = n.hull = beginning();
+        n.reached = invariant(n, n.hull) && includes(n.hull, start);
         if (!n.reached) return false;
         elapse(n, n.hull);
         n.rest = {n.hull};

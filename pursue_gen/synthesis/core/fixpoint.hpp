@@ -31,6 +31,9 @@ class Fixpoint : public Arena<Z> {
     // Looks at a state again; true: more of it is decided.
     virtual bool evaluate(Node<Z>& n) = 0;
 
+    // Whether the start is decided, with this zone of clocks and what is not decided of its state.
+    virtual bool decided(const Federation<Z>& rest, const Z& start) const = 0;
+
     virtual const Federation<Z>& winning(Node<Z>& n) const = 0;
     virtual const Federation<Z>& losing(Node<Z>& n) const = 0;
 
@@ -41,9 +44,9 @@ class Fixpoint : public Arena<Z> {
         waiting_.emplace(n.travellers, order_++, k);
     }
 
-    // Until the initial position is decided (true), nothing changes any more, or the work is done.
+    // Until the start is decided (true), nothing changes any more, or the work is done.
     bool settle(double work = std::numeric_limits<double>::infinity()) {
-        const Z zero = origin<Z>(game_.clocks);
+        const Z start = this->beginning();
         for (work_ = 0; !waiting_.empty() && work_ < work;) {
             const int k = std::get<2>(waiting_.top());
             waiting_.pop();
@@ -53,9 +56,9 @@ class Fixpoint : public Arena<Z> {
             ++work_;
             if (!evaluate(nodes_[k])) continue;
             for (int p : nodes_[k].parents) wake(p);
-            if (k == 0 && !contains(nodes_[0].rest, zero)) return true;
+            if (k == 0 && decided(nodes_[0].rest, start)) return true;
         }
-        return !contains(nodes_[0].rest, zero);
+        return decided(nodes_[0].rest, start);
     }
 
     bool settled() const { return waiting_.empty(); }

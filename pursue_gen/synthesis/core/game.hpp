@@ -34,7 +34,7 @@ struct Edge {
 
 struct Automaton {
     std::vector<std::vector<Bound>> invariants;  // per location
-    int initial;
+    int initial, home;  // where it starts; where it is when nothing has begun
     std::vector<Edge> edges;
 };
 
@@ -49,6 +49,7 @@ struct Game {
     int clocks;
     wide_t delta;
     std::vector<int> variables;
+    std::vector<Bound> start;  // of the clocks at the start; none: they are 0
     std::vector<Automaton> automata;
     Place goal, bad;
 };

@@ -36,12 +36,14 @@ Game read_game(const py::dict& in) {
     game.clocks = in["clocks"].cast<int>();
     game.delta = in["delta"].cast<wide_t>();
     game.variables = in["variables"].cast<std::vector<int>>();
+    game.start = bounds(in["start"]);
     game.goal = place(in["goal"]);
     game.bad = place(in["bad"]);
     for (const auto& a : in["automata"]) {
         Automaton automaton;
         for (const auto& location : a["invariants"]) automaton.invariants.push_back(bounds(location));
         automaton.initial = a["initial"].cast<int>();
+        automaton.home = a["home"].cast<int>();
         for (const auto& e : a["edges"]) {
             Edge edge;
             edge.id = e["id"].cast<int>();
@@ -122,6 +124,7 @@ bool fits(const Game& game) {
     const auto note = [&](const std::vector<Bound>& bounds) {
         for (const Bound& b : bounds) largest = std::max(largest, std::abs(b.raw >> 1) + 1);
     };
+    note(game.start);
     for (const Automaton& automaton : game.automata) {
         for (const auto& location : automaton.invariants) note(location);
         for (const Edge& edge : automaton.edges) note(edge.guard);

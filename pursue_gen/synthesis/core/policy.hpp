@@ -50,7 +50,7 @@ class Policy {
         if (ends(d, joint)) return true;
         if (std::find(wished.begin(), wished.end(), joint.edges[0]) == wished.end()) return false;
         // One errand at a time.
-        const auto under_way = [&](int a) { return d[a] != game_.automata[a].initial; };
+        const auto under_way = [&](int a) { return d[a] != game_.automata[a].home; };
         const Discrete target = joint.target(d);
         const auto begun = [&](int a) { return !under_way(a) && target[a] != d[a]; };
         return std::none_of(errands_.begin(), errands_.end(), under_way) ||
@@ -90,11 +90,11 @@ class Policy {
         std::vector<Place> out;
         if (!at(d, duty_done())) out.push_back(duty_done());
         for (int a : orders_)
-            if (d[a] != game_.automata[a].initial) out.push_back({a, game_.automata[a].initial});
+            if (d[a] != game_.automata[a].home) out.push_back({a, game_.automata[a].home});
         return out;
     }
 
-    Place duty_done() const { return {game_.bad.automaton, game_.automata[game_.bad.automaton].initial}; }
+    Place duty_done() const { return {game_.bad.automaton, game_.automata[game_.bad.automaton].home}; }
 
     static void append(std::vector<int>& a, const std::vector<int>& b) { a.insert(a.end(), b.begin(), b.end()); }
 
@@ -103,10 +103,10 @@ class Policy {
         return std::none_of(edges.begin(), edges.end(), [](const Edge& e) { return e.channel < 0 || e.sends; });
     }
 
-    // Whether only the controller takes the automaton out of its initial location.
+    // Whether only the controller takes the automaton out of its home.
     bool begun_by_controller(int a) const {
         for (const Edge& e : game_.automata[a].edges)
-            if (e.source == game_.automata[a].initial && e.target != e.source)
+            if (e.source == game_.automata[a].home && e.target != e.source)
                 for (const Automaton& other : game_.automata)
                     for (const Edge& sender : other.edges)
                         if (sender.channel == e.channel && sender.sends && !sender.controllable) return false;

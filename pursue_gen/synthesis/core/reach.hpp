@@ -28,6 +28,11 @@ class Reach : public Fixpoint<Z> {
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_;
 
+    // All of it is won.
+    bool decided(const Federation<Z>& rest, const Z& start) const override {
+        return intersection(rest, Federation<Z>{start}).empty();
+    }
+
     const Federation<Z>& winning(Node<Z>& n) const override { return this->gathered(n); }
     const Federation<Z>& losing(Node<Z>& n) const override { return n.rest; }
 

@@ -98,7 +98,7 @@ class RelaxedPlanner {
         }
         step.effects.push_back(fact(automaton, edge.target));
         if (automaton == game_.bad.automaton && edge.source != edge.target) {
-            const int rest = game_.automata[automaton].initial;
+            const int rest = game_.automata[automaton].home;
             if (edge.target == rest) step.effects.push_back(fact(DUTY_DONE.automaton, DUTY_DONE.location));
             if (edge.source == rest) step.effects.push_back(fact(DUTY_COME.automaton, DUTY_COME.location));
         }

@@ -110,6 +110,9 @@ class Safety : public Fixpoint<Z> {
         return out;
     }
 
+    // Some of it is lost.
+    bool decided(const Federation<Z>& rest, const Z& start) const override { return !contains(rest, start); }
+
     const Federation<Z>& winning(Node<Z>& n) const override { return n.rest; }
     const Federation<Z>& losing(Node<Z>& n) const override { return this->gathered(n); }
 

@@ -1,0 +1,75 @@
+"""What the nodes of a mission are told of a strategy, as plain data: in YAML files, and in JSON where plans change.
+
+The format is described with the run time.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, Dict, Iterable, List, Union
+
+from pursue_gen.partition.split import SubStrategy
+from pursue_gen.synthesis.plan_text import constraint_texts, number_text
+from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
+from pursue_gen.tga.words import event_word
+
+
+def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
+    """What one controller does, and the delay (time units) that the strategy allows a command.
+
+    Bounds of zones are in time units: decimals where that is exact, else fractions.
+    """
+    return {
+        "format": 1,
+        "controller": sub.controller,
+        "commands_agents": list(sub.agents),
+        "reaction": number(reaction),
+        "strategy": [
+            {"state": _state(state), "commands": [_command(command) for command in commands]}
+            for state, commands in sub.blocks
+        ],
+    }
+
+
+def cover_data(strategy: Strategy) -> Dict[str, Any]:
+    """For each state the zones in which the strategy says something, wait or command."""
+    cover = []
+    for block in strategy.blocks:
+        zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
+        cover.append({"state": _state(block.state), "zones": _zones(zones)})
+    return {"format": 1, "cover": cover}
+
+
+def number(value: Fraction) -> Union[int, float, str]:
+    """The number as readers of YAML and JSON have it: a fraction that is no decimal stands as text, `1/3`."""
+    text = number_text(value)
+    return text if "/" in text else float(text) if "." in text else int(text)
+
+
+def _command(command: Command) -> Dict[str, Any]:
+    first = command.moves[0]
+    return {
+        "do": event_word(first.automaton, first.edge),
+        "agent": first.automaton,
+        "from": first.edge.source,
+        "to": first.edge.target,
+        "when": _zones(command.zones),
+    }
+
+
+def _state(state: DiscreteState) -> Dict[str, Union[str, int]]:
+    """Where every automaton is, and the variables that do not follow from that: all but the `P<automaton>`."""
+    follows = {f"P{automaton}" for automaton, _ in state.locations}
+    parts: Dict[str, Union[str, int]] = dict(state.locations)
+    parts.update((name, value) for name, value in state.values if name not in follows)
+    return parts
+
+
+def _zones(zones: Iterable[Zone]) -> List[str]:
+    """The zones' texts, each once."""
+    return list(dict.fromkeys(zone_text(zone) for zone in zones))
+
+
+def zone_text(zone: Zone) -> str:
+    """The zone as comparisons joined by `&&`, `always` for the one without any."""
+    return " && ".join(constraint_texts(zone, space=" ")) or "always"
