@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import shlex
 import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Optional, TextIO
@@ -41,6 +42,11 @@ def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> 
                 sources[file] = _source(file)
             source = sources[file]
         print(_painted(diagnostic, render(diagnostic, source), out), file=out)
+
+
+def quoted(path: Path) -> str:
+    """The path as a shell takes it."""
+    return shlex.quote(str(path))
 
 
 def count(number: int, noun: str) -> str:
@@ -93,8 +99,8 @@ def _internal(problem: Exception) -> int:
 
 def _source(file: str) -> Optional[str]:
     """The text that a place is in; None where it cannot be shown."""
-    try:
-        return Path(file).read_text(encoding="utf-8-sig")
+    try:  # a pipe has been read, and would not give its text again
+        return Path(file).read_text(encoding="utf-8-sig") if Path(file).is_file() else None
     except (OSError, ValueError):
         return None
 

@@ -7,7 +7,11 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import Any, Dict, Iterable, Optional, Tuple
+from functools import lru_cache
+from typing import Any, Dict, Iterable, List, Optional, Tuple
+
+_WIDEST = 160
+"""Letters of a line that a message shows."""
 
 
 class Severity(enum.Enum):
@@ -77,15 +81,31 @@ def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:
     span = diagnostic.span
     place = f"{span.file}:{span.line}:{span.column}: " if span else ""
     lines = [f"{place}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
-    source_lines = source.splitlines() if source is not None else []
+    source_lines = _lines(source) if source is not None else ()
     if span and 1 <= span.line <= len(source_lines):
-        text = source_lines[span.line - 1]
-        width = span.end_column - span.column if span.end_line == span.line else len(text) - span.column + 1
-        margin = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1])
-        lines += [f"    {text}", f"    {margin}{'^' * max(1, width)}"]
+        lines += _excerpt(source_lines[span.line - 1], span)
     if diagnostic.hint:
         lines.append(f"    help: {diagnostic.hint}")
     return "\n".join(lines)
+
+
+@lru_cache(maxsize=2)
+def _lines(source: str) -> Tuple[str, ...]:
+    """The lines as the readers of all stages count them."""
+    return tuple(source.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
+
+
+def _excerpt(text: str, span: Span) -> List[str]:
+    """The line, or the part of a very long one, with carets under the place; what cannot be seen becomes a sign."""
+    start = max(0, span.column - 1 - _WIDEST // 2) if len(text) > _WIDEST else 0
+    column = span.column - start
+    width = span.end_column - span.column if span.end_line == span.line else len(text) - span.column + 1
+    before, behind = "…" * (start > 0), "…" * (start + _WIDEST < len(text))
+    text = text[start : start + _WIDEST]
+    shown = "".join(c if c == "\t" or c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    margin = " " * len(before) + "".join("\t" if c == "\t" else " " for c in text[: column - 1])
+    carets = "^" * max(1, min(width, len(text) - column + 1))
+    return [f"    {before}{shown}{behind}", f"    {margin}{carets}"]
 
 
 def as_json(diagnostic: Diagnostic) -> Dict[str, Any]:

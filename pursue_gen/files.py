@@ -24,23 +24,28 @@ def read_text(file: Path, what: str) -> str:
 
 
 def write_texts(texts: Mapping[Path, str]) -> None:
-    """Writes all the files, making their folders; none is replaced before all are on the disk.
+    """Writes all the files as UTF-8, making their folders; none is replaced before all are on the disk.
 
     Raises PursueError (exit status 2) where that cannot be.
     """
+    write_bytes({file: text.encode("utf-8") for file, text in texts.items()})
+
+
+def write_bytes(contents: Mapping[Path, bytes]) -> None:
+    """As `write_texts`, with files that are no texts."""
     staged: List[Tuple[str, Path]] = []
     try:
-        for file, text in texts.items():
+        for file, content in contents.items():
             if file.is_dir():
                 raise IsADirectoryError(None, "it is a folder")
             if file.exists() and not file.is_file():  # a pipe or /dev/stdout: nothing to replace
-                file.write_text(text, encoding="utf-8")
+                file.write_bytes(content)
                 continue
             file.parent.mkdir(parents=True, exist_ok=True)
             handle, name = tempfile.mkstemp(prefix=f".{file.name}.", dir=str(file.parent))
             staged.append((name, file.resolve()))
-            with open(handle, "w", encoding="utf-8") as stream:
-                stream.write(text)
+            with open(handle, "wb") as stream:
+                stream.write(content)
             os.chmod(name, 0o666 & ~_umask())
         while staged:
             os.replace(*staged[0])

@@ -2,65 +2,84 @@
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Set, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import refs_of
-from pursue_gen.language.scenario import Agent, Choice, Event, Ref, Rule, RuleBody, Scenario
+from pursue_gen.language.scenario import Agent, Choice, Dependency, Event, Ref, Rule, RuleBody, Scenario
+
+_SOME = 5  # events that a message lists
 
 
-def reachable(scenario: Scenario, agent: Agent) -> FrozenSet[str]:
-    """The POIs where an agent can be: those connected with its start; its start alone if it is not mobile."""
-    start = agent.location.name
-    return component(scenario, start) if agent.mobile is not None else frozenset({start})
+def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
+    """For each POI those that are connected with it, itself included; connected ones share one set."""
+    near: Dict[str, List[str]] = {poi.name: [] for poi in scenario.pois}
+    for way in scenario.connections:
+        near.setdefault(way.a, []).append(way.b)
+        near.setdefault(way.b, []).append(way.a)
+    connected: Dict[str, FrozenSet[str]] = {}
+    for start in near:
+        if start in connected:
+            continue
+        found, open_ = {start}, [start]
+        while open_:
+            for other in near[open_.pop()]:
+                if other not in found:
+                    found.add(other)
+                    open_.append(other)
+        shared = frozenset(found)
+        connected.update((name, shared) for name in shared)
+    return connected
 
 
 def component(scenario: Scenario, start: str) -> FrozenSet[str]:
     """The POIs that are connected with one of them, itself included."""
-    found, open_ = {start}, [start]
-    while open_:
-        here = open_.pop()
-        for way in scenario.connections:
-            for near, far in ((way.a, way.b), (way.b, way.a)):
-                if near == here and far not in found:
-                    found.add(far)
-                    open_.append(far)
-    return frozenset(found)
+    return components(scenario).get(start, frozenset({start}))
+
+
+def reachable(agent: Agent, connected: Mapping[str, FrozenSet[str]]) -> FrozenSet[str]:
+    """The POIs where an agent can be: those connected with its start; its start alone if it is not mobile."""
+    alone = frozenset({agent.location.name})
+    return connected.get(agent.location.name, alone) if agent.mobile is not None else alone
+
+
+_Part = Tuple[Agent, Ref]
+"""An agent, and where it names an event."""
 
 
 def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
     """Events that nobody can do, that lack a partner, or that are out of an agent's reach."""
-    where = {agent.name: reachable(scenario, agent) for agent in scenario.agents}
+    connected = components(scenario)
+    where = {agent.name: reachable(agent, connected) for agent in scenario.agents}
+    able, reacting = _parts(scenario, "can_do"), _parts(scenario, "reacts_to")
     for event in scenario.events:
-        doers = _doers(scenario, event)
-        partners = [agent for agent in scenario.agents if _names(agent.reacts_to, event)]
+        doers, partners = able.get(event.name, []), reacting.get(event.name, [])
         if not doers:
             hint = f"give it to an agent: can_do {event.name}, or delete the event"
             yield error("PML150", f"nobody can do {event.name}", event.span, hint)
-        for agent in doers:
-            yield from _reach(agent, event, where[agent.name])
+        for agent, ref in doers:
+            yield from _reach(agent, ref, event, where[agent.name])
         if event.collaborative:
-            yield from _partners(event, doers, partners, where)
+            yield from _partners(event, [a for a, _ in doers], [a for a, _ in partners], where)
         else:
-            for agent in partners:
-                ref = next(ref for ref in agent.reacts_to if ref.name == event.name)
+            for agent, ref in partners:
                 message = f"{event.name} is not collaborative: it does not wait for {agent.name} to react to it"
                 hint = f'write event "{event.name}" collaborative …, or delete it behind reacts_to'
                 yield warning("PML152", message, ref.span, hint)
 
 
-def _names(refs: Tuple[Ref, ...], event: Event) -> bool:
-    return any(ref.name == event.name for ref in refs)
+def _parts(scenario: Scenario, field: str) -> Dict[str, List[_Part]]:
+    """For each event the agents that name it behind can_do (or reacts_to), each once."""
+    parts: Dict[str, List[_Part]] = {}
+    for agent in scenario.agents:
+        for name, ref in {ref.name: ref for ref in reversed(getattr(agent, field))}.items():
+            parts.setdefault(name, []).append((agent, ref))
+    return parts
 
 
-def _doers(scenario: Scenario, event: Event) -> List[Agent]:
-    return [agent for agent in scenario.agents if _names(agent.can_do, event)]
-
-
-def _reach(agent: Agent, event: Event, where: FrozenSet[str]) -> Iterator[Diagnostic]:
+def _reach(agent: Agent, ref: Ref, event: Event, where: FrozenSet[str]) -> Iterator[Diagnostic]:
     if event.location is None or event.location.name in where:
         return
-    ref = next(ref for ref in agent.can_do if ref.name == event.name)
     place, start = event.location.name, agent.location.name
     if agent.mobile is None:
         message = f"{agent.name} stays in {start} and can never do {event.name} in {place}"
@@ -74,25 +93,86 @@ def _reach(agent: Agent, event: Event, where: FrozenSet[str]) -> Iterator[Diagno
 def _partners(
     event: Event, doers: List[Agent], partners: List[Agent], where: Mapping[str, FrozenSet[str]]
 ) -> Iterator[Diagnostic]:
-    pairs = [(doer, other) for doer in doers for other in partners if doer.name != other.name]
-    if not partners or (doers and not pairs):
+    names = {agent.name for agent in partners}
+    alone = len(doers) == 1 and names == {doers[0].name}
+    if not partners or alone:
         message = f"{event.name} is collaborative, but nobody {'else ' if partners else ''}reacts to it"
         hint = f"give another agent reacts_to {event.name}, or delete collaborative"
         yield error("PML151", message, event.span, hint)
         return
-    for doer in doers:
-        if any(doer.name == other.name for other in partners):
-            message = f"{doer.name} both does {event.name} and reacts to it: it would be its own partner"
-            hint = f"delete {event.name} behind its can_do or its reacts_to"
-            yield error("PML155", message, doer.span, hint)
-    places = frozenset([event.location.name]) if event.location is not None else None
-    for doer, other in pairs:
-        common = where[doer.name] & where[other.name]
-        if common if places is None else common & places:
-            return
-    if pairs:
+    both = [agent for agent in doers if agent.name in names]
+    for agent in both:
+        message = f"{agent.name} both does {event.name} and reacts to it: it would be its own partner"
+        hint = f"delete {event.name} behind its can_do or its reacts_to"
+        yield error("PML155", message, agent.span, hint)
+    if both or not doers:
+        return  # who meets whom is clear only when that is mended
+    theirs, others = _places(doers, where), _places(partners, where)
+    place = event.location.name if event.location is not None else None
+    meet = not theirs.isdisjoint(others) if place is None else place in theirs and place in others
+    if not meet:
         message = f"{event.name} can never happen: those who do it and those who react to it never get to one place"
         yield error("PML154", message, event.span, "connect their places, or let them start where they can meet")
+
+
+def _places(agents: List[Agent], where: Mapping[str, FrozenSet[str]]) -> FrozenSet[str]:
+    """The POIs where one of the agents can be."""
+    places = {where[agent.name] for agent in agents}  # most often one set, which is large
+    return frozenset().union(*places) if len(places) > 1 else next(iter(places))
+
+
+class _Course:
+    """What the rules and dependencies of a scenario say of each event, looked up by its name."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.able = {ref.name for agent in scenario.agents for ref in agent.can_do}
+        self.waits: Dict[str, List[Tuple[Rule, FrozenSet[str]]]] = {}
+        """For each event the rules that name it, with the events after which it is its turn; none: at the start."""
+        for rule in scenario.rules:
+            for name, before in predecessors(rule).items():
+                self.waits.setdefault(name, []).append((rule, before))
+        self.needs: Dict[str, List[Dependency]] = {}
+        for dependency in scenario.dependencies:
+            self.needs.setdefault(dependency.event.name, []).append(dependency)
+        self.states = {state.name: state for state in reversed(scenario.states)}
+
+    def setters(self, dependency: Dependency) -> Optional[FrozenSet[str]]:
+        """The events that give the state the value that is needed; None: it has it at the start, or is unknown."""
+        state = self.states.get(dependency.state.name)
+        if state is None or state.initially == dependency.value:
+            return None
+        return frozenset(ref.name for ref in (state.true_if if dependency.value else state.false_if))
+
+    def conditions(self, name: str) -> List[FrozenSet[str]]:
+        """Of each of these sets, one event has to happen before this one can."""
+        needed = [self.setters(dependency) for dependency in self.needs.get(name, ())]
+        return [before for _, before in self.waits.get(name, ()) if before] + [s for s in needed if s is not None]
+
+    def possible(self) -> FrozenSet[str]:
+        """The events that may happen if whatever once was possible stays possible: those missing never can."""
+        found: Set[str] = set()
+        waiting = {name: self.conditions(name) for name in self.able}
+        wakes: Dict[str, List[str]] = {}
+        for name, conditions in waiting.items():
+            for event in frozenset().union(*conditions):
+                wakes.setdefault(event, []).append(name)
+        open_ = list(waiting)
+        while open_:
+            name = open_.pop()
+            if name not in found and all(not condition.isdisjoint(found) for condition in waiting[name]):
+                found.add(name)
+                open_ += wakes.get(name, ())
+        return frozenset(found)
+
+    def why_not(self, name: str, possible: FrozenSet[str]) -> str:
+        """Why an event is not possible, in half a sentence."""
+        if name not in self.able:
+            return f"nobody can do {name}"
+        for rule, before in self.waits.get(name, ()):
+            if before and before.isdisjoint(possible):
+                names = " or ".join(sorted(before)[:_SOME])
+                return f"{name} waits for {names} in the rule {rule.name}, and that can never happen before it"
+        return f"{name} waits for a state that never has the value it needs"
 
 
 def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -108,40 +188,20 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             seen.add(ref.name)
     if not sound:
         return
-    possible = possible_events(scenario)
+    course = _Course(scenario)
+    possible = course.possible()
     for rule in scenario.rules:
         if not _can_turn(rule.body, possible):
             stuck = next(ref for ref in refs_of(rule.body) if ref.name not in possible)
-            message = f"the rule {rule.name} can never turn: {_why(scenario, stuck.name, possible)}"
+            message = f"the rule {rule.name} can never turn: {course.why_not(stuck.name, possible)}"
             yield error("PML161", message, stuck.span, "change the order, or take the event out of the rule")
     for dependency in scenario.dependencies:
-        if not _attainable(scenario, dependency.state.name, dependency.value, possible):
+        setters = course.setters(dependency)
+        if setters is not None and setters.isdisjoint(possible):
             value = "true" if dependency.value else "false"
             message = f"{dependency.event.name} can never happen: {dependency.state.name} never becomes {value}"
             hint = f"name an event that can happen behind {value}_if of {dependency.state.name}, or start it as {value}"
             yield error("PML162", message, dependency.span, hint)
-
-
-def possible_events(scenario: Scenario) -> FrozenSet[str]:
-    """The events that may happen if whatever once was possible stays possible: those that are missing never can."""
-    turns = [predecessors(rule) for rule in scenario.rules]
-    able = [event.name for event in scenario.events if _doers(scenario, event)]
-    possible: Set[str] = set()
-    while True:
-        more = {
-            name
-            for name in able
-            if name not in possible
-            and all(name not in turn or not turn[name] or turn[name] & possible for turn in turns)
-            and all(
-                dependency.event.name != name
-                or _attainable(scenario, dependency.state.name, dependency.value, frozenset(possible))
-                for dependency in scenario.dependencies
-            )
-        }
-        if not more:
-            return frozenset(possible)
-        possible |= more
 
 
 def predecessors(rule: Rule) -> Dict[str, FrozenSet[str]]:
@@ -164,28 +224,8 @@ def predecessors(rule: Rule) -> Dict[str, FrozenSet[str]]:
     return {name: frozenset() if name in starts else frozenset(names) for name, names in before.items()}
 
 
-def _attainable(scenario: Scenario, state_name: str, value: bool, possible: FrozenSet[str]) -> bool:
-    for state in scenario.states:
-        if state.name == state_name:
-            setters = state.true_if if value else state.false_if
-            return state.initially == value or any(ref.name in possible for ref in setters)
-    return True  # an unknown state is reported as that
-
-
 def _can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:
     if isinstance(body, Ref):
         return body.name in possible
     first, second = _can_turn(body.first, possible), _can_turn(body.second, possible)
     return first or second if isinstance(body, Choice) else first and second
-
-
-def _why(scenario: Scenario, name: str, possible: FrozenSet[str]) -> str:
-    """Why an event is not possible, in half a sentence."""
-    if not any(ref.name == name for agent in scenario.agents for ref in agent.can_do):
-        return f"nobody can do {name}"
-    for rule in scenario.rules:
-        waits_for = predecessors(rule).get(name, frozenset())
-        if waits_for and not waits_for & possible:
-            names = " or ".join(sorted(waits_for))
-            return f"{name} waits for {names} in the rule {rule.name}, and that can never happen before it"
-    return f"{name} waits for a state that never has the value it needs"

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
-from pursue_gen.language.behaviour import check_events, check_rules, component
+from pursue_gen.language.behaviour import check_events, check_rules, components
+from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
+from pursue_gen.language.syntax import MOST_FINDINGS, too_many
+
+_OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
+"""What can be said only of a scenario that could be read as a whole."""
 
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
@@ -29,14 +35,23 @@ def check(scenario: Scenario) -> Tuple[Diagnostic, ...]:
 
 
 def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
-    """Every finding about a text that was read; only those about its syntax where there are errors in that."""
-    scenario = reading.scenario
-    if scenario is None:
-        return reading.diagnostics
+    """Every finding about a text that was read.
+
+    Where statements could not be read, the others are looked at as far as that makes sense: what seems to be missing
+    may stand in one of those.
+    """
+    scenario = reading.scenario if reading.scenario is not None else reading.partial
     findings: List[Diagnostic] = list(reading.diagnostics)
-    for part in (check_names, check_references, _numbers, _connections, _agents, _objectives, _order):
+    if scenario is None or {f.code for f in findings} & {"PML003", "PML018"}:
+        return reading.diagnostics
+    whole = reading.scenario is not None
+    findings += check_names(scenario)
+    findings += check_references(scenario, reading.lost)
+    for part in (_numbers, _connections, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
+    if not whole:
+        return _told(in_order(f for f in findings if f.code not in _OF_THE_WHOLE))
     if not codes & {"PML103", "PML104"}:  # the rest stands on names that mean one thing
         doubtful = _doubtful(scenario) if "PML110" in codes else frozenset()
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
@@ -44,7 +59,16 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_rules(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
-    return in_order(findings)
+    return _told(in_order(findings))
+
+
+def _told(findings: Tuple[Diagnostic, ...]) -> Tuple[Diagnostic, ...]:
+    """The findings as they can be shown, or as many of them as anybody reads: names may hold any sign, and be long."""
+    findings = tuple(replace(f, message=shown(f.message, 300), hint=shown(f.hint, 900)) for f in findings)
+    rest = findings[MOST_FINDINGS:]
+    if not any(f.severity is Severity.ERROR for f in rest):
+        return findings
+    return (*findings[:MOST_FINDINGS], too_many(rest[0].span))
 
 
 def _doubtful(scenario: Scenario) -> FrozenSet[str]:
@@ -72,13 +96,14 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if event.duration is not None and event.duration < 1:
             hint = "write duration 1 or more, or delete duration: then it takes no time"
             yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
+    longest = max((way.distance for way in scenario.connections), default=0)
     for agent in scenario.agents:
         if agent.mobile is None:
             continue
         if agent.mobile < 1:
             hint = "mobile is the time per unit of distance: write mobile 1 or more, or delete it where nothing moves"
             yield error("PML142", f"{agent.name} would take no time for any way", agent.span, hint)
-        elif max((way.distance for way in scenario.connections), default=0) * agent.mobile > _LONGEST:
+        elif longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
     if isinstance(scenario.safety, Respond) and scenario.safety.deadline < 1:
@@ -117,10 +142,11 @@ def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
 
 def _twice(agent: Agent) -> Iterator[Diagnostic]:
     for words, refs in (("can_do", agent.can_do), ("reacts_to", agent.reacts_to)):
-        names = [ref.name for ref in refs]
-        for index, ref in enumerate(refs):
-            if ref.name in names[:index]:
+        seen: Set[str] = set()
+        for ref in refs:
+            if ref.name in seen:
                 yield error("PML156", f"{agent.name} has {ref.name} twice behind {words}", ref.span, "delete one")
+            seen.add(ref.name)
 
 
 def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -163,12 +189,14 @@ def _islands(scenario: Scenario) -> Iterator[Diagnostic]:
     """POIs that are not connected with the first one, where somebody moves."""
     if not any(agent.mobile is not None for agent in scenario.agents):
         return
-    reached = component(scenario, scenario.pois[0].name)
+    connected = components(scenario)
+    start = scenario.pois[0].name
+    reached = {connected[start]}
     for poi in scenario.pois:
-        if poi.name not in reached:
-            message = f"no way leads from {scenario.pois[0].name} to {poi.name}"
+        if connected[poi.name] not in reached:
+            message = f"no way leads from {start} to {poi.name}"
             yield warning("PML147", message, poi.span, f"connect it: connect {poi.name} and … distance …")
-            reached |= component(scenario, poi.name)
+            reached.add(connected[poi.name])
 
 
 def _end(scenario: Scenario) -> Optional[Span]:

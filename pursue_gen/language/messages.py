@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
-from typing import Dict, FrozenSet, List
+from typing import Dict, FrozenSet, List, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.similar import closest
 
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
@@ -39,15 +39,44 @@ KEYWORDS: Dict[str, str] = {
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
 _QUOTES = "“”„‟«»‘’‚'`´"  # noqa: RUF001
+_STARTERS = tuple(KEYWORDS[kind] for kind in FORMS)
+_INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in FORMS)
+_MEANT = {
+    "place": "poi", "room": "poi", "point": "poi", "robot": "agent", "person": "agent", "path": "connect",
+    "way": "connect", "road": "connect", "action": "event", "task": "event", "order": "rule", "goal": "reach_objective",
+    "dependency": "stateDependency", "at": "location", "in": "location", "takes": "duration", "time": "duration",
+    "speed": "mobile", "moves": "mobile", "length": "distance", "can": "can_do", "reacts": "reacts_to",
+    "never": "never_with", "is": "is_true", "to": "and", "then": "before", "starts": "location",
+}  # fmt: skip
+"""Other words that people try, and the word of the language they most likely mean."""
 
 
-def unknown_statement(token: Token, span: Span) -> Diagnostic:
+def shown(text: str, most: int = 30) -> str:
+    """A piece of a text as a message can hold it: signs that cannot be seen by their number, and not too long."""
+    text = text if len(text) <= most else text[: most - 1] + "…"
+    return "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
+
+
+def looks_like_statement(token: Token) -> bool:
+    """Whether a word at the start of a line is one that begins a statement, misspelled."""
+    close = closest(str(token), _STARTERS + _INNER)
+    return close in _STARTERS or (not close and _MEANT.get(str(token).lower()) in _STARTERS)
+
+
+def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:
     """A statement that begins with no word that begins one."""
-    words = [KEYWORDS[kind] for kind in FORMS]
+    token = chunk[0]
     if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
         return _unclosed(token, span)
-    close = _near(str(token), words)
-    hint = f"did you mean {close}?" if close else "a statement begins with " + _list(words)
+    if _invisible(token):
+        return _unseen(token, span)
+    if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE"):
+        hint = f"it belongs to an agent: {FORMS['AGENT']}"
+    elif token.type in KEYWORDS:
+        hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
+    else:
+        close = _near(str(token), _STARTERS)
+        hint = f"did you mean {close}?" if close else "a statement begins with " + _list(list(_STARTERS))
     return error("PML011", f"expected a statement, found {_shown(token)}", span, hint)
 
 
@@ -56,6 +85,8 @@ def explain(chunk: List[Token], index: int, expected: FrozenSet[str], span: Span
     token = chunk[index]
     if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
         return _unclosed(token, span)
+    if _invisible(token):
+        return _unseen(token, span)
     message = f"expected {_in_words(expected)} after {_shown(chunk[index - 1])}, found {_shown(token)}"
     return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk))
 
@@ -66,6 +97,16 @@ def unfinished(chunk: List[Token], expected: FrozenSet[str], span: Span) -> Diag
     message = f"expected {_in_words(expected)} after {_shown(chunk[-1])}, but the statement ends here"
     hint = "put a `)` for each `(`" if "RPAR" in expected else _form(chunk)
     return error("PML010", message, end, hint)
+
+
+def _invisible(token: Token) -> bool:
+    return token.type == "STRAY" and not str(token)[0].isprintable()
+
+
+def _unseen(token: Token, span: Span) -> Diagnostic:
+    """A sign that cannot be seen, as it comes with text from web pages and word processors."""
+    message = f"a sign that cannot be seen stands here: {shown(str(token)[0])}"
+    return error("PML015", message, span, "delete it, or put an ordinary blank in its place")
 
 
 def _unclosed(token: Token, span: Span) -> Diagnostic:
@@ -80,12 +121,12 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     """What to do about the most frequent slips; empty where the form of the statement says it best."""
     token, statement = chunk[index], chunk[0].type
     text = str(token)
-    if token.type == "STRAY" and text in _QUOTES:
-        return 'use straight double quotes: "name"'
+    if token.type == "STRAY":
+        return _stray(chunk, index)
     if token.type == "WORD" and "NAME" in expected:
-        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{text}"'
+        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{shown(text)}"'
     if token.type == "NAME" and "WORD" in expected:
-        return f"quotes stand only where a name is declared: write {text.strip(chr(34))} without them"
+        return f"quotes stand only where a name is declared: write {shown(text.strip(chr(34)))} without them"
     if statement == "OBJECTIVE" and token.type == "DO":
         return "to have something done write reach_objective: do …"
     if token.type in KEYWORDS and "WORD" in expected:
@@ -98,28 +139,52 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
         return "put a comma behind true or false: " + FORMS["STATE"]
-    close = _near(text, [KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS] + _starters(expected))
-    if close and token.type == "WORD":
-        return f"did you mean {close}?"
-    if token.type == "WORD" and "COMMA" in expected and chunk[index - 1].line == token.line:
-        return "put a comma between two names"
-    if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID", "WORD"):
-        return "what must always hold is an objective: if … then … within … or avoid …"
+    if token.type == "COLON" and "COLON" not in expected:
+        return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
+    return _meant(chunk, index, expected)
+
+
+def _stray(chunk: List[Token], index: int) -> str:
+    """What to do about a sign that the language does not know."""
+    text, before = str(chunk[index]), chunk[index - 1]
+    if text[0] in _QUOTES:
+        return 'use straight double quotes: "name"'
+    if text == "." and before.type == "WORD" and index + 1 < len(chunk):
+        return f"a name stands alone, without the agent it belongs to: write {shown(str(chunk[index + 1]))}"
+    if text in (";", ".") and index + 1 == len(chunk):
+        return f"delete it: nothing stands behind a statement; {_form(chunk)}"
     return ""
 
 
-def _starters(expected: FrozenSet[str]) -> List[str]:
-    return [KEYWORDS[kind] for kind in FORMS] if "$END" in expected else []
+def _meant(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
+    """Which word was meant, or what is missing before it."""
+    token, statement = chunk[index], chunk[0].type
+    if statement in ("EVENT", "AGENT") and f" {token} " in FORMS[statement]:
+        return f"its parts come in this order: {FORMS[statement]}"
+    meant = _MEANT.get(str(token).lower(), "")
+    if any(KEYWORDS.get(kind) == meant for kind in expected):
+        return f"did you mean {meant}?"
+    if token.type == "WORD":
+        close = _near(str(token), tuple(KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS)
+                      + (_STARTERS if "$END" in expected else ()))  # fmt: skip
+        if close:
+            return f"did you mean {close}?"
+        if chunk[index - 1].type == "NUMBER":
+            return f"delete it: a number stands alone, in the unit of your choice; {_form(chunk)}"
+        if "COMMA" in expected and chunk[index - 1].line == token.line:
+            return "put a comma between two names"
+    if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID"):
+        return "what must always hold is an objective: if … then … within … or avoid …"
+    return ""
 
 
 def _form(chunk: List[Token]) -> str:
     return "the form is: " + FORMS[chunk[0].type] if chunk[0].type in FORMS else "delete it"
 
 
-def _near(word: str, words: List[str]) -> str:
-    lower = {w.lower(): w for w in words}
-    close = difflib.get_close_matches(word.lower(), list(lower), n=1, cutoff=0.65)
-    return lower[close[0]] if close else ""
+def _near(word: str, words: Tuple[str, ...]) -> str:
+    meant = _MEANT.get(word.lower(), "")
+    return meant if meant in words else closest(word, words)
 
 
 def _in_words(expected: FrozenSet[str]) -> str:
@@ -136,6 +201,5 @@ def _list(words: List[str]) -> str:
 
 
 def _shown(token: Token) -> str:
-    text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in str(token))
-    text = text if len(text) <= 30 else text[:29] + "…"
+    text = shown(str(token))
     return {"NAME": f"the name {text}", "WORD": f"`{text}`", "POSE": "the pose"}.get(token.type, f"`{text}`")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 import keyword
 import re
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.collisions import check_collisions
+from pursue_gen.language.messages import KEYWORDS, shown
 from pursue_gen.language.scenario import Ref, RuleBody, Scenario
+from pursue_gen.language.similar import Similar, closest
 
 KINDS = ("POI", "event", "rule", "state", "agent")
 GENERATED = frozenset("observer UI controllerObj controller simulator reachObj obj states".split())
@@ -19,6 +20,8 @@ _UPPAAL = frozenset(
     "default switch case enum string double hybrid dynamic spawn exit branchpoint".split()
 )
 _FORM = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_SOME = 12  # known names that a message lists
+_COMPARED = 200  # names in broken statements among which a similar one is looked for
 _LONGEST = 60  # with what is added to it a name becomes a file name and a topic
 
 
@@ -51,26 +54,53 @@ def check_names(scenario: Scenario) -> Iterator[Diagnostic]:
             sound = False
             yield finding
     if sound:
-        yield from _collisions(scenario)
+        yield from check_collisions(scenario)
 
 
-def check_references(scenario: Scenario) -> Iterator[Diagnostic]:
-    """An error for each name that is used but not declared as what it is used for."""
+def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> Iterator[Diagnostic]:
+    """An error for each name that is used but not declared as what it is used for.
+
+    Names that are `lost` in statements with errors may be declared there; the same holds for names that would be well
+    formed if their declaration were.
+    """
     known = {kind: declared(scenario, kind) for kind in KINDS}
+    similar = {kind: Similar(known[kind]) for kind in KINDS}
+    meant = {_fitting(name) for kind in KINDS for name in known[kind] if not _FORM.fullmatch(name)}
     for kind, name, span in _uses(scenario):
-        if name in known[kind]:
+        if name in known[kind] or name in lost or name in meant:
             continue
         elsewhere = next((other for other in KINDS if name in known[other]), "")
-        close = difflib.get_close_matches(name, list(known[kind]), n=1)
         if elsewhere:
             message = f"{name} is {_a(elsewhere)}, but {_a(kind)} is needed here"
         else:
-            message = f"there is no {kind} {name}"
-        if close:
-            hint = f"did you mean {close[0]}?"
-        else:
-            hint = f'declare it: {_keyword(kind)} "{name}", or use one of: ' + (", ".join(known[kind]) or "(none yet)")
-        yield error("PML110", message, span, hint)
+            message = f"there is no {kind} {shown(name, 60)}"
+        yield error("PML110", message, span, _instead(kind, name, elsewhere, known, similar[kind], lost))
+
+
+def _instead(
+    kind: str,
+    name: str,
+    elsewhere: str,
+    known: Mapping[str, Mapping[str, Span]],
+    similar: Similar,
+    lost: FrozenSet[str],
+) -> str:
+    """What to write in place of a name that is not known as this kind of thing."""
+    ours = known[kind]
+    agent, _, rest = name.partition("_")
+    if kind == "event" and rest in ours and agent in known["agent"]:
+        return f"write {rest}: an event is named without its agent"
+    if kind == "event" and name[: -len("DONE")] in ours and name.endswith("DONE"):
+        return f"write {name[: -len('DONE')]}: with an event that takes time, its end counts by itself"
+    close = similar.to(name) or closest(name, tuple(sorted(lost)[:_COMPARED]))
+    if close:
+        capitals = " (capitals matter)" if close.lower() == name.lower() else ""
+        return f"did you mean {close}?{capitals}"
+    some = ", ".join(list(ours)[:_SOME]) + (", …" if len(ours) > _SOME else "")
+    if elsewhere:
+        another = f'declare {_a(kind)} with another name: {_keyword(kind)} "…"'
+        return f"write the name of {_a(kind)}: {some}" if some else another
+    return f'declare it: {_keyword(kind)} "{shown(name, 60)}", or use one of: ' + (some or "(none yet)")
 
 
 def refs_of(body: RuleBody) -> List[Ref]:
@@ -117,7 +147,8 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:
     if not _FORM.fullmatch(scenario.name):
-        message = f"the file's name gives the package {scenario.name}_bringup, which is no name for a ROS package"
+        package = shown(scenario.name, 60) + "_bringup"
+        message = f"the file's name gives the package {package}, which is no name for a ROS package"
         hint = f"rename the file to {_fitting(scenario.name)}.pur: letters, digits and _, a letter first"
         yield error("PML106", message, None, hint)
 
@@ -131,8 +162,10 @@ def _unfit(name: str, kind: str, span: Span) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
     another = "choose another name"
     if not _FORM.fullmatch(name):
-        hint = f"use letters, digits and _, a letter first, for example {_fitting(name)}" if name else "give it a name"
-        return error("PML101", f'"{name}" cannot become the name of a ROS topic or a Python name', span, hint)
+        example = _fitting(name[:_LONGEST])
+        hint = f"use letters, digits and _, a letter first, for example {example}" if name else "give it a name"
+        message = f'"{shown(name, 60)}" cannot become the name of a ROS topic or a Python name'
+        return error("PML101", message, span, hint)
     if len(name) > _LONGEST:
         return error("PML101", f"this name is longer than {_LONGEST} letters", span, "choose a shorter name")
     if name in GENERATED:
@@ -164,63 +197,3 @@ def _a(kind: str) -> str:
 
 def _keyword(kind: str) -> str:
     return kind.lower()
-
-
-def _collisions(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Names that are fine alone, but from which the generator would make one word twice."""
-    for words in (_network_words(scenario), _location_words(scenario), _package_words(scenario)):
-        seen: Dict[str, str] = {}
-        for word, meaning, span in words:
-            if word in seen and seen[word] != meaning:
-                message = f"{word} would mean both {seen[word]} and {meaning}"
-                yield error("PML105", message, span, "rename one of them so that the two words differ")
-                return  # one pair of names often collides in many words
-            seen.setdefault(word, meaning)
-
-
-def _ways(scenario: Scenario) -> Iterator[Tuple[str, str]]:
-    for way in scenario.connections:
-        yield way.a, way.b
-        yield way.b, way.a
-
-
-def _network_words(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
-    """Whatever shares the names of the network's declarations and of the system state: (word, its meaning, place)."""
-    for poi in scenario.pois:
-        yield poi.name, f"the POI {poi.name}", poi.span
-    for event in scenario.events:
-        yield event.name, f"the event {event.name}", event.span
-        yield event.name + "DONE", f"the end of {event.name}", event.span
-    for rule in scenario.rules:
-        yield rule.name, f"the rule {rule.name}", rule.span
-        yield "P" + rule.name, f"the position of the rule {rule.name}", rule.span
-        yield "C" + rule.name, f"the clock of the rule {rule.name}", rule.span
-    for state in scenario.states:
-        yield state.name, f"the state {state.name}", state.span
-        yield "S" + state.name, f"the value of the state {state.name}", state.span
-    for agent in scenario.agents:
-        yield agent.name, f"the agent {agent.name}", agent.span
-        yield "P" + agent.name, f"the position of {agent.name}", agent.span
-        yield "C" + agent.name, f"the clock of {agent.name}", agent.span
-        for a, b in _ways(scenario) if agent.mobile is not None else ():
-            yield f"{agent.name}_{a}2{b}", f"{agent.name} leaving {a} for {b}", agent.span
-            yield f"{agent.name}_going_{a}_to_{b}2{b}", f"{agent.name} arriving at {b} from {a}", agent.span
-    end = scenario.agents[-1].span if scenario.agents else Span(scenario.file, 1, 1, 1, 1)
-    for word in ("Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"):
-        yield word, "a part of the objective", end
-
-
-def _location_words(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
-    """The names of an agent's locations, with which its commands are found."""
-    for way in scenario.connections:
-        for a, b in ((way.a, way.b), (way.b, way.a)):
-            yield f"going_{a}_to_{b}", f"the way from {a} to {b}", way.span
-    for event in scenario.events:
-        for poi in scenario.pois if event.duration is not None else ():
-            yield f"doing_{event.name}_in_{poi.name}", f"{event.name} in {poi.name}", event.span
-
-
-def _package_words(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
-    for agent in scenario.agents:
-        yield f"controller_{agent.name}", f"the package of {agent.name}", agent.span
-        yield f"{scenario.name}_bringup", "the package that starts the mission", agent.span

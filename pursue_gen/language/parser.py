@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
+import os
+import select
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, FrozenSet, List, Optional, Tuple, Union
 
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
+from pursue_gen.language.messages import shown
 from pursue_gen.language.poses import read_pose
-from pursue_gen.language.syntax import read_statements, span_of
+from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
 
+_PATIENCE = 5
+"""Seconds in which something has to come where the file is a pipe."""
+
 
 @dataclass(frozen=True)
 class Reading:
-    """A text as far as it could be read: the scenario (None after a syntax error) and what was found on the way."""
+    """A text as far as it could be read: the scenario (None after a syntax error) and what was found on the way.
+
+    `partial` is the scenario that the sound statements make, with errors or without; `lost` are the names that the
+    others may have declared.
+    """
 
     scenario: Optional[pml.Scenario]
     diagnostics: Tuple[Diagnostic, ...]
+    partial: Optional[pml.Scenario] = None
+    lost: FrozenSet[str] = frozenset()
 
 
 def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
@@ -37,25 +49,50 @@ def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
 def read_text(file: str) -> str:
     """The text of a scenario file. Raises PursueError where it cannot be read or is not text."""
     try:
-        return Path(file).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as problem:
-        hint = "save the scenario as plain text in UTF-8; a word processor's file is not plain text"
-        message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("PML002", message, hint=hint)]) from None
+        content = _content(file)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         hint = "name a scenario file, by convention *.pur"
         raise PursueError([error("PML001", f"cannot read {file}: {reason}", hint=hint)], exit_status=2) from None
+    hint = "save the scenario as plain text in UTF-8; a word processor's file is not plain text"
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            hint = "it is text in UTF-16: save it as UTF-8"
+        message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
+        raise PursueError([error("PML002", message, hint=hint)]) from None
+    if "\0" in text:
+        message = f"{file} is not plain text: it holds bytes that are 0 (the first is byte {content.index(0) + 1})"
+        raise PursueError([error("PML002", message, hint=hint)])
+    return text
+
+
+def _content(file: str) -> bytes:
+    """The bytes of a file, no more than a scenario may have; from a pipe they have to come soon."""
+    content = b""
+    with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK), "rb", buffering=0) as stream:  # a pipe does not block
+        ready = select.poll()
+        ready.register(stream, select.POLLIN)
+        while len(content) <= MOST_LETTERS * 4:  # bytes of a letter
+            if not ready.poll(_PATIENCE * 1000):
+                raise OSError(None, f"nothing came from it within {_PATIENCE} seconds")
+            more = stream.read(1 << 20)
+            if not more:
+                return content
+            content += more
+    if b"\0" in content:  # a program or a picture: that it is large says less
+        return content
+    raise PursueError([too_large(file)])
 
 
 def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     """The scenario in a text and every finding about its syntax, in file order; never raises."""
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    statements, findings = read_statements(text, file)
+    statements = cut(text, file)
     builder = _Builder(file)
-    parts: List[Any] = [part for part in (builder.part(statement) for statement in statements) if part is not None]
-    findings += builder.findings
-    fatal = any(finding.severity is Severity.ERROR for finding in findings)
+    parts = [part for part in (builder.part(tree) for tree in statements.trees) if part is not None]
+    findings = statements.findings + builder.findings
     safety = [part for part in parts if isinstance(part, (pml.Respond, pml.Avoid, pml.NeverWith))]
     reach = [part for part in parts if isinstance(part, pml.Reach)]
     for extra in safety[1:] + reach[1:]:
@@ -78,7 +115,8 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         safety=safety[0] if safety else None,
         reach=reach[0] if reach else None,
     )
-    return Reading(None if fatal else value, in_order(findings))
+    broken = any(finding.severity is Severity.ERROR for finding in statements.findings)
+    return Reading(None if broken else value, in_order(findings), value, statements.lost if broken else frozenset())
 
 
 def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
@@ -124,9 +162,10 @@ class _Builder:
         if token.isdigit() and token.isascii():
             if len(token.lstrip("0")) <= len(str(MOST)) and int(token) <= MOST:
                 return int(token)
-            message, hint = f"{str(token)[:20]} is too large: {MOST} is the largest number", "choose a larger unit"
+            message = f"{shown(str(token), 20)} is too large: {MOST} is the largest number"
+            hint = "choose a larger unit"
         else:
-            message = f"expected a whole number, found {str(token)[:40]}"
+            message = f"expected a whole number, found {shown(str(token))}"
             hint = "write digits only; where halves or tenths matter, choose a smaller unit"
         self.findings.append(error("PML014", message, span_of(token, self.file), hint))
         return 1

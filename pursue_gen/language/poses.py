@@ -7,11 +7,13 @@ import re
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.messages import shown
 from pursue_gen.language.scenario import Pose
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d]\w*")
 _FORM = "write //[x, y, z, qx, qy, qz, qw]: metres and a unit quaternion; //[0, 0, 0, 0, 0, 0, 1] looks along x"
+_LONGEST = 40
 _LOOSE_UNIT = 0.05  # published poses have two decimals, so their quaternions are a little off unit length
 _TILT = 0.001
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
@@ -28,8 +30,9 @@ def read_pose(comment: str, span: Span) -> Tuple[Optional[Pose], Tuple[Diagnosti
     if not bracket:
         return None, (error("PML020", "this pose is not closed: expected `]` behind its seven numbers", span, _FORM),)
     for number, item in enumerate(items, 1):
-        if not _NUMBER.fullmatch(item):
-            message = f"a pose holds numbers only, but its item {number} is " + (repr(item) if item else "empty")
+        if len(item) > _LONGEST or not _NUMBER.fullmatch(item):
+            found = f"'{shown(item)}'" if item else "empty"
+            message = f"a pose holds numbers only, but its item {number} is {found}"
             return None, (error("PML020", message, span, _FORM),)
     if len(items) != 7:
         return None, (error("PML020", f"a pose has seven numbers, here are {len(items)}", span, _FORM),)

@@ -2,17 +2,45 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
-from typing import Any, FrozenSet, Iterable, List, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 
 from lark import Lark, Token, Tree, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.messages import STATEMENTS, explain, unfinished, unknown_statement
+from pursue_gen.language.messages import STATEMENTS, explain, looks_like_statement, unfinished, unknown_statement
+
+MOST_LETTERS = 1_000_000
+MOST_WORDS = 100_000
+"""The largest text that is read: many times a floor with 1,000 places, and still read in seconds."""
 
 _DEEPEST = 40
 """Brackets within brackets in a rule; beyond it is no scenario, and Python's own stack has an end."""
+_WIDEST = 500
+"""Events in one rule."""
+_SPLIT = "split the rule into several rules"
+MOST_FINDINGS = 1000
+"""Errors that are told; after so many the file is no scenario."""
+
+_OPENS = frozenset(("HUMAN", "CONTROLLABLE", "MOBILE"))
+_ENDS = frozenset("WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLABORATIVE CONTROLLABLE HUMAN".split())
+"""Tokens behind which no name can stand: one that opens the next line begins something else."""
+
+
+@dataclass(frozen=True)
+class Statements:
+    """A text cut into statements: the trees of those that are well formed, an error for each other one, in file order.
+
+    `lost` are the names in the others: nobody knows whether they would have been declared there.
+    """
+
+    trees: List[Any]
+    findings: List[Diagnostic]
+    lost: FrozenSet[str]
 
 
 def span_of(token: Token, file: str) -> Span:
@@ -22,7 +50,7 @@ def span_of(token: Token, file: str) -> Span:
 
 
 @lru_cache(maxsize=None)
-def _grammar() -> Lark:
+def grammar() -> Lark:
     """The parser; made once, at the first text, so that to import the package costs nothing."""
     text = (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8")
     return Lark(text, parser="lalr", lexer="basic", start=["statement", "wrong"], propagate_positions=True)
@@ -30,24 +58,105 @@ def _grammar() -> Lark:
 
 def read_statements(text: str, file: str) -> Tuple[List[Tree], List[Diagnostic]]:  # type: ignore[type-arg]
     """The trees of all statements that are well formed, and an error for each that is not, in file order."""
-    trees: List[Tree] = []  # type: ignore[type-arg]
-    findings: List[Diagnostic] = []
-    after_objective = False
-    for chunk in _chunks(_significant(_grammar().lex(text))):
-        first = chunk[0]
+    statements = cut(text, file)
+    return statements.trees, statements.findings
+
+
+def cut(text: str, file: str) -> Statements:
+    """The statements of a text."""
+    tokens = list(islice(grammar().lex(text), MOST_WORDS + 1)) if len(text) <= MOST_LETTERS else []
+    if len(text) > MOST_LETTERS or len(tokens) > MOST_WORDS:
+        return Statements([], [too_large(file)], frozenset())
+    reader = _Reader(file)
+    found = chunks(significant(tokens))
+    for number, chunk in enumerate(found):
+        reader.take(chunk)
+        if len(reader.findings) == MOST_FINDINGS and number + 1 < len(found):
+            reader.findings.append(too_many(span_of(found[number + 1][0], file)))
+            break
+    return Statements(reader.trees, reader.findings, frozenset(reader.lost))
+
+
+def too_large(file: str) -> Diagnostic:
+    """A text that is no scenario any more."""
+    message = f"the text is too large: expected at most {MOST_LETTERS:,} letters, and {MOST_WORDS:,} words and signs"
+    return error("PML003", message, Span(file, 1, 1, 1, 2), "is this a scenario? If so, split it into several")
+
+
+def too_many(span: Optional[Span]) -> Diagnostic:
+    """More errors than anybody reads."""
+    hint = "is this a scenario? If so, mend the first errors and check again"
+    return error("PML018", f"there are more than {MOST_FINDINGS} errors; the rest is not told", span, hint)
+
+
+class _Reader:
+    """Parses statements one by one; what may come next in a state of the parser is found out once."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.trees: List[Any] = []
+        self.findings: List[Diagnostic] = []
+        self.lost: Set[str] = set()
+        self._after_objective = False
+        self._next: Dict[Tuple[Any, ...], FrozenSet[str]] = {}
+
+    def take(self, chunk: List[Token]) -> None:
+        """Parses one statement; notes its tree, or what is wrong with it."""
+        first, finding = chunk[0], None
         if first.type not in STATEMENTS:
-            findings.append(unknown_statement(first, span_of(first, file)))
-        elif first.type == "TAIL" and not after_objective:
+            finding = unknown_statement(chunk, span_of(first, self.file))
+        elif first.type == "TAIL" and not self._after_objective:
             message = "a query of the original's tools (control: …) stands only behind an objective"
-            findings.append(error("PML017", message, span_of(first, file), "delete it"))
+            finding = error("PML017", message, span_of(first, self.file), "delete it")
         else:
-            finding = _parse(chunk, file, trees)
-            findings += finding
-        after_objective = first.type in ("OBJECTIVE", "REACH_OBJECTIVE")
-    return trees, findings
+            finding = self._parse(chunk)
+        if finding is not None:
+            self.findings.append(finding)
+            self.lost |= _declared(chunk)
+        self._after_objective = first.type in ("OBJECTIVE", "REACH_OBJECTIVE")
+
+    def _parse(self, chunk: List[Token]) -> Optional[Diagnostic]:
+        parser: Any = grammar().parse_interactive(start="statement")
+        depth = 0
+        for index, token in enumerate(chunk):
+            if token.type in ("LPAR", "RPAR"):
+                depth += 1 if token.type == "LPAR" else -1
+                if depth > _DEEPEST:
+                    message = f"more than {_DEEPEST} brackets within brackets"
+                    return error("PML016", message, span_of(token, self.file), _SPLIT)
+            try:
+                parser.feed_token(token)
+            except UnexpectedToken:
+                return explain(chunk, index, self._expected(parser), span_of(token, self.file))
+        expected = self._expected(parser)
+        if "$END" not in expected:
+            return unfinished(chunk, expected, span_of(chunk[-1], self.file))
+        if chunk[0].type == "RULE" and sum(token.type == "WORD" for token in chunk) > _WIDEST:
+            message = f"more than {_WIDEST} events in one rule"
+            return error("PML016", message, span_of(chunk[1], self.file), _SPLIT)
+        self.trees.append(parser.feed_eof(chunk[-1]))
+        return None
+
+    def _expected(self, parser: Any) -> FrozenSet[str]:
+        state = tuple(parser.parser_state.state_stack)
+        if state not in self._next:
+            self._next[state] = frozenset(parser.accepts())
+        return self._next[state]
 
 
-def _significant(tokens: Iterable[Token]) -> List[Token]:
+def _declared(chunk: List[Token]) -> Set[str]:
+    """The names that a statement with an error in it perhaps declares."""
+    kind = chunk[0].type
+    if kind in ("CONNECT", "STATEDEPENDENCY", "OBJECTIVE", "REACH_OBJECTIVE", "TAIL"):
+        tokens = [token for token in chunk if token.type == "UNCLOSED_COMMENT"]
+    elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
+        tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
+    else:
+        tokens = chunk
+    return {word for token in tokens for word in re.findall(r"\w+", token)}
+
+
+def significant(tokens: Iterable[Token]) -> List[Token]:
     """The tokens without those pose comments that stand anywhere but behind a point of interest, on its line."""
     kept: List[Token] = []
     for token in tokens:
@@ -59,42 +168,20 @@ def _significant(tokens: Iterable[Token]) -> List[Token]:
     return kept
 
 
-def _chunks(tokens: List[Token]) -> List[List[Token]]:
+def chunks(tokens: List[Token]) -> List[List[Token]]:
     """The tokens cut into statements: at each word that begins one, and where a line begins like an unknown one."""
-    chunks: List[List[Token]] = []
+    found: List[List[Token]] = []
     for index, token in enumerate(tokens):
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
         if token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
+        elif token.type == "WORD" and opens_line and index:
+            begins = goes_on or (tokens[index - 1].type in _ENDS and looks_like_statement(token))
         else:
-            begins = opens_line and goes_on and token.type == "WORD"
-        if begins or not chunks:
-            chunks.append([])
-        chunks[-1].append(token)
-    return chunks
-
-
-def _parse(chunk: List[Token], file: str, trees: List[Tree]) -> List[Diagnostic]:  # type: ignore[type-arg]
-    """Parses one statement onto `trees`; the error in it, if there is one."""
-    parser: Any = _grammar().parse_interactive(start="statement")
-    depth = 0
-    for index, token in enumerate(chunk):
-        depth += {"LPAR": 1, "RPAR": -1}.get(token.type, 0)
-        if depth > _DEEPEST:
-            message = f"more than {_DEEPEST} brackets within brackets"
-            return [error("PML016", message, span_of(token, file), "split the rule into several rules")]
-        try:
-            parser.feed_token(token)
-        except UnexpectedToken:
-            return [explain(chunk, index, _expected(parser), span_of(token, file))]
-    expected = _expected(parser)
-    if "$END" not in expected:
-        return [unfinished(chunk, expected, span_of(chunk[-1], file))]
-    trees.append(parser.feed_eof(chunk[-1]))
-    return []
-
-
-def _expected(parser: Any) -> FrozenSet[str]:
-    return frozenset(parser.accepts())
+            begins = opens_line and goes_on and token.type in _OPENS
+        if begins or not found:
+            found.append([])
+        found[-1].append(token)
+    return found

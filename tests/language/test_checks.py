@@ -26,7 +26,7 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"dependency": "stateDependency: hant only_if tired is_true"}, [("PML110", 9, "no event hant", "mean hand?")]),
     ({"agent_bot": BOT.replace("location a", "location hall")}, [("PML110", 10, "no POI hall", "one of: a, b")]),
     ({"agent_bot": BOT + ", fly"}, [("PML110", 10, "there is no event fly", "one of: work, hand, rest")]),
-    ({"agent_man": MAN + ", man"}, [("PML110", 11, "man is an agent, but an event is needed", "declare it")]),
+    ({"agent_man": MAN + ", man"}, [("PML110", 11, "man is an agent, but an event is", "write the name of an event")]),
     ({"objective": "objective: if work then hnd within 3"}, [("PML110", 12, "there is no event hnd", "mean hand?")]),
     ({"objective": "objective: avoid x"}, [("PML110", 12, "there is no event x", "declare it")]),
     ({"objective": "objective: bot never_with men"}, [("PML110", 12, "there is no agent men", "did you mean man?")]),

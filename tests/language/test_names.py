@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import keyword
-from typing import Dict
+from typing import Dict, Iterator, List, Tuple
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.language import parse
+from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.names import GENERATED
+from pursue_gen.language.scenario import Scenario
 
 from .texts import STATEMENTS, findings, text
 
@@ -98,3 +101,48 @@ def test_any_quoted_name_is_accepted_as_it_is_or_refused(name: str) -> None:
     found = findings(text(rule=RULE.replace('"order"', f'"{name}"')))
     acceptable = name.isascii() and name.replace("_", "a").isalnum() and name[0].isalpha()
     assert acceptable or [finding.code for finding in found] == ["PML101"]
+
+
+# Words are found to collide exactly where one by one they do ----------------------------------------------------------
+
+_BITS = ["a", "b", "2", "_", "2a", "_to_", "going_", "_in_", "DONE", "P"]
+_PARTS = st.lists(st.sampled_from(_BITS), min_size=1, max_size=5)
+_NAMES = _PARTS.map("".join).filter(lambda name: name[0].isalpha())
+
+
+def _words(scenario: Scenario) -> Iterator[Tuple[int, str, Tuple[str, ...]]]:
+    """Every word that the generator makes: the space of names it is in, the word, what it means."""
+    for kind, parts in (("p", scenario.pois), ("e", scenario.events), ("a", scenario.agents)):
+        for part in parts:
+            yield 0, part.name, (kind, part.name)
+    for event in scenario.events:
+        yield 0, event.name + "DONE", ("end", event.name)
+        for poi in scenario.pois if event.duration is not None else ():
+            yield 1, f"doing_{event.name}_in_{poi.name}", ("doing", event.name, poi.name)
+    for agent in scenario.agents:
+        for sign in "PC":
+            yield 0, sign + agent.name, (sign, agent.name)
+    for way in scenario.connections:
+        for a, b in ((way.a, way.b), (way.b, way.a)):
+            yield 1, f"going_{a}_to_{b}", ("way", a, b)
+            for agent in scenario.agents:
+                yield 0, f"{agent.name}_{a}2{b}", ("leaves", agent.name, a, b)
+                yield 0, f"{agent.name}_going_{a}_to_{b}2{b}", ("arrives", agent.name, a, b)
+
+
+@given(
+    st.lists(_NAMES, min_size=2, max_size=5, unique=True), st.lists(_NAMES, max_size=3), st.lists(_NAMES, max_size=4)
+)
+def test_collisions_are_found_where_words_collide(pois: List[str], events: List[str], agents: List[str]) -> None:
+    source = "".join(f'poi "{name}"\n' for name in pois)
+    source += "".join(f"connect {a} and {b} distance 1\n" for n, a in enumerate(pois) for b in pois[n + 1 :])
+    source += "".join(f'event "{name}" duration 1\n' for name in dict.fromkeys(events))
+    source += "".join(f'agent "{name}" mobile 1 location {pois[0]}\n' for name in dict.fromkeys(agents))
+    scenario = parse(source, "test.pur")
+    meanings: Dict[Tuple[int, str], Tuple[str, ...]] = {}
+    twice = {
+        word for space, word, meaning in _words(scenario) if meanings.setdefault((space, word), meaning) != meaning
+    }
+    found = [finding.message.split()[0] for finding in check_collisions(scenario)]
+    assert bool(found) == bool(twice)
+    assert twice.issuperset(found)

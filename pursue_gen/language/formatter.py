@@ -1,0 +1,184 @@
+"""The layout of a PuRSUE-ML text: blanks and line breaks change, words, comments and their order never do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, FrozenSet, Iterator, List, Optional, Tuple
+
+from lark import Token
+
+from pursue_gen.diagnostics import PursueError, Severity
+from pursue_gen.language.formatter_items import LINE, Item, items_of
+from pursue_gen.language.syntax import read_statements
+
+WIDTH = 100
+"""A statement that is longer goes on in the next line, where it can be broken; a comment is as long as it is."""
+
+INDENT = "    "
+_BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", "OR"})
+"""A line may be broken before these words, and behind every comma."""
+
+_CLOSE = frozenset({"COMMA", "COLON", "RPAR"})
+_ONE_KIND = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
+_MOST_PADDING = 20
+
+
+@dataclass(frozen=True)
+class _Block:
+    """A statement with the comments in and behind it, or comments that stand alone.
+
+    `kind`: the word that begins the statement, "" for comments; `blank`: there is an empty line above; `text`: the
+    lines without their last comment; `remark`: that comment, where it is the only one and the text is one line.
+    """
+
+    kind: str
+    blank: bool
+    text: str
+    remark: str = ""
+
+
+def format_text(text: str, file: str) -> str:
+    """The text in the one layout; `file` is what messages call it.
+
+    One statement a line, wrapped at `WIDTH` columns; an empty line between kinds of statements, elsewhere at most one
+    where there was one; comments at the end of neighbouring lines begin in one column; line ends are newlines. The
+    same text comes back when it is formatted again, and it means the same scenario. Raises PursueError with every
+    syntax error; other findings (a name that is declared nowhere) do not matter here.
+    """
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    trees, findings = read_statements(text, file)
+    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
+    if errors:
+        raise PursueError(errors)
+    starts = frozenset(_start(tree) for tree in trees)
+    blocks = [_block(group) for group in _groups(items_of(text), starts)]
+    lines: List[str] = []
+    for block in _aligned(_spaced(blocks)):
+        lines += ["", block.text] if block.blank and lines else [block.text]
+    return "".join(line + "\n" for line in lines)
+
+
+def _start(statement: Any) -> int:
+    """Where a statement begins in the text; the query behind an objective is a mere token."""
+    place: Any = statement if isinstance(statement, Token) else statement.meta
+    return int(place.start_pos)
+
+
+def _groups(items: List[Item], starts: FrozenSet[int]) -> Iterator[List[Item]]:
+    """The items of each block: comments between two words of a statement are in it, those behind it on its line too."""
+    group: List[Item] = []
+    waiting: List[Item] = []  # comments of which the next word will tell whether the statement goes on
+    for item in items:
+        if item.is_comment and group and not group[0].is_comment:
+            waiting.append(item)
+        elif item.is_comment:
+            if group and item.breaks:
+                yield group
+                group = []
+            group.append(item)
+        elif item.start in starts:
+            yield from _closed(group, waiting)
+            group, waiting = [item], []
+        else:
+            group += [*waiting, item]
+            waiting = []
+    yield from _closed(group, waiting)
+
+
+def _closed(group: List[Item], waiting: List[Item]) -> Iterator[List[Item]]:
+    """The finished block with the comments behind it on its last line, then the comments below it."""
+    for item in waiting:
+        if item.breaks:
+            yield group
+            group = []
+        group.append(item)
+    if group:
+        yield group
+
+
+def _block(group: List[Item]) -> _Block:
+    first, last = group[0], group[-1]
+    kind = "" if first.is_comment else _ONE_KIND.get(first.kind, first.kind)
+    if kind and last.kind == LINE and not any(item.is_comment for item in group[:-1]):
+        return _Block(kind, first.breaks > 1, _laid_out(group[:-1]), last.text)
+    return _Block(kind, first.breaks > 1, _laid_out(group))
+
+
+def _laid_out(group: List[Item]) -> str:
+    """The items in lines: words are filled into lines, comments stay behind what they stand behind."""
+    result = ""
+    for text, width, forced in _pieces(group):
+        column = len(result) - result.rfind("\n") - 1
+        if not result:
+            result = text
+        elif forced or column + 1 + width > WIDTH:
+            result += "\n" + INDENT + text
+        else:
+            result += " " + text
+    return result
+
+
+def _pieces(group: List[Item]) -> Iterator[Tuple[str, int, bool]]:
+    """What is never torn apart: (its text, the width that counts, whether it has to begin a line)."""
+    piece: List[Item] = []
+    forced = False
+    word: Optional[Item] = None  # the last one that is no comment
+    for item in group:
+        own_line = item.is_comment and item.breaks > 0
+        ended = bool(piece) and (piece[-1].kind == LINE or (piece[0].is_comment and not item.is_comment))
+        may = not item.is_comment and (item.kind in _BREAKABLE or (word is not None and word.kind == "COMMA"))
+        if piece and (own_line or ended or may):
+            yield (*_joined(piece), forced)
+            piece, forced = [], own_line or ended
+        piece.append(item)
+        word = word if item.is_comment else item
+    yield (*_joined(piece), forced)
+
+
+def _joined(piece: List[Item]) -> Tuple[str, int]:
+    """The items of a piece with blanks where they belong, and its width: a comment to the end of the line is free."""
+    words: List[str] = []
+    before: Optional[Item] = None
+    for item in piece:
+        opened = before is not None and before.kind == "LPAR" and item.kind != LINE
+        close = before is None or opened or item.kind in _CLOSE
+        words.append(item.text if close else " " + item.text)
+        before = item
+    text = "".join(words)
+    counted = text if piece[-1].kind != LINE else text[: -len(words[-1])]
+    return text, len(counted.split("\n")[0])
+
+
+def _spaced(blocks: List[_Block]) -> List[_Block]:
+    """The blocks with an empty line wherever the kind of statement changes, above the comments of the next kind."""
+    result: List[_Block] = []
+    kind, behind = "", 0  # the kind of the last statement, and the place behind it
+    for block in blocks:
+        result.append(block)
+        if not block.kind:
+            continue
+        if kind not in ("", block.kind) and not any(between.blank for between in result[behind:]):
+            result[behind] = replace(result[behind], blank=True)
+        kind, behind = block.kind, len(result)
+    return result
+
+
+def _aligned(blocks: List[_Block]) -> Iterator[_Block]:
+    """The blocks with their remarks in one column, where neighbours of one kind are about equally long."""
+    run: List[_Block] = []
+    for block in blocks:
+        if run and (block.blank or not block.remark or block.kind != run[0].kind):
+            yield from _in_column(run)
+            run = []
+        if block.remark:
+            run.append(block)
+        else:
+            yield block
+    yield from _in_column(run)
+
+
+def _in_column(run: List[_Block]) -> Iterator[_Block]:
+    widths = [len(block.text.split("\n")[-1]) for block in run]
+    for block, width in zip(run, widths):
+        column = max(widths) if max(widths) - min(widths) <= _MOST_PADDING else width
+        yield replace(block, text=block.text + " " * (column - width + 1) + block.remark)
