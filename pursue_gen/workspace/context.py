@@ -11,21 +11,25 @@ A template that asks for anything else is an error (jinja2's StrictUndefined). E
 - `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
 - `reaches`: the mission has a goal to reach; `bringup`: the name of the package with the launch files;
 - `time_unit`: the default length of a time unit in seconds;
+- `machines`, for each node of the mission its name and {host, user, env_loader} of the machine that runs it;
+- `docker`, `systemd`: whether the workspace has files for containers, for services;
 - `plays`: the arguments of each launch test.
 
-The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` and `modules` (files of `scripts/`).
+The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` and `modules` (files of `scripts/`),
+and the `folders` beside it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, Mapping, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Kind, Objective, is_end
+from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
 
 
 @dataclass(frozen=True)
@@ -34,16 +38,23 @@ class Options:
 
     `controllers`: distributed (one per robot), centralized (one, without a-priori ends) or general (one, with them, as
     the original has it). `reach_obj`: who gets the commands of the objective: dedicated (a controller of their own),
-    all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for.
+    all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for;
+    `ends` and `slack`: the rest of the rules of that game (see `pipeline.Rules`), for plans that are made under way.
     `margin`: how late it really may come, in sentences for the README; empty where nobody looked.
-    `time_unit`: the default length of a time unit in seconds. The rest goes into the manifests.
+    `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
+    `systemd`: with files for containers, and for services. The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
     reach_obj: str = "dedicated"
     reaction: Fraction = Fraction(1, 10)
+    ends: str = "reported"
+    slack: Mapping[str, int] = field(default_factory=dict)
     margin: str = ""
     time_unit: float = 1.0
+    machines: Machines = ONE_MACHINE
+    docker: bool = False
+    systemd: bool = False
     maintainer: str = "maintainer"
     maintainer_email: str = "maintainer@example.org"
     license: str = "BSD-3-Clause"
@@ -83,4 +94,7 @@ def common(
         "reaches": objective.kind is not Kind.SAFETY,
         "bringup": bringup_of(scenario),
         "time_unit": options.time_unit,
+        "machines": [(node, options.machines.of(node)) for node in nodes_of([sub.controller for sub in controllers])],
+        "docker": options.docker,
+        "systemd": options.systemd,
     }

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from dataclasses import replace
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import jinja2
 
@@ -21,14 +22,16 @@ from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal import write_network, write_query
 from pursue_gen.tga.words import event_word
-from pursue_gen.workspace import context, expected, model_file
+from pursue_gen.workspace import context, deploy, expected, game_file, model_file
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.layout import poses
-from pursue_gen.workspace.packages import TEST_DEPENDS, Package, environment, files_of, templates_dir
+from pursue_gen.workspace.mission_manifest import MISSION, Manifest, make_manifest, mission_file
+from pursue_gen.workspace.packages import RECEIVING, TEST_DEPENDS, Package, environment, files_of, templates_dir
 
 _UI = "UI"
 _PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
 _PEOPLE = "people"
+_MISSION_DATA = re.compile(r"src/(\w+)/config/(\w+\.yaml)", re.ASCII)
 
 
 def generate(
@@ -52,20 +55,62 @@ def generate(
         "poses": _poses(scenario, where, computed),
         "model": model_file.render(network, objective, scenario, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
+        "game": game_file.render(scenario, options, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
-        "ui": _ui_settings(values),
+        "ui": _ui_settings(values, scenario),
+        "controllers": _controllers(values),
         "trace": f"- {{at: 2.0, do: {trace}}}\n".encode() if trace else b"[]\n",
     }
     files: Dict[str, bytes] = {}
-    packages = _packages(scenario, subs, data, options)
+    packages = _with_mission(_packages(scenario, subs, data, options), scenario)
     _check_packages(packages)
     for package in packages:
         for path, content in files_of(package, values, jinja, templates).items():
             files[f"src/{package.name}/{path}"] = content
     files.update(_beside(scenario, network, objective, strategy))
+    names = [package.name for package in packages]
+    files.update(deploy.docker_files(jinja, values, names) if options.docker else {})
+    files.update(deploy.systemd_files(jinja, values, options.machines) if options.systemd else {})
     files["map.svg"] = map_svg.draw(scenario, where, computed).encode()
     files["README.md"] = _readme(jinja, {**values, "margin": options.margin}, scenario, packages, computed)
     return files
+
+
+def controllers_of(scenario: Scenario, network: Network, strategy: Strategy, options: Options) -> Tuple[str, ...]:
+    """The names of the controllers, in order."""
+    subs = partition(strategy, network, scenario.agents, options.controllers, options.reach_obj)
+    return tuple(sub.controller for sub in subs if sub.controller != _UI)
+
+
+def mission_of(scenario: str, files: Mapping[str, bytes]) -> Tuple[Manifest, Dict[str, bytes]]:
+    """The mission in a workspace as `generate` returns it: its manifest, and `package/name.yaml` → content.
+
+    It is all the data of the packages that have a mission.yaml, but for that file.
+    """
+    found = {}
+    for path, content in files.items():
+        match = _MISSION_DATA.fullmatch(path)
+        if match and match.group(2) != MISSION and f"src/{match.group(1)}/config/{MISSION}" in files:
+            found[f"{match.group(1)}/{match.group(2)}"] = content
+    controllers = tuple(path.split("/")[0] for path in found if path.endswith("/strategy.yaml"))
+    return make_manifest(scenario, __version__, controllers, found), found
+
+
+def _with_mission(packages: Sequence[Package], scenario: Scenario) -> List[Package]:
+    """The packages, those with data of the mission with a file that says which one it is."""
+    data = {
+        f"src/{package.name}/{path}": content
+        for package in packages
+        if package.kind in ("controller", "observer", _UI)
+        for path, content in {**package.data, f"config/{MISSION}": b""}.items()
+    }
+    text = mission_file(mission_of(scenario.name, data)[0].digest, scenario.name)
+    return [
+        replace(package, data={**package.data, f"config/{MISSION}": text})
+        if f"src/{package.name}/config/{MISSION}" in data
+        else package
+        for package in packages
+    ]
 
 
 def _check_name(scenario: Scenario) -> None:
@@ -101,11 +146,12 @@ def _packages(
         summary = f"The controller that commands {commanded}."
         files = {"config/strategy.yaml": text, "config/poses.yaml": data["poses"]}
         packages.append(Package(sub.controller, "controller", summary, files))
-    observer = {"config/model.yaml": data["model"], "config/cover.yaml": data["cover"]}
+    observer = {f"config/{name}.yaml": data[name] for name in ("model", "cover", "controllers", "game")}
     packages.append(Package("observer", "observer", "The observer: keeps the state of the mission.", observer))
     ui = {"config/model.yaml": data["model"], "config/poses.yaml": data["poses"], **people}
-    ui["config/ui.yaml"] = data["ui"]
+    ui["config/ui.yaml"], ui["config/game.yaml"] = data["ui"], data["game"]
     packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
+    packages += [Package(name, name, summary, {}) for name, summary in RECEIVING.items()]
     tests = {"test/expected.json": data["expected"], "test/trace.yaml": data["trace"]}
     names = tuple(package.name for package in packages)
     bringup = context.bringup_of(scenario)
@@ -149,12 +195,20 @@ def _poses(scenario: Scenario, where: Mapping[str, Pose], computed: bool) -> byt
     return ("\n".join(lines) + "\n").encode()
 
 
-def _ui_settings(values: Mapping[str, Any]) -> bytes:
-    """The text of ui.yaml: the nodes that the UI waits for before the mission, and whose ends the simulator tells."""
+def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
+    """The text of ui.yaml: the nodes that the UI waits for before the mission, whose ends the simulator tells, and the
+    connections of the map with their lengths."""
     nodes = ", ".join(("observer", *values["controllers"], "simulator"))
     reports = ", ".join(json.dumps(name) for name in values["reported"])
     head = f"# Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
-    return f"{head}\nformat: 1\nnodes: [{nodes}]\nreports: [{reports}]\n".encode()
+    ways = ", ".join(json.dumps([way.a, way.b, way.distance]) for way in scenario.connections)
+    return f"{head}\nformat: 1\nnodes: [{nodes}]\nreports: [{reports}]\nconnections: [{ways}]\n".encode()
+
+
+def _controllers(values: Mapping[str, Any]) -> bytes:
+    """The text of controllers.yaml: the nodes that the observer listens for, and that a new plan goes to."""
+    head = f"# Written by pursue-gen {__version__} for the observer of {values['scenario']}."
+    return f"{head}\nformat: 1\ncontrollers: [{', '.join(values['controllers'])}]\n".encode()
 
 
 def _beside(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:
@@ -174,7 +228,7 @@ def _readme(
     packages: Sequence[Package],
     computed: bool,
 ) -> bytes:
-    nodes = [package.name for package in packages if package.kind != "bringup"]
+    nodes = [package.name for package in packages if package.kind not in ("bringup", *RECEIVING)]
     told = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
     return jinja.get_template("workspace/README.md.j2").render({**values, **told}).encode()
 

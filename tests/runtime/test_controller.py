@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, List, Optional
 
 import pytest
-from node_modules import controller_core, library, read
+from node_modules import controller_core, library, pursue_strategy, read
 
 STRATEGY = """
 format: 1
@@ -23,7 +23,7 @@ strategy:
 
 
 def player(text: str = STRATEGY) -> Any:
-    return controller_core.Player(library.Strategy(read(text)))
+    return controller_core.Player(pursue_strategy.Strategy(read(text)))
 
 
 def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running") -> Any:
@@ -173,3 +173,56 @@ def test_a_robot_gets_no_order_that_the_strategy_does_not_hold() -> None:
     bot.see(state(1, 100.0), 100.0)
     assert bot.see(state(2, 102.0, bot="going_c_to_a", event="bot_c2a"), 102.0) == []
     assert bot.counts["not_ours"] == 1
+
+
+def test_a_burst_of_late_states_changes_nothing() -> None:
+    """After a cut the newest state may come first, and what was sent before it last."""
+    history = [state(1, 100.0), state(2, 105.0, "going_c_to_b", event="bot_c2b"), state(3, 110.0, "b", clock=0.0)]
+    bot = player()
+    bot.see(history[2], 110.2)
+    wake = bot.wake()
+    for late in (*history, *reversed(history)):
+        assert bot.see(late, 112.0) == [], "no robot moves on it"
+        assert bot.state == history[2] and bot.wake() == wake
+    assert bot.ring(wake[0]) == ("bot", "catch", 3)
+    assert bot.counts["old"] == 4
+
+
+def test_an_observer_that_starts_anew_is_believed_and_so_is_one_whose_clock_was_set_back() -> None:
+    bot = player()
+    bot.see(state(7, 100.0, "b"), 100.0)
+    bot.see(state(1, 200.0), 200.0)
+    assert bot.state.seq == 1
+    bot.see(state(2, 150.0, "going_c_to_b", event="bot_c2b"), 150.0)
+    assert bot.state.seq == 2
+
+
+def test_an_end_after_a_state_that_was_missed_is_no_order() -> None:
+    bot = player()
+    bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
+    assert bot.see(state(3, 106.0, bot="b", event="workDONE"), 106.0) == []
+    assert bot.see(state(5, 109.0, bot="b", event="catch"), 109.0) == [("bot", "catch", "b", "b")]
+
+
+def test_a_state_that_is_said_again_is_no_news() -> None:
+    bot = player()
+    for current, news in ((state(1, 100.0), True), (state(1, 101.0, clock=1.0), False), (state(2, 102.0), True),
+                          (state(1, 101.5, clock=1.5), False)):  # fmt: skip
+        bot.see(current, 102.0)
+        assert bot.news is news
+
+
+def test_a_state_that_takes_the_whole_reaction_is_not_too_late() -> None:
+    bot = player()
+    bot.see(state(1, 100.0, clock=6.0), 100.2 + 1e-7)
+    assert bot.ring(100.2 + 1e-7) == ("bot", "bot_c2b", 1)
+
+
+def test_the_robot_does_what_wins_the_mission_where_that_is_done_at_once() -> None:
+    bot = player()
+    bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
+    assert bot.see(state(2, 101.0, bot="b", event="catch", status="won"), 101.0) == [("bot", "catch", "b", "b")]
+    for status in ("lost", "stopped"):
+        bot = player()
+        bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
+        assert bot.see(state(2, 101.0, bot="b", event="catch", status=status), 101.0) == []

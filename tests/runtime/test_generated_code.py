@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from node_modules import NAMES, render
+from rendered_scripts import NAMES, render
 
 
-@pytest.mark.parametrize("kind", ["common", "controller", "observer"])
+@pytest.mark.parametrize("kind", ["common", "controller", "observer", "pursue_reader", "communication_manager"])
 def test_it_is_lint_free_python_3_8_that_says_where_it_comes_from(kind: str, tmp_path: Path) -> None:
     written = render(tmp_path, kind)
     assert written

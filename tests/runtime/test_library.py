@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from node_modules import library, read
+from node_modules import library, pursue_strategy, read
 
 MARGIN = 0.02
 CLOCKS = ("Cx", "Cy", "Cz")
@@ -54,14 +54,14 @@ def true_at(text: str, clocks: dict, delay: float) -> bool:
 @settings(deadline=None)
 @given(zone_texts, valuations)
 def test_a_zone_holds_where_its_text_says(text: str, clocks: dict) -> None:
-    assert library.holds(library.parse_zone(text), clocks) == true_at(text, clocks, 0.0)
+    assert pursue_strategy.holds(pursue_strategy.parse_zone(text), clocks) == true_at(text, clocks, 0.0)
 
 
 @settings(deadline=None)  # a busy machine is no failure
 @given(st.lists(zone_texts, min_size=1, max_size=3), valuations)
 def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> None:
-    zones = [library.parse_zone(text) for text in texts]
-    delay = library.due(zones, clocks, MARGIN)
+    zones = [pursue_strategy.parse_zone(text) for text in texts]
+    delay = pursue_strategy.due(zones, clocks, MARGIN)
     # Bounds and clocks are quarters: between two quarters nothing changes, so quarters and what lies between suffice.
     steps = [step / 8 for step in range(8 * 13)]
     first = next((s for s in steps if any(true_at(text, clocks, s) for text in texts)), None)
@@ -77,32 +77,32 @@ def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> Non
 @settings(deadline=None)
 @given(zone_texts, valuations, quarters)
 def test_what_is_due_stays_due_while_time_passes(text: str, clocks: dict, passed: float) -> None:
-    zones = [library.parse_zone(text)]
-    delay = library.due(zones, clocks, MARGIN)
+    zones = [pursue_strategy.parse_zone(text)]
+    delay = pursue_strategy.due(zones, clocks, MARGIN)
     assume(delay is not None and passed <= delay)
-    later = library.due(zones, {clock: value + passed for clock, value in clocks.items()}, MARGIN)
+    later = pursue_strategy.due(zones, {clock: value + passed for clock, value in clocks.items()}, MARGIN)
     assert later is not None and passed + later <= delay + MARGIN + 1e-9
 
 
 def test_a_command_is_due_inside_a_window_that_opens_strictly_and_is_narrow() -> None:
-    zone = library.parse_zone("1 < Cx && Cx < 1.01")
-    assert library.due([zone], {"Cx": 0.0}, MARGIN) == pytest.approx(1.005)
-    assert library.due([zone], {"Cx": 1.0}, MARGIN) == pytest.approx(0.005)
-    assert library.due([zone], {"Cx": 1.01}, MARGIN) is None
+    zone = pursue_strategy.parse_zone("1 < Cx && Cx < 1.01")
+    assert pursue_strategy.due([zone], {"Cx": 0.0}, MARGIN) == pytest.approx(1.005)
+    assert pursue_strategy.due([zone], {"Cx": 1.0}, MARGIN) == pytest.approx(0.005)
+    assert pursue_strategy.due([zone], {"Cx": 1.01}, MARGIN) is None
 
 
 def test_always_is_due_now() -> None:
-    assert library.due([library.parse_zone("always")], {"Cx": 3.0}) == 0.0
-    assert library.due([], {"Cx": 3.0}) is None
+    assert pursue_strategy.due([pursue_strategy.parse_zone("always")], {"Cx": 3.0}) == 0.0
+    assert pursue_strategy.due([], {"Cx": 3.0}) is None
 
 
 def test_fractions_are_bounds() -> None:
-    assert library.due([library.parse_zone("4/3 <= Cx")], {"Cx": 1.0}) == pytest.approx(1 / 3)
+    assert pursue_strategy.due([pursue_strategy.parse_zone("4/3 <= Cx")], {"Cx": 1.0}) == pytest.approx(1 / 3)
 
 
 def test_the_decimals_of_a_message_do_not_break_an_equality() -> None:
-    zone = library.parse_zone("Cx - Cy == 3 && Cx == 5")
-    assert library.due([zone], {"Cx": 4.123456789, "Cy": 1.123456788}) == pytest.approx(0.876543211)
+    zone = pursue_strategy.parse_zone("Cx - Cy == 3 && Cx == 5")
+    assert pursue_strategy.due([zone], {"Cx": 4.123456789, "Cy": 1.123456788}) == pytest.approx(0.876543211)
 
 
 @pytest.mark.parametrize(
@@ -110,14 +110,14 @@ def test_the_decimals_of_a_message_do_not_break_an_equality() -> None:
 )
 def test_what_is_no_zone_is_told(text: str) -> None:
     with pytest.raises(library.DataError):
-        library.parse_zone(text)
+        pursue_strategy.parse_zone(text)
 
 
 def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
-    zone = library.parse_zone("1 < Cx && Cx - Cy <= 3")
-    assert library.holds(zone, {"Cx": 0.95, "Cy": 0.0}, slack=0.1)
-    assert library.holds(zone, {"Cx": 3.05, "Cy": 0.0}, slack=0.1)
-    assert not library.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
+    zone = pursue_strategy.parse_zone("1 < Cx && Cx - Cy <= 3")
+    assert pursue_strategy.holds(zone, {"Cx": 0.95, "Cy": 0.0}, slack=0.1)
+    assert pursue_strategy.holds(zone, {"Cx": 3.05, "Cy": 0.0}, slack=0.1)
+    assert not pursue_strategy.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
 
 
 # Words and states
@@ -225,7 +225,7 @@ def state(seq: int = 1, stamp: float = 10.0, clocks=(0.0, 0.0), **holds: object)
 
 
 def test_the_first_of_several_commands_is_next() -> None:
-    strategy = library.Strategy(read(STRATEGY))
+    strategy = pursue_strategy.Strategy(read(STRATEGY))
     moment, command = strategy.next_command(state(), now=10.0)
     assert (moment, command.event) == (10.0 + 2.0 * 3, "bot1_c2a")
     moment, command = strategy.next_command(state(clocks=(1.0, 0.0)), now=10.0)
@@ -233,7 +233,7 @@ def test_the_first_of_several_commands_is_next() -> None:
 
 
 def test_a_state_without_commands_has_no_next_one() -> None:
-    strategy = library.Strategy(read(STRATEGY))
+    strategy = pursue_strategy.Strategy(read(STRATEGY))
     assert strategy.next_command(state(Sopen=0), now=10.0) is None
     assert strategy.next_command(state(bot1="a"), now=10.0) is None
 
@@ -241,7 +241,7 @@ def test_a_state_without_commands_has_no_next_one() -> None:
 def test_a_strategy_with_something_amiss_is_told() -> None:
     for broken in (STRATEGY.replace("Cx < 6", "Cx ~ 6"), STRATEGY.replace("do:", "doo:"), "format: 1\nstrategy: []"):
         with pytest.raises(library.DataError):
-            library.Strategy(read(broken))
+            pursue_strategy.Strategy(read(broken))
 
 
 def test_a_file_of_another_format_is_told(tmp_path: Path) -> None:
@@ -262,3 +262,13 @@ def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) ->
     assert library.data_file(str(source), "bot", "model.yaml", str(places[1])) == str(places[1] / "model.yaml")
     with pytest.raises(library.DataError, match="~config"):
         library.data_file(str(source), "bot", "nothing.yaml")
+
+
+@pytest.mark.parametrize(
+    ("seq", "stamp", "late"),
+    [(5, 9.0, True), (5, 10.0, True), (6, 9.0, True), (6, 10.0, False), (6, 11.0, False), (7, 10.0, False),
+     (5, 11.0, False), (7, 9.0, False)],
+)  # fmt: skip
+def test_a_state_that_was_published_before_the_known_one_is_older(seq: int, stamp: float, late: bool) -> None:
+    known = library.SystemState(6, 10.0, {}, {}, {})
+    assert library.older(known._replace(seq=seq, stamp=stamp), known) is late

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Tuple
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from node_modules import library, model, observer_core, read
+from node_modules import library, model, observer_core, pursue_strategy, read
 
 CHASE = """
 format: 1
@@ -93,7 +93,7 @@ class Journey:
 
     def __init__(self, text: str = CHASE, cover: Any = None, **options: Any) -> None:
         self.logs: List[Tuple[str, str]] = []
-        table = None if cover is None else library.read_cover(read(cover))
+        table = None if cover is None else pursue_strategy.read_cover(read(cover))
         log = lambda level, message: self.logs.append((level, message))  # noqa: E731
         self.mission = observer_core.Mission(model.Model(read(text)), table, log, **options)
 
@@ -104,7 +104,11 @@ class Journey:
 
     def tick(self) -> Any:
         """What happens at the moment that the mission asked to be woken at."""
-        moment = self.mission.next_moment(0.0)
+        return self.tick_from(0.0)
+
+    def tick_from(self, now: float) -> Any:
+        """The same, asked at this moment."""
+        moment = self.mission.next_moment(now)
         states = self.mission.tick(moment)
         return moment, (states[-1] if states else None)
 
@@ -214,6 +218,11 @@ def test_no_text_harms_the_state(texts: List[str]) -> None:
     assert journey.mission.seq - 1 == journey.mission.counts["taken"]
 
 
+def test_a_word_that_is_far_too_long_is_none_and_is_not_logged(chase: Journey) -> None:
+    chase.hear("x" * 1000000, 102.0)
+    assert chase.mission.counts["unreadable"] == 1 and len(chase.logs[-1][1]) < 200
+
+
 def test_the_goal_wins(chase: Journey) -> None:
     assert chase.hear("reachObj:reachObj_going_initial_location2unlocked@1", 105.0) is None
     assert chase.hear("reachObj:reachObj_going_initial_location2unlocked@1", 106.5).status == "running"
@@ -244,7 +253,7 @@ def test_a_robot_that_is_late_is_told_once_and_may_still_arrive(chase: Journey) 
     moment = chase.mission.next_moment(102.0)
     assert moment == pytest.approx(106.1)
     assert chase.mission.tick(moment) == [] and chase.mission.late == {"bot"}
-    assert chase.mission.next_moment(moment) is None
+    assert chase.mission.next_moment(moment) == pytest.approx(136.0)
     assert chase.hear("bot_going_a_to_b2b", 120.0).locations["bot"] == "b"
     assert not chase.mission.late
 
@@ -309,7 +318,7 @@ def test_clocks_may_be_beside_a_zone_by_the_tolerance_and_no_more() -> None:
 
 
 def test_it_can_be_told_to_go_on_without_cover() -> None:
-    journey = Journey(cover=COVER, stop_when_uncovered=False)
+    journey = Journey(cover=COVER, on_uncovered="warn")
     journey.hear("_start_", 0.0)
     assert journey.hear("bot_a2b", 1.5).status == "running"
     assert journey.mission.counts["uncovered"] == 1
@@ -319,3 +328,25 @@ def test_a_model_with_something_amiss_is_told() -> None:
     for broken in (CHASE.replace("initial: a", "initial: z"), CHASE.replace("Cbot > 1", "Cbot ~ 1"), "format: 1"):
         with pytest.raises(library.DataError):
             model.Model(read(broken))
+
+
+# Commands of machines whose clocks are ahead --------------------------------------------------------------------------
+
+
+def test_a_command_that_is_early_by_little_waits_for_its_moment(chase: Journey) -> None:
+    assert chase.hear("bot:bot_a2b@1", 100.95) is None
+    moment, state = chase.tick_from(100.95)
+    assert moment == pytest.approx(101.0, abs=1e-4) and state.locations["bot"] == "going_a_to_b"
+    assert chase.mission.counts["impossible"] == 0
+
+
+def test_a_command_that_is_too_early_is_dropped(chase: Journey) -> None:
+    assert chase.hear("bot:bot_a2b@1", 100.5) is None
+    assert chase.mission.counts["impossible"] == 1 and chase.mission.next_moment(100.5) is None
+
+
+def test_an_early_command_that_an_event_overtakes_is_stale(chase: Journey) -> None:
+    chase.hear("bot:bot_a2b@1", 100.95)
+    chase.hear("bot_a2b", 100.99)
+    assert chase.hear("_ping_", 101.1).seq == 2
+    assert chase.mission.tick(101.1) == [] and chase.mission.seq == 2

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -47,3 +49,20 @@ def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
             after = clock.tick(real)
             assert before <= after <= before + 0.02 + 1e-9
             before = after
+
+
+def test_it_goes_on_where_a_killed_one_was(tmp_path: Path) -> None:
+    path = str(tmp_path / "pursue" / "example" / "clock-1")
+    memory = sim_clock_core.Memory(path)
+    assert memory.last is None
+    for moment in (1.02, 123456789.25, 7.5):
+        memory.keep(moment)
+        assert sim_clock_core.Memory(path).last == moment, "a shorter number leaves nothing of a longer one"
+    again = sim_clock_core.SimClock(sim_clock_core.Pace(step=0.02), sim_clock_core.Memory(path).last)
+    assert again.tick(0.0) == pytest.approx(7.52)
+
+
+def test_old_clocks_are_forgotten(tmp_path: Path) -> None:
+    for number in range(sim_clock_core.KEPT + 5):
+        sim_clock_core.Memory(str(tmp_path / f"clock-{number}"))
+    assert len(list(tmp_path.iterdir())) == sim_clock_core.KEPT

@@ -40,6 +40,23 @@ def test_a_goal_may_be_heard_before_the_state() -> None:
     assert world.next_moments()[0] == pytest.approx(114.45)
 
 
+def test_the_clock_may_be_behind_when_a_goal_is_heard() -> None:
+    """In fast simulated time a busy node hears of the time late; its robot must not stay for ever."""
+    world = simulator()
+    world.on_goal("bot", 104.0)
+    world.on_state(leaves(), real=1.0)
+    assert world.next_moments()[0] is not None
+
+
+def test_a_goal_starts_one_movement() -> None:
+    world = simulator()
+    world.on_goal("bot", 105.0)
+    world.on_state(leaves(), real=1.0)
+    world.on_state(leaves(seq=3, stamp=105.6, bot="b"), real=2.0)
+    world.on_state(leaves(seq=4, stamp=106.2), real=3.0)
+    assert world.next_moments()[0] is None
+
+
 def test_an_old_goal_starts_no_new_movement() -> None:
     world = simulator()
     world.on_goal("bot", 103.0)
@@ -88,13 +105,15 @@ def test_each_end_is_reported_once_when_the_state_follows() -> None:
     assert world.next_moments() == (None, None)
 
 
-def test_without_a_receipt_the_report_is_repeated_a_few_times() -> None:
+def test_without_a_receipt_the_report_is_repeated_ever_more_slowly_until_a_state_shows_it() -> None:
     world = simulator()
     world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
     assert world.due(126.0, 2.0)
     assert world.next_moments() == (None, 2.5)
     assert world.due(126.0, 2.4) == []
-    assert len([1 for tenth in range(25, 100) for _ in world.due(126.0, tenth / 10)]) == simulator_core.REPEATS
+    assert [tenth for tenth in range(25, 200) if world.due(126.0, tenth / 10)] == [25, 35, 55, 95, 135, 175]
+    world.on_state(state(MODEL, 3, 126.0, {"Cthief": 0.0}, thief="b"), real=20.0)
+    assert world.due(200.0, 60.0) == [] and world.next_moments() == (None, None)
 
 
 def test_news_of_others_give_the_report_more_time() -> None:
@@ -173,3 +192,12 @@ def test_no_end_before_its_window_whenever_it_is_asked(asked: list) -> None:
     for now, real in asked:
         if world.due(now, real):
             assert now > 125.0
+
+
+def test_a_state_that_comes_late_starts_nothing() -> None:
+    world = simulator()
+    world.on_goal("bot", 105.0)
+    world.on_state(leaves(), real=1.0)
+    world.on_state(leaves(seq=3, stamp=115.0, bot="b"), real=2.0)
+    world.on_state(leaves(), real=3.0)
+    assert world.due(200.0, 4.0) == []

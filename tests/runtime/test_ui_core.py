@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import model_data, mover, pursue_library, pursue_model, state, ui_core, ui_players, worker
+from ui_package import model_data, mover, pursue_model, pursue_strategy, state, ui_core, ui_players, worker
 
 DATA = model_data(
     mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent")
@@ -31,7 +31,7 @@ def mission(player=None, orders=None):
 
 def orders(*commands: dict):
     start = {"nurse": "s"}
-    return pursue_library.Strategy({"commands_agents": ["nurse"], "reaction": 0.1,
+    return pursue_strategy.Strategy({"commands_agents": ["nurse"], "reaction": 0.1,
                                     "strategy": [{"state": start, "commands": list(commands)}]})
 
 
@@ -266,3 +266,28 @@ def test_the_menu_lists_by_number() -> None:
     assert lines[0].split() == ["1", "thief_a2b"]
     assert lines[1].split()[:2] == ["2", "boy:screw"] and "in 2.5 time units, for 1.5" in lines[1]
     assert "stop" in lines[-1]
+
+
+# What people report
+
+def test_people_report_the_end_of_what_they_are_told() -> None:
+    crew = pursue_model.Model(model_data(mover("nurse", "human", 9), worker("cook", "human"), worker("boy", "agent")))
+    busy = state(crew, 3, 100.0, {}, nurse="going_a_to_b", cook="doing_screw_in_s", boy="doing_screw_in_s")
+    given = ui_core.tasks(crew, busy)
+    assert [(task.agent, task.text) for task in given] == [("nurse", "go from a to b"), ("cook", "do screw, at s")]
+    assert ui_core.tasks(crew, state(crew, 1, 100.0, {})) == []
+    assert ui_core.answer("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
+    assert ui_core.answer("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
+    assert ui_core.answer("done", [], set(), given) == ("", "who? expected done nurse or done cook")
+    assert ui_core.answer("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
+    assert ui_core.answer("done boy", [], set(), given) == ("", "boy has nothing to do now")
+    assert ui_core.answer("done", [], set(), []) == ("", "there is nothing to do now")
+
+
+def test_a_state_that_comes_late_is_no_news() -> None:
+    shown = mission()
+    shown.on_state(at(1, 100.0, event="_start_"), 100.0)
+    now = at(3, 110.0, bot="b", event="bot_going_a_to_b2b")
+    shown.on_state(now, 110.0)
+    assert shown.on_state(at(2, 105.0, bot="going_a_to_b", event="bot_a2b"), 111.0) == []
+    assert shown.state == now

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import py_compile
+import re
 import shutil
 import socket
 import subprocess
@@ -14,6 +15,7 @@ from typing import Dict, Iterator
 
 import pytest
 import yaml
+from rendered_scripts import TEMPLATES
 from ui_package import SCRIPTS, model_data, mover
 
 pytest.importorskip("rospy", reason="ROS is not installed")
@@ -28,6 +30,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
     (folder / "config" / "model.yaml").write_text(yaml.safe_dump(model))
     (folder / "config" / "ui.yaml").write_text("format: 1\nnodes: [observer, controller_bot]\n")
+    (folder / "config" / "poses.yaml").write_text("format: 1\nposes: {a: [0, 0, 0], b: [9, 0, 0]}\n")
+    shutil.copytree(str(TEMPLATES / "UI" / "web"), str(folder / "web"))
     return folder
 
 
@@ -98,6 +102,39 @@ def test_a_wrong_trace_is_refused_with_its_place(package: Path, ros: Dict[str, s
     done = run(package, ros, "--trace", str(trace))
     assert done.returncode == 2
     assert f"{trace}:2: step 2" in done.stderr
+
+
+def test_without_tornado_there_is_no_page_and_the_reason_is_told(
+    package: Path, ros: Dict[str, str], tmp_path: Path
+) -> None:
+    (tmp_path / "tornado").mkdir()
+    (tmp_path / "tornado" / "__init__.py").write_text("raise ImportError('it is not here')")
+    without = {**ros, "PYTHONPATH": os.pathsep.join([str(tmp_path), ros.get("PYTHONPATH", "")])}
+    done = run(package, without, "--web", "__name:=pageless")
+    assert done.returncode == 2
+    assert "UI: --web needs tornado, and it is not here: install python3-tornado" in done.stderr
+    assert "Traceback" not in done.stderr
+    done = run(package, without, "--wait", "0.5", "__name:=plain")
+    assert "Not ready after 0.5 s" in done.stdout, "nobody else needs it"
+
+
+def test_a_taken_port_is_told(package: Path, ros: Dict[str, str]) -> None:
+    pytest.importorskip("tornado")
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen(1)
+        port = taken.getsockname()[1]
+        done = run(package, ros, "--web", "--port", str(port), "__name:=second")
+    assert done.returncode == 2
+    assert f"UI: cannot serve the page on 127.0.0.1, port {port}" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_address_of_the_page_is_told(package: Path, ros: Dict[str, str]) -> None:
+    pytest.importorskip("tornado")
+    done = run(package, ros, "--web", "--port", "0", "--host", "0.0.0.0", "--wait", "0.5", "__name:=shown")
+    assert done.returncode == 1, done.stderr
+    assert re.search(r"^The page is at http://[^/]+:\d+/\?token=[\w-]{20,}$", done.stdout, re.MULTILINE), done.stdout
 
 
 class Stage:

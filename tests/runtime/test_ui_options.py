@@ -34,7 +34,26 @@ def test_flags_are_true_or_false() -> None:
     assert read(params={"autostart": "true"}, terminal=True).autostart
 
 
+def test_a_page_is_served_on_loopback_where_it_is_wanted() -> None:
+    assert not read().web
+    options = read(["--web"])
+    assert (options.web, options.host, options.port, options.token) == (True, "127.0.0.1", 8080, "")
+    options = read(params={"web": True, "host": "0.0.0.0", "port": 0, "token": 123456789})
+    assert (options.web, options.host, options.port, options.token) == (True, "0.0.0.0", 0, "123456789")
+
+
+def test_whoever_has_a_page_starts_the_mission_there() -> None:
+    assert read(["--web"]).autostart is False
+    assert read(["--web", "--autostart"]).autostart is True
+
+
 @pytest.mark.parametrize("params, expected", [
+    ({"port": 65536}, "port is 65536; expected a whole number from 0"),
+    ({"port": 80.5}, "port is 80.5; expected a whole number from 0"),
+    ({"port": -1}, "port is -1; expected a number of at least 0"),
+    ({"port": "http"}, "port is 'http'; expected a number"),
+    ({"token": "short"}, "token has 5 characters; expected 8 at least"),
+    ({"web": "perhaps"}, "web is 'perhaps'; expected true or false"),
     ({"mode": "quick"}, "mode is 'quick'; expected one of ask, still, random, trace"),
     ({"mode": "trace"}, "needs a trace file"),
     ({"seed": "x"}, "seed is 'x'; expected a number"),
@@ -48,6 +67,15 @@ def test_a_wrong_option_is_refused(params: dict, expected: str) -> None:
     with pytest.raises(ui_options.OptionError) as caught:
         read(params=params)
     assert expected in str(caught.value)
+
+
+def test_the_nodes_are_those_of_the_mission_but_for_what_this_launch_knows_better() -> None:
+    listed = ("observer", "controller_bot", "simulator")
+    assert ui_options.expected({}, listed) == listed
+    assert ui_options.expected({"without": "simulator", "also": "recorder"}, listed) == (*listed[:2], "recorder")
+    assert ui_options.expected({"nodes": "one, two", "also": "recorder"}, listed) == ("one", "two")
+    with pytest.raises(ui_options.OptionError, match="without"):
+        ui_options.expected({"without": 7}, listed)
 
 
 def test_help_says_what_there_is(capsys: pytest.CaptureFixture) -> None:

@@ -2,40 +2,21 @@
 
 from __future__ import annotations
 
-import atexit
 import importlib
-import shutil
-import sys
-import tempfile
-from pathlib import Path
 from typing import Any, Dict
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from rendered_scripts import importable
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "templates" / "catkin"
-NAMES = {"scenario": "example", "generator": "0", "package": "UI"}
-
-
-def render(folder: Path) -> None:
-    """Writes the scripts of the package, and those that every package has, to the folder."""
-    for source in (TEMPLATES / "common" / "scripts", TEMPLATES / "UI" / "scripts"):
-        environment = Environment(loader=FileSystemLoader(str(source)), undefined=StrictUndefined, trim_blocks=True,
-                                  lstrip_blocks=True, keep_trailing_newline=True)
-        for path in sorted(source.glob("*.j2")):
-            (folder / path.stem).write_text(environment.get_template(path.name).render(NAMES), encoding="utf-8")
-
-
-SCRIPTS = Path(tempfile.mkdtemp(prefix="ui_package_"))
-atexit.register(shutil.rmtree, str(SCRIPTS), ignore_errors=True)
-render(SCRIPTS)
-sys.path.insert(0, str(SCRIPTS))
+SCRIPTS = importable("common", "UI", package="UI")
 
 pursue_library: Any = importlib.import_module("pursue_library")
 pursue_model: Any = importlib.import_module("pursue_model")
+pursue_strategy: Any = importlib.import_module("pursue_strategy")
 sim_clock_core: Any = importlib.import_module("sim_clock_core")
 simulator_core: Any = importlib.import_module("simulator_core")
 ui_core: Any = importlib.import_module("ui_core")
 ui_options: Any = importlib.import_module("ui_options")
+ui_page: Any = importlib.import_module("ui_page")
 ui_players: Any = importlib.import_module("ui_players")
 ui_terminal: Any = importlib.import_module("ui_terminal")
 ui_trace: Any = importlib.import_module("ui_trace")

@@ -35,4 +35,5 @@ def files(name: str, controllers: str = "distributed", reach_obj: str = "dedicat
     """The workspace of the scenario, in memory; a general controller plays the ideal game, as the original's does."""
     ideal = controllers == "general"
     reaction = Fraction(0) if ideal else REACTION
-    return generate(*world(name, ideal), Options(controllers=controllers, reach_obj=reach_obj, reaction=reaction))
+    options = Options(controllers, reach_obj, reaction, "controllable" if ideal else "reported")
+    return generate(*world(name, ideal), options)

@@ -1,0 +1,114 @@
+"""again.sh runs a program again when it was killed, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import List
+
+import pytest
+from rendered_scripts import NAMES, TEMPLATES
+
+ONCE_KILLED = 'echo $$ >>"$0"; [[ $(wc -l <"$0") == 2 ]] && exit 5; kill -9 $$'
+
+COUNTS = """
+import signal, sys, time
+heard = []
+for sign in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(sign, lambda number, _: heard.append(number))
+open(sys.argv[1], "w").close()
+while not heard:
+    time.sleep(0.05)
+time.sleep(0.7)
+open(sys.argv[1], "w").write("".join(f"{number:d} " for number in heard))
+sys.exit(3)
+"""
+"""Notes which signals it gets, and takes its time to end."""
+
+
+@pytest.fixture
+def again(tmp_path: Path) -> List[str]:
+    """The words before the program's."""
+    text = (TEMPLATES / "bringup" / "launch" / "again.sh.j2").read_text()
+    for name, value in NAMES.items():
+        text = text.replace("{{ " + name + " }}", value)
+    script = tmp_path / "again.sh"
+    script.write_text(text)
+    return ["bash", str(script)]
+
+
+def lives(process: int) -> bool:
+    """True while there is such a process, and it is not a dead one that nobody has asked about."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def gone(process: int) -> bool:
+    """True as soon as it is no more; False after some seconds."""
+    deadline = time.monotonic() + 10
+    while lives(process) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return not lives(process)
+
+
+def started(command: List[str], note: Path) -> "tuple[subprocess.Popen[bytes], int]":
+    """A program that notes its number and then does nothing, under again.sh in a session of its own."""
+    process = subprocess.Popen(
+        [*command, "bash", "-c", 'echo $$ >"$0"; exec sleep 1000', str(note)], start_new_session=True
+    )
+    deadline = time.monotonic() + 10
+    while not (note.exists() and note.read_text().endswith("\n")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return process, int(note.read_text())
+
+
+def test_the_exit_status_is_passed_on(again: List[str]) -> None:
+    for status in (0, 1, 7):
+        assert subprocess.run([*again, "bash", "-c", f"exit {status}"], check=False).returncode == status
+
+
+def test_a_program_that_was_killed_runs_again(again: List[str], tmp_path: Path) -> None:
+    note = tmp_path / "note"
+    done = subprocess.run([*again, "bash", "-c", ONCE_KILLED, str(note)], capture_output=True, check=False)
+    assert (done.returncode, len(note.read_text().split())) == (5, 2)
+
+
+def test_the_program_reads_what_it_is_given(again: List[str]) -> None:
+    done = subprocess.run([*again, "cat"], input="typed\n", capture_output=True, text=True, check=False)
+    assert done.stdout == "typed\n"
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("whole", [False, True], ids=["it", "its group"])
+def test_who_ends_it_ends_the_program(again: List[str], tmp_path: Path, sign: signal.Signals, whole: bool) -> None:
+    process, child = started(again, tmp_path / "note")
+    (os.killpg if whole else os.kill)(process.pid, sign)
+    assert process.wait(10) != 0
+    assert gone(child)
+
+
+def test_a_signal_for_the_whole_group_comes_once(again: List[str], tmp_path: Path) -> None:
+    """rospy may wait for ever when a second one interrupts the first."""
+    note = tmp_path / "note"
+    process = subprocess.Popen([*again, sys.executable, "-c", COUNTS, str(note)], start_new_session=True)
+    deadline = time.monotonic() + 10
+    while not note.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(10) == 3
+    assert note.read_text() == "2 "
+
+
+@pytest.mark.skipif(shutil.which("setpriv") is None, reason="needs setpriv (package util-linux)")
+def test_killed_itself_it_takes_the_program_along(again: List[str], tmp_path: Path) -> None:
+    process, child = started(again, tmp_path / "note")
+    process.kill()
+    process.wait()
+    assert gone(child)

@@ -1,0 +1,86 @@
+"""A node that is interrupted ends in its own time: rospy's handler of the signal may wait for ever for itself."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from typing import List
+
+import pytest
+from node_modules import SCRIPTS
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+PROGRAM = """
+import os, signal, sys, time
+sys.path.insert(0, sys.argv[1])
+import rospy
+from pursue_node import Ending
+
+shutdowns, deep = [], []
+
+def interrupt():
+    for sign in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+        os.kill(os.getpid(), sign)
+
+def shutdown(reason):
+    deep.append(len(shutdowns))
+    shutdowns.append(reason)
+    interrupt()
+    shutdowns.pop()
+
+rospy.is_shutdown, rospy.signal_shutdown = lambda: False, shutdown
+for sign in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(sign, lambda *_: rospy.signal_shutdown("as rospy does it"))
+ending = Ending()
+assert not ending.called
+"""
+
+
+def run(rest: str) -> List[str]:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM + rest, str(SCRIPTS)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+def test_a_signal_ends_the_node_when_it_waits_and_at_once() -> None:
+    assert run("interrupt(); assert ending.called and not deep; print(ending.wait(linger=1000)); print(deep)") == [
+        "0", "[0]"
+    ]
+
+
+def test_signals_that_come_while_it_ends_change_nothing() -> None:
+    assert run("ending.end(3); print(ending.wait()); print(deep)") == ["3", "[0]"]
+
+
+def test_a_node_that_begins_anew_is_the_same_process_with_its_signals_as_they_were() -> None:
+    program = """
+import pursue_node
+if pursue_node.ANEW in os.environ:
+    before = signal.getsignal(signal.SIGTERM)
+    pursue_node.give_way()
+    print("again", os.getpid(), os.nice(0), before == signal.SIG_DFL)
+else:
+    pursue_node.give_way()
+    ending = pursue_node.Ending()
+    ending.renew()
+    assert ending.wait(linger=1000) == 0 and ending.renewed
+    print("first", os.getpid(), os.nice(0), flush=True)
+    sys.argv = [sys.argv[2], *sys.argv[1:]]
+    pursue_node.begin_anew()
+"""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "node.py")
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(PROGRAM.split("shutdowns, deep")[0])
+            out.write("rospy.is_shutdown, rospy.signal_shutdown = lambda: False, lambda _: None\n" + program)
+        environment = {name: value for name, value in os.environ.items() if name != "PURSUE_ANEW"}
+        command = [sys.executable, file, str(SCRIPTS), file]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    (first, *one), (again, *two) = (line.split() for line in done.stdout.splitlines())
+    assert (first, again, two) == ("first", "again", [*one, "True"])

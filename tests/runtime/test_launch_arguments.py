@@ -1,0 +1,142 @@
+"""What the launch files start, with which arguments: as roslaunch itself reads them, without a master."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Dict, List
+
+import pytest
+
+from pursue_gen.language import load
+from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.workspace import Options, write_workspace
+
+roslaunch = pytest.importorskip("roslaunch", reason="ROS is not installed")
+
+SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
+MISSION = ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator", "UI"]
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The packages of a workspace."""
+    scenario, rules = load(str(SCENARIO)), Rules()
+    won = solve_scenario(scenario, rules)
+    folder = tmp_path_factory.mktemp("launch") / "ws"
+    write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
+    return folder / "src"
+
+
+class Launched:
+    """A launch file as roslaunch has understood it."""
+
+    def __init__(self, config: Any) -> None:
+        self.nodes = {(node.namespace + node.name).lstrip("/"): node for node in config.nodes}
+        self.params: Dict[str, Any] = {name: param.value for name, param in config.params.items()}
+
+    @property
+    def names(self) -> List[str]:
+        return sorted(self.nodes)
+
+
+@pytest.fixture
+def launch(packages: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """`launch(file, *arguments)` reads the file of the bringup package."""
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(packages))
+
+    def read(name: str, *arguments: str, only: Path = packages) -> Launched:
+        monkeypatch.setenv("ROS_PACKAGE_PATH", str(only))
+        config = roslaunch.config.ROSLaunchConfig()
+        file = only / "scenario_1_bringup" / "launch" / name
+        roslaunch.xmlloader.XmlLoader().load(str(file), config, argv=[str(file), *arguments])
+        return Launched(config)
+
+    return read
+
+
+def test_without_arguments_the_whole_mission_of_the_workspace_is_played_once(launch: Any) -> None:
+    found = launch("mission.launch")
+    assert found.names == sorted(MISSION)
+    assert [name for name, node in found.nodes.items() if node.required] == ["UI"]
+    assert sorted(name for name, node in found.nodes.items() if node.respawn) == sorted(set(MISSION) - {"UI"})
+    assert "again.sh" in found.nodes["UI"].launch_prefix
+    assert found.params["/UI/autostart"] is True
+    for node in MISSION:
+        assert (found.params[f"/{node}/received"], found.params[f"/{node}/again"]) == (False, False)
+    assert found.params["/UI/nodes"].split() == [name for name in MISSION if name != "UI"]
+
+
+def test_a_machine_may_run_some_of_the_nodes(launch: Any) -> None:
+    assert launch("mission.launch", "nodes:=controller_bot1").names == ["controller_bot1"]
+    assert launch("mission.launch", "nodes:=observer, UI").names == ["UI", "observer"]
+    assert launch("mission.launch", "nodes:=controller_bot").names == []
+    extra = ("use_sim_time:=true", "record:=true")
+    assert launch("mission.launch", *extra).names == sorted([*MISSION, "sim_clock", "recorder"])
+    assert launch("mission.launch", "nodes:=UI", *extra).names == ["UI"]
+    assert launch("mission.launch", "nodes:=sim_clock recorder", *extra).names == ["recorder", "sim_clock"]
+    assert launch("mission.launch", "nodes:=simulator", "simulate:=false").names == []
+
+
+def test_a_robot_needs_the_packages_of_its_own_nodes_only(launch: Any, packages: Path, tmp_path: Path) -> None:
+    for name in ("scenario_1_bringup", "controller_bot1"):
+        (tmp_path / name).symlink_to(packages / name)
+    found = launch("robot.launch", "name:=bot1", "nodes:=controller_bot1", only=tmp_path)
+    assert found.names == ["bot1/communication_manager", "bot1/pursue_reader", "controller_bot1"]
+
+
+def test_mission_after_mission_nothing_ends_for_good(launch: Any) -> None:
+    found = launch("mission.launch", "again:=true", "received:=true")
+    assert not any(node.required for node in found.nodes.values())
+    assert all(node.respawn for node in found.nodes.values())
+    assert not found.nodes["UI"].launch_prefix
+    assert found.params["/UI/autostart"] is False
+    assert launch("mission.launch", "again:=true", "autostart:=true").params["/UI/autostart"] is True
+    for node in MISSION:
+        assert (found.params[f"/{node}/received"], found.params[f"/{node}/again"]) == (True, True)
+
+
+def test_the_nodes_to_wait_for_are_those_of_the_mission_that_was_received(launch: Any) -> None:
+    found = launch("mission.launch", "received:=true", "simulate:=false", "record:=true")
+    assert "/UI/nodes" not in found.params and "/recorder/nodes" not in found.params
+    assert (found.params["/UI/without"], found.params["/UI/also"]) == ("simulator", "recorder")
+    assert found.params["/recorder/without"] == "simulator"
+    found = launch("mission.launch", "received:=true")
+    assert "/UI/without" not in found.params and "/UI/also" not in found.params
+
+
+def test_a_robot_takes_missions_and_plays_its_part_of_them(launch: Any) -> None:
+    given = ("host:=10.0.0.2", "port:=13100", "keys:=/keys", "keep:=9", "page_port:=81", "web:=true", "time_unit:=2")
+    found = launch("robot.launch", "name:=base", "nodes:=observer UI", *given)
+    assert found.names == ["UI", "base/communication_manager", "base/pursue_reader", "observer"]
+    params = found.params
+    manager, reader = "/base/communication_manager", "/base/pursue_reader"
+    assert (params[f"{manager}/host"], params[f"{manager}/port"]) == ("10.0.0.2", 13100)
+    assert (params["/UI/host"], params["/UI/port"], params["/UI/web"]) == ("127.0.0.1", 81, True)
+    assert params[f"{manager}/keys"] == params[f"{reader}/keys"] == "/keys"
+    assert params[f"{manager}/robot"] == params[f"{reader}/robot"] == "base"
+    assert (params[f"{reader}/keep"], params["/observer/time_unit"]) == (9, 2)
+    assert params[f"{reader}/nodes"] == "observer UI", "the desk is told what runs here"
+    assert launch("robot.launch", "name:=base").params[f"{reader}/nodes"] == "all"
+    assert params["/observer/received"] is params["/observer/again"] is params["/UI/again"] is True
+    assert all(node.respawn for node in found.nodes.values())
+
+
+def test_a_robot_passes_on_what_it_is_told(packages: Path) -> None:
+    """What robot.launch declares and does not use itself is an argument of mission.launch, and goes there by name."""
+    folder = packages / "scenario_1_bringup" / "launch"
+    robot, mission = ((folder / name).read_text() for name in ("robot.launch", "mission.launch"))
+    own = set(re.findall(r"\$\(arg (\w+)\)", robot))
+    declared = set(re.findall(r'<arg name="(\w+)" (?:default|doc)=', robot))
+    known = set(re.findall(r'<arg name="(\w+)" default=', mission))
+    assert declared - own <= known and {"goals", "ends", "planner", "seed"} <= declared - own
+
+
+@pytest.mark.parametrize("package", ["communication_manager", "pursue_reader"])
+def test_parameters_of_the_nodes_that_take_missions_are_those_of_their_own_launch_files(
+    launch: Any, packages: Path, package: str
+) -> None:
+    own = (packages / package / "launch" / f"{package}.launch").read_text()
+    known = set(re.findall(r'<param name="(\w+)"', own))
+    ours = {name.split("/")[-1] for name in launch("robot.launch", "name:=bot1").params if f"/{package}/" in name}
+    assert ours and ours <= known

@@ -1,0 +1,250 @@
+"""The observer holds the mission where a robot, a controller or a plan is missing, and goes on in one step."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List
+
+import pytest
+from node_modules import library
+from test_observer import CHASE, Journey
+
+COVER = """
+format: 1
+cover:
+- state: {bot: a}
+  zones: [Cbot <= 3]
+- state: {bot: going_a_to_b}
+  zones: [Cbot <= 4]
+- state: {bot: b, Sopen: 0}
+  zones: [Cbot - Creach <= -5 && Cbot <= 20]
+- state: {bot: b, Sopen: 1}
+  zones: [always]
+"""
+EVERYWHERE = {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}
+NOWHERE = {"format": 1, "cover": []}
+
+
+def journey(**options: Any) -> Journey:
+    """A mission that plans again, at its start at moment 0."""
+    given = {"on_uncovered": "plan", "controllers": ("one", "two"), "lost_after": 8.0}
+    made = Journey(CHASE, COVER, **{**given, **options})
+    made.hear("_start_", 0.0)
+    return made
+
+
+def answer(cover: Dict[str, Any]) -> Dict[str, Any]:
+    """A plan as the planner finds it (through JSON, as it comes)."""
+    answered: Dict[str, Any] = json.loads(json.dumps({"format": 1, "won": True, "strategies": {"one": {}, "two": {}},
+                                                      "people": None, "cover": cover}))
+    return answered
+
+
+def uncovered() -> Journey:
+    """The robot was faster than its model: the strategy does not know what to do, at moment 4."""
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    assert made.mission.status == "running"
+    state = made.hear("bot_going_a_to_b2b", 4.0)
+    assert (state.status, state.seq) == ("holding", 3) and "no strategy" in state.reason
+    return made
+
+
+def planned(made: Journey, cover: Dict[str, Any], now: float) -> List[Any]:
+    """The planner answers, and both controllers have the plan."""
+    number = made.mission.wanted.number
+    assert made.mission.planned(number, answer(cover), now) == []
+    made.mission.hear(f"one:_plan_@{number}", now)
+    states: List[Any] = made.mission.hear(f"two:_plan_@{number}", now)
+    return states
+
+
+# Planning again -------------------------------------------------------------------------------------------------------
+
+
+def test_a_plan_is_wanted_from_where_the_mission_is() -> None:
+    made = uncovered()
+    wanted = made.mission.wanted
+    assert wanted.locations["bot"] == "b" and wanted.values["Pbot"] == 2 and wanted.excused == ()
+    assert (wanted.clocks["Cbot"], wanted.clocks["Creach"], wanted.stamp) == (0.0, 4.0, 4.0)
+    assert wanted.ahead == 1.0
+
+
+def test_while_the_mission_holds_commands_are_dropped_and_reports_count() -> None:
+    made = uncovered()
+    assert made.hear("dog:catch@3", 4.5) is None and made.mission.counts["held"] == 1
+    state = made.hear("thief:thief_leaves", 11.0)
+    assert (state.seq, state.status, state.locations["thief"]) == (4, "holding", "gone")
+
+
+def test_a_plan_is_in_force_for_everybody_in_one_step() -> None:
+    made = uncovered()
+    number = made.mission.wanted.number
+    assert made.mission.planned(number, answer(EVERYWHERE), 4.2) == []
+    assert made.mission.wanted is None and made.mission.proposal["plan"] == number
+    assert made.mission.hear(f"one:_plan_@{number}", 4.3) == [] and made.mission.status == "holding"
+    (state,) = made.mission.hear(f"two:_plan_@{number}", 4.4)
+    assert (state.status, state.seq, state.plan, state.event) == ("running", 4, number, "")
+    assert made.mission.proposal is None
+    assert library.parse_state(library.format_state(state)).plan == number
+
+
+def test_a_command_from_before_the_new_plan_is_stale() -> None:
+    made = uncovered()
+    planned(made, EVERYWHERE, 4.4)
+    assert made.hear("dog:catch@3", 4.5) is None and made.mission.counts["stale"] == 1
+    assert made.hear("dog:catch@4", 4.5).seq == 5
+
+
+def test_an_event_while_a_plan_is_looked_for_makes_it_look_from_there() -> None:
+    made = uncovered()
+    first = made.mission.wanted.number
+    made.hear("thief:thief_leaves", 11.0)
+    assert made.mission.wanted.number > first and made.mission.wanted.locations["thief"] == "gone"
+    assert made.mission.planned(first, answer(EVERYWHERE), 11.1) == [] and made.mission.proposal is None
+
+
+def test_an_event_after_the_plan_was_found_makes_it_look_again() -> None:
+    made = uncovered()
+    number = made.mission.wanted.number
+    made.mission.planned(number, answer(EVERYWHERE), 4.2)
+    made.hear("thief:thief_leaves", 11.0)
+    assert made.mission.proposal is None and made.mission.wanted.number == number + 1
+    assert made.mission.hear(f"one:_plan_@{number}", 12.0) == made.mission.hear(f"two:_plan_@{number}", 12.0) == []
+
+
+def test_an_event_that_leads_back_to_what_the_strategy_knows_ends_the_search() -> None:
+    made = uncovered()
+    assert made.hear("dog:catch", 4.5).status == "running"
+    assert made.mission.wanted is None
+
+
+def test_a_mission_that_is_over_wants_no_plan() -> None:
+    made = uncovered()
+    made.hear("_stop_", 4.5)
+    assert made.mission.wanted is None
+
+
+def test_a_plan_that_comes_too_late_is_made_again_with_more_time_ahead() -> None:
+    made = uncovered()
+    ahead = made.mission.wanted.ahead
+    for late in range(1, 5):
+        assert planned(made, NOWHERE, 4.0 + 3.0 * late) == []
+        assert made.mission.wanted.ahead > ahead
+    states = planned(made, NOWHERE, 30.0)
+    assert states[-1].status == "stopped" and "too late" in states[-1].reason
+
+
+def test_where_there_is_no_plan_it_stops_and_says_why() -> None:
+    made = uncovered()
+    (state,) = made.mission.unplanned(made.mission.wanted.number, "the thief is faster", 4.5)
+    assert state.status == "stopped" and "no strategy" in state.reason and "the thief is faster" in state.reason
+
+
+@pytest.mark.parametrize("cover", [None, {"format": 1}, {"format": 1, "cover": [{"state": {}, "zones": ["?"]}]}])
+def test_a_plan_that_cannot_be_read_is_none(cover: Any) -> None:
+    made = uncovered()
+    (state,) = made.mission.planned(made.mission.wanted.number, answer(cover), 4.2)
+    assert state.status == "stopped" and "cannot be read" in state.reason
+
+
+def test_time_that_leaves_what_the_strategy_knows_is_noticed() -> None:
+    """No command came (its controller is dead, say): time passes the last moment for one."""
+    made = journey()
+    moment = made.mission.next_moment(0.0)
+    assert moment == pytest.approx(3.0 + 2.0 + 0.1)
+    assert made.mission.tick(moment - 0.5) == []
+    (state,) = made.mission.tick(moment)
+    assert (state.status, state.seq) == ("holding", 2)
+
+
+# Robots ---------------------------------------------------------------------------------------------------------------
+
+
+def test_who_is_late_for_too_long_is_lost_and_a_plan_without_it_is_wanted() -> None:
+    made = journey(on_uncovered="plan")
+    made.hear("bot_a2b", 2.0)
+    moments = []
+    while not made.mission.lost and len(moments) < 5:
+        moments.append(made.mission.next_moment(moments[-1] if moments else 2.0))
+        made.mission.tick(moments[-1])
+    assert moments[0] == pytest.approx(6.1) and moments[-1] == pytest.approx(6.0 + 8.0)
+    assert made.mission.wanted.excused == ("bot",)
+    (state,) = made.mission.unplanned(made.mission.wanted.number, "nobody else can", 15.0)
+    assert state.status == "stopped" and "bot is late by 8" in state.reason
+
+
+def test_who_is_only_late_is_waited_for_where_there_is_no_plan_without_it() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    made.mission.tick(6.1)
+    made.mission.tick(8.2)  # beyond what the strategy knows
+    assert made.mission.status == "holding" and made.mission.wanted.excused == ("bot",)
+    (state,) = made.mission.unplanned(made.mission.wanted.number, "nobody else can", 9.0)
+    assert state.status == "holding" and "waiting for bot" in state.reason and made.mission.wanted is None
+    assert made.hear("bot_going_a_to_b2b", 10.0).status == "running"
+
+
+def test_a_robot_that_has_failed_is_lost_at_once() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    state = made.hear("bot:_failed_", 3.0)
+    assert (state.status, state.lost) == ("holding", ("bot",)) and "bot has failed" in state.reason
+    assert library.parse_state(library.format_state(state)).lost == ("bot",)
+    assert made.hear("bot:_failed_", 3.5) is None
+
+
+def test_a_robot_that_is_not_under_way_cannot_fail() -> None:
+    made = journey()
+    assert made.hear("bot:_failed_", 1.0) is None and made.hear("nobody:_failed_", 1.0) is None
+    assert made.mission.counts["impossible"] == 2 and not made.mission.lost
+
+
+def test_a_lost_robot_that_arrives_is_back() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    made.hear("bot:_failed_", 3.0)
+    planned(made, EVERYWHERE, 3.5)
+    assert made.mission.status == "running" and set(made.mission.lost) == {"bot"}
+    state = made.hear("bot_going_a_to_b2b", 30.0)
+    assert state.lost == () and state.status == "running"
+
+
+# Controllers ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_mission_holds_while_a_controller_is_silent() -> None:
+    made = journey()
+    (state,) = made.mission.silent("one", 1.0)
+    assert (state.status, state.seq, state.reason) == ("holding", 2, "one is silent")
+    assert made.hear("bot:bot_a2b@2", 1.5) is None
+    assert made.mission.silent("one", 1.6) == []
+    (state,) = made.mission.back("one", 2.0)
+    assert (state.status, state.seq, state.reason) == ("running", 3, "")
+
+
+def test_who_comes_back_too_late_for_the_strategy_finds_a_new_plan() -> None:
+    made = journey()
+    made.mission.silent("one", 1.0)
+    made.mission.back("one", 9.0)
+    assert made.mission.status == "holding" and made.mission.wanted is not None
+    assert planned(made, EVERYWHERE, 9.5)[-1].status == "running"
+
+
+def test_a_plan_does_not_end_the_waiting_for_a_silent_controller() -> None:
+    made = uncovered()
+    made.mission.silent("one", 4.1)
+    number = made.mission.wanted.number
+    made.mission.planned(number, answer(EVERYWHERE), 4.2)
+    made.hear(f"two:_plan_@{number}", 4.3)
+    assert made.mission.status == "holding"
+    made.mission.back("one", 5.0)
+    assert made.mission.status == "holding"
+    assert made.hear(f"one:_plan_@{number}", 5.1).status == "running"
+
+
+def test_a_mission_that_holds_can_be_stopped_and_still_be_won() -> None:
+    assert uncovered().hear("_stop_", 5.0).status == "stopped"
+    made = uncovered()
+    made.hear("reachObj_going_initial_location2unlocked", 7.0)
+    assert made.hear("dog:catch", 8.0).status == "won"

@@ -1,0 +1,206 @@
+"""What the page shows: the map, who does what between which moments, what can be said, what has happened."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, Optional
+
+import pytest
+from ui_package import model_data, mover, pursue_library, pursue_model, state, ui_page, worker
+
+MODEL = pursue_model.Model(
+    model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent"))
+)
+PLACES = {"a": (0.0, 0.0), "b": (9.0, 0.0), "s": (3.0, 4.0)}
+PLAN = ui_page.Plan(PLACES, (("a", "b", 9.0),))
+
+
+def page(**more: Any) -> Any:
+    return ui_page.Page(MODEL, PLAN, **more)
+
+
+def view(shown: Any, now: Any, at: float = 0.0, phase: str = "running", verdict: Any = None) -> Dict[str, Any]:
+    seen: Dict[str, Any] = shown.view(ui_page.Facts(phase, (), now, at, at, verdict))
+    json.dumps(seen, allow_nan=False)
+    return seen
+
+
+def agent(seen: Dict[str, Any], name: str) -> Dict[str, Any]:
+    return next(agent for agent in seen["agents"] if agent["name"] == name)
+
+
+def at(seq: int, stamp: float, clock: float = 50.0, clocks: Optional[Dict[str, float]] = None, **more: Any) -> Any:
+    every = {name: clock for name in MODEL.clocks}
+    return state(MODEL, seq, stamp, {**every, **(clocks or {})}, **more)
+
+
+# The map
+
+def test_the_scene_has_the_map_everybody_and_a_button_for_each_thing_that_nobody_controls() -> None:
+    scene = page().scene()
+    assert scene["places"] == {"a": [0.0, 0.0], "b": [9.0, 0.0], "s": [3.0, 4.0]}
+    assert scene["ways"] == [["a", "b", 9.0]]
+    assert [agent["kind"] for agent in scene["agents"]] == ["robot", "agent", "human", "agent"]
+    buttons = {button["word"]: (button["agent"], button["label"]) for button in scene["buttons"]}
+    assert buttons == {"thief_a2b": ("thief", "a → b"), "thief_b2a": ("thief", "b → a"), "boy:screw": ("boy", "screw")}
+
+
+def test_ends_are_buttons_only_on_request() -> None:
+    labels = {button["word"]: button["label"] for button in page(ends=True).scene()["buttons"]}
+    assert labels["thief_going_a_to_b2b"] == "arrive at b"
+    assert labels["boy:screwDONE"] == "screw is done"
+
+
+def test_a_map_is_read_and_a_wrong_one_refused() -> None:
+    poses = {"poses": {"a": [1, 2, 0, 0, 0, 0, 1], "b": [3, 4, 0, 0, 0, 0, 1]}}
+    plan = ui_page.read_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
+    assert plan == ui_page.Plan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
+    assert ui_page.read_plan(poses, {}).ways == ()
+    for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}):
+        with pytest.raises(pursue_library.DataError):
+            ui_page.read_plan(wrong, {})
+
+
+# Who does what
+
+def test_a_movement_is_told_with_its_ends_and_the_window_of_its_arrival() -> None:
+    seen = view(page(), at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b"), at=20.0)
+    bot = agent(seen, "bot")
+    assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "from a to b")
+    assert (bot["since"], bot["low"], bot["high"]) == (18.0, 27.0, 28.0)
+    (arrival,) = bot["next"]
+    assert arrival["label"] == "arrive at b" and 27.0 < arrival["opens"] < 27.1 and arrival["closes"] == 28.0
+
+
+def test_an_action_is_told_where_it_is_done() -> None:
+    nurse = agent(view(page(), at(3, 120.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=20.0), "nurse")
+    assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "screw, at s")
+    assert (nurse["low"], nurse["high"]) == (22.0, 23.0)
+
+
+def test_whoever_stands_is_told_with_what_may_come_and_when() -> None:
+    seen = view(page(), at(1, 100.0, clock=0.0), at=0.0)
+    thief = agent(seen, "thief")
+    assert (thief["doing"], thief["since"]) == ("at a", None)
+    assert [choice["label"] for choice in thief["next"]] == ["a → b"]
+    assert 1.0 < thief["next"][0]["opens"] < 1.1 and thief["next"][0]["closes"] is None
+    assert seen["open"]["thief_a2b"] == [thief["next"][0]["opens"], None]
+
+
+def test_whose_turn_it_is() -> None:
+    shown = page()
+    busy = view(shown, at(2, 100.0, clocks={"Cthief": 1.0}, thief="going_a_to_b"))
+    assert busy["turn"] == "Under way: thief. The strategy decides: bot, nurse. Nobody controls: boy."
+    lost = view(shown, at(2, 100.0, thief="going_a_to_b")._replace(lost=("thief",)))
+    assert "thief" not in lost["turn"] and agent(lost, "thief")["lost"]
+    assert "holds" in view(shown, at(2, 100.0, status="holding"))["turn"]
+    assert view(shown, at(2, 100.0, status="won"))["turn"] == ""
+
+
+def test_rules_leave_nothing_to_press() -> None:
+    assert "boy:screw" not in view(page(), at(1, 100.0, values={"Prule": 1}))["open"]
+
+
+@pytest.mark.parametrize("status, live", [
+    ("waiting", False), ("running", True), ("holding", True), ("won", False), ("lost", False), ("stopped", False),
+])
+def test_every_status_can_be_shown(status: str, live: bool) -> None:
+    seen = view(page(), at(4, 100.0, status=status, reason="for a reason"), verdict=(1, "It is over."))
+    assert (seen["status"], seen["live"], seen["reason"]) == (status, live, "for a reason")
+    assert (seen["verdict"], seen["good"]) == ("It is over.", False)
+    assert bool(seen["open"]) is live
+
+
+def test_before_the_first_state_everybody_is_at_the_start() -> None:
+    seen = view(page(), None, phase="waiting for the nodes")
+    assert (seen["status"], seen["phase"], seen["at"]) == ("waiting", "waiting for the nodes", 0.0)
+    assert agent(seen, "thief")["place"] == "a"
+
+
+def test_people_are_told_what_to_do_and_when_it_is_planned_to_be_done() -> None:
+    shown = page()
+    (task,) = view(shown, at(3, 100.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=7.0)["tasks"]
+    assert (task["agent"], task["text"], task["word"]) == ("nurse", "do screw, at s", "nurse:screwDONE")
+    assert (task["since"], task["low"], task["high"]) == (6.0, 9.0, 10.0)
+    assert view(shown, at(4, 100.0))["tasks"] == []
+    assert view(shown, at(4, 100.0, nurse="doing_screw_in_s", status="stopped"))["tasks"] == []
+
+
+# What has happened
+
+def test_the_log_tells_events_in_words_each_once() -> None:
+    shown = page()
+    told = []
+    told += shown.on_state(at(1, 100.0, event="_start_"), 0.0)
+    going = at(2, 101.5, event="thief_a2b", agent="thief", thief="going_a_to_b")
+    told += shown.on_state(going, 1.5)
+    told += shown.on_state(going._replace(stamp=102.5), 2.5)
+    told += shown.on_state(at(3, 122.0, event="thief_going_a_to_b2b", agent="thief", thief="b"), 22.0)
+    told += shown.on_state(at(4, 123.0, event="screw", agent="boy", thief="b", boy="doing_screw_in_s"), 23.0)
+    told += shown.on_state(at(5, 127.0, event="screwDONE", agent="boy", thief="b"), 27.0)
+    assert [(entry["at"], entry["text"]) for entry in told] == [
+        (0.0, "the mission starts"), (1.5, "thief sets out from a to b"), (22.0, "thief arrives at b"),
+        (23.0, "boy begins screw"), (27.0, "boy has done screw"),
+    ]
+    assert told == shown.log
+    assert [entry["n"] for entry in told] == [1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("event", ["_start_", ""])
+def test_the_start_is_told_once_however_the_observer_says_it(event: str) -> None:
+    shown = page()
+    shown.on_state(at(0, 99.0, status="waiting"), 0.0)
+    for stamp in (100.0, 101.0):
+        shown.on_state(at(1, stamp, event=event), stamp - 100.0)
+    assert [entry["text"] for entry in shown.log] == ["the mission starts"]
+
+
+def test_the_log_tells_of_holding_of_lost_agents_and_of_new_plans() -> None:
+    shown = page()
+    shown.on_state(at(1, 100.0, event="_start_"), 0.0)
+    shown.on_state(at(2, 101.0, status="holding", reason="bot is lost")._replace(lost=("bot",)), 1.0)
+    shown.on_state(at(2, 102.0, status="holding", reason="bot is lost")._replace(lost=("bot",)), 2.0)
+    shown.on_state(at(3, 103.0)._replace(lost=("bot",), plan=1), 3.0)
+    shown.on_state(at(4, 104.0)._replace(plan=1), 4.0)
+    assert [entry["text"] for entry in shown.log[1:]] == [
+        "bot counts as lost", "the mission holds: bot is lost", "plan 1 is in force", "the mission goes on",
+        "bot is back",
+    ]
+
+
+def test_the_log_keeps_what_is_new() -> None:
+    shown = page()
+    for number in range(ui_page.KEPT + 5):
+        shown.note(float(number), "x")
+    assert len(shown.log) == ui_page.KEPT
+    assert shown.log[-1]["n"] == ui_page.KEPT + 5
+
+
+def test_states_of_strangers_do_no_harm() -> None:
+    shown = page()
+    strange = pursue_library.SystemState(9, 1.0, {"who": "where"}, {"n": 1}, {}, "what", "who")
+    assert [entry["text"] for entry in shown.on_state(strange, 3.0)] == ["what"]
+    hostile = pursue_library.SystemState(10, 1.0, {"bot": "<script>"}, {"Prule": 0}, dict.fromkeys(MODEL.clocks, 0.0))
+    assert agent(view(shown, hostile), "bot")["place"] == ""
+
+
+# What it may ask for
+
+@pytest.mark.parametrize("text, request_", [
+    ('{"do": "start"}', ("start", "")),
+    ('{"do": "stop"}', ("stop", "")),
+    ('{"do": "say", "word": "thief_a2b"}', ("say", "thief_a2b")),
+    (b'{"do": "done", "word": "nurse:screwDONE"}', ("done", "nurse:screwDONE")),
+])
+def test_requests_are_read(text: Any, request_: Any) -> None:
+    assert ui_page.read_request(text) == request_
+
+
+@pytest.mark.parametrize("text", [
+    "", "{", "[]", "7", "null", '"start"', "{}", '{"do": 7}', '{"do": ["start"]}', '{"do": {}}', '{"do": "kill"}',
+    '{"do": "say"}', '{"do": "say", "word": 7}', '{"do": "say", "word": ""}', '{"do": "start", "word": "x"}',
+    b"\xff\xfe", "[" * 4000, '{"do": "say", "word": null}',
+])
+def test_junk_is_refused_with_what_was_expected(text: Any) -> None:
+    with pytest.raises(ValueError, match="expected"):
+        ui_page.read_request(text)

@@ -1,0 +1,144 @@
+"""What strangers may do to the page's server, who need no token for it: it goes on serving.
+
+The server runs in a process of its own: one that hangs is killed, and takes nothing else with it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import select
+import socket
+import subprocess
+import sys
+import time
+from typing import Any, Iterator, List, Tuple
+
+import pytest
+from rendered_scripts import TEMPLATES
+from ui_package import SCRIPTS
+
+pytest.importorskip("tornado", reason="tornado is not installed")
+
+PROGRAM = """
+import resource, sys
+import ui_web
+
+soft, longest = int(sys.argv[2]), float(sys.argv[3])
+resource.setrlimit(resource.RLIMIT_NOFILE, (soft, soft))
+ui_web.PATIENCE = ui_web.LONGEST = longest
+web = ui_web.Web(sys.argv[1], "127.0.0.1", 0, "a token", dict, str, lambda: None)
+web.start()
+print(web.port, flush=True)
+sys.stdin.read()
+web.close()
+"""
+CHUNKED = b"Host: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n"
+
+
+@contextlib.contextmanager
+def serving(files: int = 256, longest: float = 60.0) -> Iterator[Tuple[int, "subprocess.Popen[bytes]"]]:
+    """A server with a token, of which we know nothing; `files`: so many may be open in its process."""
+    words = [sys.executable, "-c", PROGRAM, str(TEMPLATES / "UI" / "web"), str(files), str(longest)]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(words, cwd=str(SCRIPTS), stdin=pipe, stdout=pipe, stderr=pipe) as process:
+        assert process.stdout is not None and process.stdin is not None
+        try:
+            there, _, _ = select.select([process.stdout], [], [], 30)
+            assert there, "the server has not begun"
+            yield int(process.stdout.readline()), process
+            process.stdin.close()
+            assert process.wait(15) == 0
+        finally:
+            process.kill()
+
+
+def ask(port: int, request: bytes, wait: float = 10.0) -> bytes:
+    """What is answered, as far as it comes until the other side closes or falls silent."""
+    answer: List[bytes] = []
+    with socket.create_connection(("127.0.0.1", port), timeout=wait) as there, contextlib.suppress(OSError):
+        there.sendall(request)
+        while True:
+            answer.append(there.recv(65536))
+            if not answer[-1]:
+                break
+    return b"".join(answer)
+
+
+def serves(port: int) -> bool:
+    """True where a request is answered: with a no, for it has no token."""
+    return b" 401 " in ask(port, b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+
+
+@pytest.mark.parametrize("line", ["GET / HTTP/1.1", "POST /live HTTP/1.1", "PUT /x HTTP/1.0"])
+def test_chunks_are_refused_and_none_is_read(line: str) -> None:
+    with serving() as (port, _):
+        for size in (b"-1", b"-ffff", b"0", b"5", b"zz", b"ffffffffffffffff", b""):
+            for more in (b"", b"Content-Length: 9\r\n"):
+                request = line.encode() + b"\r\n" + CHUNKED + more + b"\r\n" + size
+                answer = ask(port, request + b"\r\nabcde\r\n0\r\n\r\n")
+                assert not answer or (answer.startswith(b"HTTP/1.1 411 ") and b"Connection: close" in answer), answer
+                assert serves(port), size
+
+
+def test_chunks_behind_other_requests_are_not_read_either() -> None:
+    first = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20
+    with serving() as (port, process):
+        ask(port, first + b"POST / HTTP/1.1\r\n" + CHUNKED + b"\r\n-1\r\n", wait=5.0)
+        assert serves(port)
+        assert process.stdin is not None and process.stderr is not None
+        process.stdin.close()
+        assert process.stderr.read() == b"", "strangers do not write on our terminal"
+
+
+def test_a_body_that_never_comes_or_a_head_that_drips_is_given_up() -> None:
+    starts = [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 4000\r\n\r\nx"]
+    with serving(longest=1.0) as (port, _):
+        slow = [socket.create_connection(("127.0.0.1", port), timeout=20) for _ in starts]
+        for there, start in zip(slow, starts):
+            there.sendall(start)
+        assert serves(port)
+        for there in slow:
+            with contextlib.suppress(ConnectionError):
+                assert there.recv(100) == b""
+            there.close()
+
+
+def test_who_does_not_read_an_answer_is_given_up() -> None:
+    many = b"GET /page.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20000
+    with serving(longest=1.0) as (port, process):
+        with socket.create_connection(("127.0.0.1", port), timeout=10) as there:
+            there.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            with contextlib.suppress(OSError):
+                there.sendall(many)
+            deadline = time.monotonic() + 20
+            while connections(process.pid) and time.monotonic() < deadline:
+                time.sleep(0.1)
+            assert not connections(process.pid)
+        assert serves(port)
+
+
+def test_many_connections_take_neither_files_nor_the_server_away() -> None:
+    most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    assert most > 600
+    with serving(files=200, longest=3.0) as (port, process), contextlib.ExitStack() as held:
+        for _ in range(400):
+            there = held.enter_context(socket.create_connection(("127.0.0.1", port), timeout=20))
+            with contextlib.suppress(OSError):
+                there.sendall(b"GET / HTTP/1.1\r\n")
+        assert connections(process.pid) < 150, "the node has files left for itself"
+        deadline = time.monotonic() + 20
+        while not serves(port):
+            assert time.monotonic() < deadline, "who does nothing makes room in time"
+            time.sleep(0.2)
+
+
+def connections(pid: int) -> int:
+    """So many sockets the process has, but for the one that listens and those of its event loop."""
+    folder = f"/proc/{pid}/fd"
+    found: List[Any] = []
+    for name in os.listdir(folder):
+        with contextlib.suppress(OSError):
+            found.append(os.readlink(os.path.join(folder, name)))
+    return sum(each.startswith("socket:") for each in found) - 3
