@@ -1,0 +1,118 @@
+"""What a strategy says at a table: what it does next, when, and which of its blocks holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Dict, List, Mapping, Optional, Tuple
+
+from pursue_gen.explanation.policy import Window, window
+from pursue_gen.explanation.policy import span as delays
+from pursue_gen.play.table import GRAIN, Board, Table
+from pursue_gen.synthesis.game import JointMove, State, joint_moves
+from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
+from pursue_gen.tga.network import Edge
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The command of the strategy that is due first if nothing happens before, at a time since the start."""
+
+    move: JointMove
+    at: Fraction
+
+
+@dataclass(frozen=True)
+class Holding:
+    """The block that holds: its number (from 1), and the zone in force (None: the strategy does not know this point).
+
+    `command` None: it says to wait.
+    """
+
+    number: int
+    block: Block
+    command: Optional[Command]
+    zone: Optional[Zone]
+
+
+class Advisor:
+    """Reads one strategy for one board."""
+
+    def __init__(self, board: Board, strategy: Strategy) -> None:
+        self._board, self.size = board, len(strategy.blocks)
+        self._book: Dict[DiscreteState, Tuple[int, Block]] = {
+            block.state: (number, block) for number, block in enumerate(strategy.blocks, start=1)
+        }
+
+    def decision(self, table: Table) -> Optional[Decision]:
+        """What the strategy decides first after the last move; None: it waits for what others do."""
+        found = self._book.get(self._named(table.entry.state))
+        if found is None:
+            return None
+        game, entry = self._board.game, table.entry
+        clocks = dict(zip(game.clocks, entry.clocks))
+        moves = {self._keys(move): move for move in joint_moves(game, entry.state) if move.controllable}
+        best: Optional[Tuple[Fraction, JointMove]] = None
+        for command in found[1].commands:
+            move = moves.get(_keys_of(command))
+            if move is None:
+                continue
+            open_ = window(game, entry, move)
+            for zone in command.zones:
+                within = span(zone, clocks)
+                delay = None if within is None else _both(within, open_).earliest(GRAIN)
+                if delay is not None and (best is None or delay < best[0]):
+                    best = delay, move
+        return None if best is None else Decision(best[1], table.since + best[0])
+
+    def holding(self, table: Table) -> Optional[Holding]:
+        """What the strategy says now; None: it has no block for this state."""
+        found = self._book.get(self._named(table.entry.state))
+        if found is None:
+            return None
+        number, block = found
+        clocks = dict(zip(self._board.game.clocks, table.here.clocks))
+        zones: List[Tuple[Optional[Command], Zone]] = [(None, zone) for zone in block.wait]
+        zones += [(command, zone) for command in block.commands for zone in command.zones]
+        for command, zone in zones:
+            within = span(zone, clocks)
+            if within is not None and within.holds(Fraction(0)):
+                return Holding(number, block, command, zone)
+        return Holding(number, block, None, None)
+
+    def _named(self, state: State) -> DiscreteState:
+        game = self._board.game
+        places = zip(game.automata, state.locations)
+        return DiscreteState(
+            tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
+            tuple(zip(game.variables, state.values)),
+        )
+
+    def _keys(self, move: JointMove) -> Tuple[Tuple[str, ...], ...]:
+        game = self._board.game
+        first, *others = (
+            _key(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges
+        )
+        return (first, *sorted(others))
+
+
+def _keys_of(command: Command) -> Tuple[Tuple[str, ...], ...]:
+    first, *others = (_key(move.automaton, move.edge) for move in command.moves)
+    return (first, *sorted(others))
+
+
+def _key(automaton: str, edge: Edge) -> Tuple[str, ...]:
+    return automaton, edge.source, edge.target, str(edge.sync), str(edge.guard)
+
+
+def span(zone: Zone, clocks: Mapping[str, Fraction]) -> Optional[Window]:
+    """The delays after which clocks that have these values now are in a zone; None: time does not get there."""
+    reached = delays(zone, clocks)
+    return None if reached is None or reached.earliest(GRAIN) is None else reached
+
+
+def _both(a: Window, b: Window) -> Window:
+    common = a.at_least(b.low, b.low_open)
+    return common if b.high is None else common.at_most(b.high, b.high_open)
+
+

@@ -1,0 +1,321 @@
+"""A game as a person has it: what they type in, what they read. Nothing here knows a terminal.
+
+Every reply leads to another session; the one before stays as it was, which is all that `undo` needs.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.words import time_text
+from pursue_gen.play.counter import Robots
+from pursue_gen.play.saving import save
+from pursue_gen.play.table import RUNNING, Board, Plan, Table, taken
+from pursue_gen.play.words import (
+    Words,
+    deed_text,
+    ending,
+    move_text,
+    overview,
+    situation,
+    window_text,
+)
+from pursue_gen.play.world import Offer, World
+from pursue_gen.report.words import objective_words
+
+GameOf = Union[World, Robots]
+
+_MOMENT = r"(\d{1,6}(?:\.\d{0,3})?)"
+_NUMBER = re.compile(rf"(\d{{1,4}})(?:\s*(?:@|at)\s*{_MOMENT})?")
+_WAIT = re.compile(rf"wait(?:\s+(?:(@|at|until)\s*)?{_MOMENT})?")
+
+HELP = (
+    "2            do number 2 of the list as soon as possible",
+    "2 @ 3.5      do it at the time 3.5 (times count from the start)",
+    "wait         until something happens",
+    "wait 2       for 2 time units, or until something happens",
+    "wait @ 7     until the time 7, or until something happens",
+    "cancel       forget what is planned for later",
+    "undo, redo   take a step back, or forward again",
+    "map          where everybody is, and the ways with their distances",
+    "why          what the strategy says here, and which of its blocks says so",
+    "log          everything that has happened so far",
+    "save FILE    write the game down: a trace for the node UI; with the ending .jsonl a journal for pursue-gen replay",
+    "help, quit   this list; the end. Enter alone shows the list of what can be done again.",
+)
+
+
+@dataclass(frozen=True)
+class Session:
+    """A game in progress; `past` and `future` are for undo and redo, the nearest table last."""
+
+    game: GameOf
+    words: Words
+    table: Table
+    past: Tuple[Table, ...] = ()
+    future: Tuple[Table, ...] = ()
+
+    @property
+    def board(self) -> Board:
+        """The board."""
+        return self.game.board
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What is told, and how the session goes on; `over`: there is nothing more to say."""
+
+    session: Session
+    lines: Tuple[str, ...]
+    over: bool = field(default=False)
+
+
+def opening(session: Session) -> Tuple[str, ...]:
+    """What is told first."""
+    board = session.board
+    wants = (f"{board.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(board.scenario)))
+    if isinstance(session.game, World):
+        plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
+        first = ("The robots can see to it, whatever others do.", f"You play everybody else, {plays}")
+    else:
+        first = ("The robots cannot be sure of it.",
+                 "You play the robots; the program plays the others, and can always prevent it.")
+    hint = "Times are in time units from the start. Type help for what you can say."
+    return (*wants, *first, hint, "", *shown(session))
+
+
+def shown(session: Session) -> Tuple[str, ...]:
+    """Where everything stands, what comes next, and what the person can do."""
+    board, table = session.board, session.table
+    if table.over:
+        return (ending(board, session.words, table),)
+    lines = [f"Time {time_text(table.now)}", *situation(board, session.words, table)]
+    if isinstance(session.game, World):
+        lines.append(_intention(session, session.game))
+    lines += _planned(session)
+    offers = session.game.offers(table)
+    lines.append("You can do:" if offers else "There is nothing for you to do here but to wait.")
+    said = [_offered(session, offer) for offer in offers]
+    widest = max((len(what) for what, _ in said), default=0)
+    lines += [f"  {number:>2}  {what:<{widest}}  {when}" for number, (what, when) in enumerate(said, start=1)]
+    return tuple(lines)
+
+
+def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
+    edge = session.board.game.origins[offer.move.edges[0]]
+    what = f"{offer.agent}: {session.words.order(offer.agent, edge)}"
+    when = window_text(session.table.now, offer.open_)
+    return what, when if offer.drawn is None else f"{when} (comes at {time_text(offer.drawn)} if you say nothing)"
+
+
+def _intention(session: Session, world: World) -> str:
+    table, event = session.table, world.strategy_event(session.table)
+    while event is not None and session.board.owner(event.move) not in session.board.agents:
+        table = taken(session.board, table, event.move, event.at, event.by)  # nobody would notice
+        event = None if table.over else world.strategy_event(table)
+    if event is None:
+        return "The strategy waits for what others do."
+    what = move_text(session.board, session.words, event.move)
+    return f"The strategy: {what} at {time_text(event.at)}, if nothing else happens before."
+
+
+def _planned(session: Session) -> List[str]:
+    """What the person has said for later."""
+    known = {(offer.agent, offer.word): _offered(session, offer)[0] for offer in session.game.offers(session.table)}
+    plans = [plan for plan in session.table.plans if (plan.agent, plan.word) in known]
+    return [f"Planned: {known[plan.agent, plan.word]} at {time_text(plan.at)}." for plan in plans]
+
+
+# What a person says ---------------------------------------------------------------------------------------------------
+
+
+def answer(session: Session, text: str) -> Reply:
+    """What follows from a line that was typed. A line that cannot be understood changes nothing, and is explained."""
+    line = " ".join(text.split())
+    word, _, rest = line.partition(" ")
+    simple: Dict[str, Callable[[Session], Reply]] = {
+        "": lambda s: Reply(s, shown(s)),
+        "help": lambda s: Reply(s, HELP),
+        "?": lambda s: Reply(s, HELP),
+        "undo": _undo,
+        "redo": _redo,
+        "map": lambda s: Reply(s, tuple(overview(s.board, s.words, s.table))),
+        "why": lambda s: Reply(s, tuple(_why(s))),
+        "log": lambda s: Reply(s, tuple(_told(s, 0)) or ("nothing has happened yet",)),
+        "cancel": lambda s: _moved(s, replace(s.table, plans=())),
+        "quit": lambda s: Reply(s, (farewell(s),), True),
+    }
+    simple["exit"] = simple["quit"]
+    if line.lower() in simple:
+        return simple[line.lower()](session)
+    if word.lower() == "save":
+        return _save(session, rest)
+    number, wait = _NUMBER.fullmatch(line), _WAIT.fullmatch(line.lower())
+    if session.table.over and (number or wait):
+        return Reply(session, ("The game is over: undo takes a step back, quit ends.",))
+    if number:
+        return _do(session, int(number.group(1)), number.group(2))
+    if wait:
+        return _wait(session, wait.group(1) is not None, wait.group(2))
+    if word.lower() == "wait" or word.isdigit():
+        return Reply(session, (f"'{line}' is not clear. For example: wait, wait 2, wait @ 7, 2, 2 @ 3.5 "
+                               "(a moment has at most three decimals).",))
+    known = "a number from the list, wait, undo, map, why, help, quit"
+    return Reply(session, (f"'{line[:60]}' is not known here. Say {known} …",))
+
+
+def _do(session: Session, number: int, moment: Optional[str]) -> Reply:
+    table, offers = session.table, session.game.offers(session.table)
+    if not 1 <= number <= len(offers):
+        some = f"the list has 1 to {len(offers)}" if offers else "there is nothing to do but to wait"
+        return Reply(session, (f"There is no number {number}: {some}.",))
+    offer = offers[number - 1]
+    what = _offered(session, offer)[0]
+    if moment is None:
+        delay = offer.open_.earliest(Fraction(1, 1000))
+        assert delay is not None, "what is offered can be done"
+        at = table.now + delay
+    else:
+        at = Fraction(moment)
+        if at < table.now:
+            return Reply(session, (f"It is {time_text(table.now)} already: name a later time, or undo.",))
+        if not offer.open_.holds(at - table.now):
+            return Reply(session, (f"Not at {moment}: '{what}' is possible {window_text(table.now, offer.open_)}.",))
+    planned = session.game.planned(table, Plan(offer.agent, offer.word, at))
+    return _moved(session, _advanced(session, planned))
+
+
+def _wait(session: Session, absolute: bool, amount: Optional[str]) -> Reply:
+    table = session.table
+    if amount is None:
+        after = _advanced(session, table)
+        if after == table:
+            return Reply(session, ("Nothing will ever happen if you only wait.", *_hopeless(session)))
+        return _moved(session, after)
+    until = Fraction(amount) if absolute else table.now + Fraction(amount)
+    if until < table.now:
+        return Reply(session, (f"It is {time_text(table.now)} already.",))
+    return _moved(session, _advanced(session, table, until))
+
+
+def _advanced(session: Session, table: Table, until: Optional[Fraction] = None) -> Table:
+    """The table when something has happened that somebody would notice, or at the time `until`."""
+    while True:
+        before, table = table, session.game.advance(table, until)
+        silent = len(table.deeds) > len(before.deeds) and table.deeds[-1].agent not in session.board.agents
+        if table.over or not silent:
+            return table
+
+
+def _hopeless(session: Session) -> Tuple[str, ...]:
+    if isinstance(session.game, Robots):
+        return ("The others need not do anything: do something, or quit.",)
+    return ("The strategy has nothing to do as long as nobody else does: do something, or quit.",)
+
+
+def _moved(session: Session, table: Table) -> Reply:
+    """The session at another table, with what has happened in between."""
+    fresh = replace(session, table=table, past=(*session.past, session.table), future=())
+    lines = _told(fresh, len(session.table.deeds)) + _missed(session, table)
+    return Reply(fresh, (*lines, *_again(fresh, session), *shown(fresh)))
+
+
+def _told(session: Session, first: int) -> List[str]:
+    """What has happened, from that step on."""
+    lines = []
+    for deed in session.table.deeds[first:]:
+        if deed.agent in session.board.agents:
+            lines.append(f"{time_text(deed.at):>9}  {deed_text(session.board, session.words, deed)}")
+    return lines
+
+
+def _missed(before: Session, table: Table) -> List[str]:
+    """Plans that came to nothing: something else was faster, and now they are not possible any more."""
+    done = {(deed.agent, deed.word) for deed in table.deeds[len(before.table.deeds):]}
+    kept = {(plan.agent, plan.word) for plan in table.plans}
+    known = {(offer.agent, offer.word): _offered(before, offer)[0] for offer in before.game.offers(before.table)}
+    gone = [plan for plan in before.table.plans if (plan.agent, plan.word) not in done | kept]
+    return [f"           {known[plan.agent, plan.word]}: not possible any more"
+            for plan in gone if (plan.agent, plan.word) in known]
+
+
+def _again(session: Session, before: Session) -> List[str]:
+    """In a game that need not end: that it goes round in circles."""
+    if not isinstance(session.game, Robots) or len(session.table.deeds) == len(before.table.deeds):
+        return []
+    since = session.game.repeats(session.table)
+    if since is None:
+        return []
+    return [f"Everything is as it was at {time_text(since)}: like this it goes on for ever, without the goal."]
+
+
+def _undo(session: Session) -> Reply:
+    if not session.past:
+        return Reply(session, ("This is where it began.",))
+    fresh = replace(session, table=session.past[-1], past=session.past[:-1],
+                    future=(*session.future, session.table))
+    return Reply(fresh, shown(fresh))
+
+
+def _redo(session: Session) -> Reply:
+    if not session.future:
+        return Reply(session, ("There is nothing to do again.",))
+    fresh = replace(session, table=session.future[-1], past=(*session.past, session.table),
+                    future=session.future[:-1])
+    return Reply(fresh, shown(fresh))
+
+
+def _why(session: Session) -> Sequence[str]:
+    game, board = session.game, session.board
+    if isinstance(game, Robots):
+        text = "There is no strategy for the robots: whatever they do, the others can answer."
+        if game.horizon is not None:
+            return (text, f"They will have lost by {game.horizon} at the latest.")
+        return (text, "After each step of the others the solver still finds the game lost for the robots.")
+    holding = game.advisor.holding(session.table)
+    if holding is None or holding.zone is None:
+        return ("The game is over here: the strategy has nothing more to say.",)
+    lines = [f"Block {holding.number} of {game.advisor.size} of the strategy holds here."]
+    says = "to wait"
+    if holding.command is not None:
+        first = holding.command.moves[0]
+        said = session.words.order(first.automaton, first.edge)
+        says = said if first.automaton not in board.agents else f"{first.automaton}: {said}"
+    when = f": {session.words.told.when(holding.zone)}" if holding.zone else " nothing else happens"
+    lines.append(f"It says {says}, as long as{when}.")
+    for command in holding.block.commands:
+        if command is not holding.command:
+            first = command.moves[0]
+            said = session.words.order(first.automaton, first.edge)
+            when = " or ".join(session.words.told.when(zone) for zone in command.zones)
+            lines.append(f"At other moments here: {first.automaton}: {said}, as long as: {when}.")
+    return lines
+
+
+def _save(session: Session, name: str) -> Reply:
+    if not name:
+        return Reply(session, ("save needs the name of a file: save game.yaml, or save game.jsonl",))
+    if Path(name).exists():
+        return Reply(session, (f"{name} is there already: name another file.",))
+    try:
+        return Reply(session, (save(session.board, session.table, Path(name)),))
+    except PursueError as problem:
+        return Reply(session, tuple(finding.message for finding in problem.diagnostics))
+
+
+def farewell(session: Session) -> str:
+    """How it stood when somebody left."""
+    table, board = session.table, session.board
+    if table.status != RUNNING:
+        return ending(board, session.words, table)
+    at = time_text(table.now)
+    if isinstance(session.game, Robots):
+        return f"You have left at {at}: the robots have not done it, and could not have been sure of it."
+    if board.safety:
+        return f"You have left at {at}: so far the robots have kept it."
+    return f"You have left at {at}, before the goal was reached; the robots would have reached it."

@@ -1,0 +1,221 @@
+"""The table at which a game is played: frozen positions with exact times, and the steps that lead from one to the next.
+
+A table remembers how its discrete state was entered: what the strategy decides, and when, follows from that, however
+often somebody looks in between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Iterator, Optional, Tuple
+
+from pursue_gen.explanation.policy import Window, longest, window
+from pursue_gen.explanation.position import Position
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.pipeline import Rules, played
+from pursue_gen.synthesis.dbm import constant, is_strict
+from pursue_gen.synthesis.game import (
+    Game,
+    JointMove,
+    compile_game,
+    initial_state,
+    is_bad,
+    is_goal,
+    joint_moves,
+)
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Kind, Network, Objective, is_end
+from pursue_gen.tga.words import event_word
+
+GRAIN = Fraction(1, 1000)
+"""Time units after a moment that is itself just too early; moments that people name are multiples of it."""
+
+RUNNING, WON, LOST, STUCK = "running", "won", "lost", "stuck"
+"""How it stands. WON: the goal is reached; LOST: the robots have lost; STUCK: somebody whom the robots do not control
+ought to move and cannot, so that nothing goes on (a safety objective holds for ever then)."""
+
+ROBOTS, OTHERS, CHANCE = "robots", "others", "chance"
+"""Who did something: the robots' side; the others' side, on purpose; a movement or an action that just ended."""
+
+
+@dataclass(frozen=True)
+class Board:
+    """What stays the same: the scenario, its rules, the game (times in units: its scale is 1)."""
+
+    scenario: Scenario
+    rules: Rules
+    network: Network
+    objective: Objective
+    game: Game
+
+    @property
+    def agents(self) -> Tuple[str, ...]:
+        """All agents, in order of declaration."""
+        return tuple(agent.name for agent in self.scenario.agents)
+
+    @property
+    def safety(self) -> bool:
+        """True where there is nothing to reach, and so no end but by losing."""
+        return self.objective.kind is Kind.SAFETY
+
+    def owner(self, move: JointMove) -> str:
+        """The automaton that moves."""
+        return self.game.automata[move.owner].name
+
+    def word(self, move: JointMove) -> str:
+        """What the move is called on the topics."""
+        return event_word(self.owner(move), self.game.origins[move.edges[0]])
+
+    def is_end(self, move: JointMove) -> bool:
+        """True for the end of a movement or an action."""
+        return is_end(self.game.origins[move.edges[0]])
+
+
+@dataclass(frozen=True)
+class Deed:
+    """A joint move that was made: when (time units since the start), by which automaton, whose doing it was."""
+
+    at: Fraction
+    agent: str
+    word: str
+    by: str
+    after: Position
+    edges: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a person wants an agent to do at a moment (time units since the start)."""
+
+    agent: str
+    word: str
+    at: Fraction
+
+
+@dataclass(frozen=True)
+class Table:
+    """`entry` is the position at the time `since`, when the last move was made; now it is `now`."""
+
+    entry: Position
+    since: Fraction = Fraction(0)
+    now: Fraction = Fraction(0)
+    status: str = RUNNING
+    deeds: Tuple[Deed, ...] = ()
+    plans: Tuple[Plan, ...] = ()
+
+    @property
+    def here(self) -> Position:
+        """The position now."""
+        return later(self.entry, self.now - self.since)
+
+    @property
+    def over(self) -> bool:
+        """True when the game has ended."""
+        return self.status != RUNNING
+
+
+def board_of(scenario: Scenario, rules: Rules) -> Board:
+    """The board of a scenario. Raises PursueError where it has no objective."""
+    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    return Board(scenario, rules, network, objective, compile_game(network, objective))
+
+
+def beginning(board: Board) -> Table:
+    """The table at time 0."""
+    return Table(Position(initial_state(board.game), (Fraction(0),) * len(board.game.clocks)))
+
+
+def later(position: Position, delay: Fraction) -> Position:
+    """The position when so much time has passed."""
+    return replace(position, clocks=tuple(value + delay for value in position.clocks))
+
+
+def after(here: Position, move: JointMove, delay: Fraction) -> Position:
+    """The position after a move that is made when so much time has passed."""
+    clocks = [value + delay for value in here.clocks]
+    for clock in move.resets:
+        clocks[clock - 1] = Fraction(0)
+    return Position(move.target, tuple(clocks))
+
+
+def open_moves(board: Board, table: Table, controllable: bool) -> Iterator[Tuple[JointMove, Window]]:
+    """The moves of one side from here on, with the delays (from now) after which they can be made."""
+    here = table.here
+    for move in joint_moves(board.game, here.state):
+        if move.controllable == controllable:
+            open_ = window(board.game, here, move)
+            if open_.earliest(GRAIN) is not None:  # else it is over, or would break an invariant
+                yield move, open_
+
+
+def own_window(board: Board, table: Table, move: JointMove) -> Window:
+    """The delays (from now) in which a move can be made as far as its own automaton goes.
+
+    Somebody else who has to move before ends the state of the game, but not what this one may do.
+    """
+    game, here = board.game, table.here
+    mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
+    result = Window()
+    for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
+        if j == 0:
+            result = result.at_most(constant(bound) - here.clocks[i - 1], is_strict(bound))
+        else:
+            result = result.at_least(-constant(bound) - here.clocks[j - 1], is_strict(bound))
+    return result
+
+
+def last_moment(board: Board, table: Table) -> Optional[Fraction]:
+    """The time until which somebody has to move; None: nobody has to."""
+    room = longest(board.game, table.here)
+    return None if room is None else table.now + room
+
+
+def passed(table: Table, moment: Fraction) -> Table:
+    """The table at a later moment, when nothing has happened in between."""
+    assert moment >= table.now
+    return replace(table, now=moment)
+
+
+def taken(board: Board, table: Table, move: JointMove, moment: Fraction, by: str) -> Table:
+    """The table after a move at a moment. Plans that cannot be carried out any more are dropped."""
+    there = after(table.entry, move, moment - table.since)
+    status = WON if is_goal(board.game, there.state) else LOST if is_bad(board.game, there.state) else RUNNING
+    deed = Deed(moment, board.owner(move), board.word(move), by, there, move.edges)
+    fresh = Table(there, moment, moment, status, (*table.deeds, deed))
+    kept = (plan for plan in table.plans if not (plan.agent == deed.agent and plan.word == deed.word))
+    return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if possible(board, fresh, plan)))
+
+
+def possible(board: Board, table: Table, plan: Plan) -> bool:
+    """True if the plan can still be carried out, unless something else happens before."""
+    return any(
+        (board.owner(move), board.word(move)) == (plan.agent, plan.word)
+        and own_window(board, table, move).holds(plan.at - table.now)
+        for move in joint_moves(board.game, table.here.state)
+    )
+
+
+def overdue(board: Board, table: Table) -> Tuple[str, ...]:
+    """The automata at their bounds now that the others' side cannot move: then the robots ought to."""
+    here, game = table.here, board.game
+    bound = {
+        number
+        for number, automaton in enumerate(game.automata)
+        for clock, limit in automaton.invariants[here.state.locations[number]]
+        if constant(limit) == here.clocks[clock - 1]
+    }
+    able = {move.owner for move, open_ in open_moves(board, table, False) if open_.holds(Fraction(0))}
+    return tuple(game.automata[number].name for number in sorted(bound - able))
+
+
+def ended(board: Board, table: Table) -> Table:
+    """The table where time cannot go on and nobody can move as they must: who is to blame has lost.
+
+    With a goal to reach, it is not reached: the robots have lost. Else whoever is overdue and could only be moved by
+    the robots' side has lost it for them.
+    """
+    names = overdue(board, table)
+    ours = {agent.name for agent in board.scenario.agents if agent.controllable}
+    blame = not board.safety or any(name in ours or name not in board.agents for name in names)
+    return replace(table, status=LOST if blame else STUCK)

@@ -1,0 +1,162 @@
+"""The person plays whatever the robots' strategy does not control; the strategy plays the robots.
+
+What the person does not decide is drawn: when movements and actions end (anywhere in the model's window), and how late
+a command takes effect (at most the promised reaction). A draw depends on the seed and on the number of the step only,
+so undoing and doing the same again leads to the same.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import List, Optional, Tuple
+
+from pursue_gen.explanation.policy import Window
+from pursue_gen.play.advice import Advisor
+from pursue_gen.play.table import (
+    CHANCE,
+    GRAIN,
+    OTHERS,
+    ROBOTS,
+    Board,
+    Plan,
+    Table,
+    ended,
+    last_moment,
+    open_moves,
+    own_window,
+    passed,
+    taken,
+)
+from pursue_gen.synthesis.game import JointMove
+
+_STEPS = 100
+"""Draws are multiples of 1/100 of a time unit where the window allows it: short to read."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happens next if nobody does anything else: at a time since the start, and by whom it is done."""
+
+    at: Fraction
+    move: JointMove
+    by: str
+
+
+@dataclass(frozen=True)
+class Offer:
+    """Something that can be done from here on, after delays (from now) in `open_`.
+
+    `drawn`: for the end of a movement or an action, when (since the start) it comes unless the person says otherwise.
+    """
+
+    agent: str
+    word: str
+    move: JointMove
+    open_: Window
+    drawn: Optional[Fraction] = None
+
+
+@dataclass(frozen=True)
+class World:
+    """One game of this kind: the board, the strategy and the seed."""
+
+    board: Board
+    advisor: Advisor
+    seed: int = 1
+
+    def offers(self, table: Table) -> Tuple[Offer, ...]:
+        """What the person can do now or later, in the order of the agents; ends come last."""
+        if table.over:
+            return ()
+        agents = self.board.agents
+        found: List[Offer] = []
+        for move, _ in open_moves(self.board, table, False):
+            owner = self.board.owner(move)
+            if owner in agents:
+                drawn = self._drawn(table, move) if self.board.is_end(move) else None
+                found.append(Offer(owner, self.board.word(move), move, own_window(self.board, table, move), drawn))
+        return tuple(sorted(found, key=lambda offer: (offer.drawn is not None, agents.index(offer.agent))))
+
+    def planned(self, table: Table, plan: Plan) -> Table:
+        """The table with one more thing to be done; it takes the place of what that agent was to do."""
+        return replace(table, plans=(*(other for other in table.plans if other.agent != plan.agent), plan))
+
+    def next_event(self, table: Table) -> Optional[Event]:
+        """What happens first, if anything does. The others win ties, as in the game that was solved."""
+        events = [*self._theirs(table), *self._strategy(table)]
+        return min(events, key=lambda event: event.at, default=None)
+
+    def advance(self, table: Table, until: Optional[Fraction] = None) -> Table:
+        """The table after what happens next; or at the time `until`, if that comes first.
+
+        Where nothing would ever happen (and no time is named), the table itself.
+        """
+        event, last = self.next_event(table), last_moment(self.board, table)
+        if event is not None and (until is None or event.at <= until):
+            return taken(self.board, table, event.move, event.at, event.by)
+        if last is not None and (until is None or until > last):
+            return ended(self.board, passed(table, last))
+        return table if until is None else passed(table, until)
+
+    def strategy_event(self, table: Table) -> Optional[Event]:
+        """What the strategy does next, if nothing else happens before."""
+        return next(iter(self._strategy(table)), None)
+
+    def _strategy(self, table: Table) -> List[Event]:
+        decision = self.advisor.decision(table)
+        if decision is None:
+            return []
+        late = self.board.rules.reaction * self._share("command", len(table.deeds))
+        moment = max(_short(decision.at + late, decision.at, decision.at + self.board.rules.reaction), table.now)
+        return [Event(moment, decision.move, ROBOTS)]
+
+    def _theirs(self, table: Table) -> List[Event]:
+        """What the person has planned; ends without a plan; and what needs no agent and comes at once."""
+        plans = {(plan.agent, plan.word): plan.at for plan in table.plans}
+        events: List[Event] = []
+        for move, open_ in open_moves(self.board, table, False):
+            key = self.board.owner(move), self.board.word(move)
+            moment: Optional[Fraction] = None
+            by = OTHERS
+            if key in plans:
+                moment = plans[key]
+            elif self.board.is_end(move):
+                moment, by = self._drawn(table, move), CHANCE
+            elif key[0] not in self.board.agents:
+                delay = open_.earliest(GRAIN)
+                moment, by = None if delay is None else table.now + delay, CHANCE
+            if moment is not None and open_.holds(moment - table.now):
+                events.append(Event(moment, move, by))
+        return events
+
+    def _drawn(self, table: Table, move: JointMove) -> Optional[Fraction]:
+        """When the end of a movement or an action comes by itself; None: it need not come.
+
+        It is drawn when the movement or action begins, and stays so whatever happens meanwhile.
+        """
+        game, here = self.board.game, table.here
+        bounds = game.automata[move.owner].invariants[here.state.locations[move.owner]]
+        if not bounds:
+            return None
+        high = min(table.now + (bound >> 1) - here.clocks[clock - 1] for clock, bound in bounds)
+        lows = [table.now - (bound >> 1) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
+        low = max([*lows, Fraction(0)])
+        name = self.board.owner(move)
+        number = sum(deed.agent == name for deed in table.deeds)
+        moment = _short(low + (high - low) * self._share(name, number), low, high)
+        moment = max(moment, min(low + GRAIN, high))
+        return min(max(moment, table.now), high)
+
+    def _share(self, name: str, number: int) -> Fraction:
+        """Where in a window: each end of it with probability 1/4."""
+        draw = random.Random(f"{self.seed}/{name}/{number}")
+        kind = draw.randrange(4)
+        return Fraction(0) if kind == 0 else Fraction(1) if kind == 1 else Fraction(draw.randrange(1000), 1000)
+
+
+def _short(moment: Fraction, low: Fraction, high: Fraction) -> Fraction:
+    """A moment near this one, in [low, high], with two decimals where that is possible."""
+    rounded = Fraction(round(moment * _STEPS), _STEPS)
+    return rounded if low < rounded < high else moment

@@ -1,0 +1,97 @@
+"""From a request to its answer: a proven plan from where a mission is, or why there is none."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, Dict, Mapping
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition import partition
+from pursue_gen.partition.split import UI
+from pursue_gen.partition.strategy_data import cover_data, strategy_data
+from pursue_gen.pipeline import played, prove
+from pursue_gen.replanning.request import Request, read_request
+from pursue_gen.replanning.start import begun, late
+from pursue_gen.synthesis.limits import Limits, careful_memory
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+
+_AT_A_LIMIT = 5
+"""The exit status of errors at a limit."""
+
+
+def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
+    """The answer to a request, both as JSON holds them (see docs/run_time.md).
+
+    Every plan in an answer has been proven by the checker. Raises PursueError (exit status 2) for a request that cannot
+    be used.
+    """
+    start = time.monotonic()
+    request = read_request(data)
+    limits = Limits(request.seconds, careful_memory()).since(start)
+    ideal, objective = translate(request.scenario), scenario_objective(request.scenario)
+    try:
+        game = played(ideal, request.rules)
+    except PursueError as problem:  # a slack that is none
+        raise PursueError(problem.diagnostics, 2) from None
+    network = begun(game, request)
+    over = _over(network, objective)
+    if over:
+        return _lost(over)
+    start = time.monotonic()
+    try:
+        verdict = solve(network, objective, request.rules.reaction, limits=limits)
+        if verdict.strategy is None:
+            return _lost(_cannot_be_met(game, request))
+        left = limits.since(start)
+        strategy = prove(network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left)
+    except PursueError as problem:
+        if problem.exit_status != _AT_A_LIMIT:
+            return _lost(f"the plan that was found is not proven: {problem}")
+        return _lost(f"no plan was found within {request.seconds:g} s")
+    return _won(strategy, network, request)
+
+
+def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, Any]:
+    subs = partition(strategy, network, request.scenario.agents, request.controllers, request.reach_obj)
+    data = {sub.controller: strategy_data(sub, request.rules.reaction) for sub in subs}
+    people = data.pop(UI, None)
+    return {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+
+
+def _lost(why: str) -> Dict[str, Any]:
+    return {"format": 1, "won": False, "why": why}
+
+
+def _over(network: Network, objective: Objective) -> str:
+    """Why the mission is lost already; "" if it is not."""
+    places = [(automaton.name, automaton.initial) for automaton in network.automata]
+    if objective.bad in places and objective.goal not in places:
+        return f"the mission is lost already: {objective.bad[0]} is in {objective.bad[1]}" if objective.bad else ""
+    return ""
+
+
+def _cannot_be_met(game: Network, request: Request) -> str:
+    """One sentence: what nobody can promise from here, and on whom it would depend."""
+    clocks = {name: request.clocks[name] + request.ahead for name in game.clocks}
+    agents = [agent.name for agent in request.scenario.agents]
+    over: Dict[str, str] = {}
+    for automaton in game.automata:
+        for bound in late(automaton, request.locations[automaton.name], clocks):
+            over[automaton.name] = f"{bound.clock} is {float(clocks[bound.clock]):g}, at most {bound.bound} is allowed"
+    for name, why in over.items():
+        if name not in agents:
+            return f"{_objective(request.scenario)} cannot be met any more: {why}"
+    absent = [name for name in agents if name in request.excused or name in over]
+    without = f" without relying on {' and '.join(absent)}" if absent else ""
+    return f"{_objective(request.scenario)} cannot be guaranteed from here{without}"
+
+
+def _objective(scenario: Scenario) -> str:
+    """What is to be met, in the author's words."""
+    lines = scenario.text.split("\n")
+    told = (part.span.line for part in (scenario.reach, scenario.safety) if part is not None)
+    return " and ".join(f"'{lines[line - 1].split('//')[0].strip()}'" for line in told)

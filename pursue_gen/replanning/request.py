@@ -1,0 +1,150 @@
+"""What is asked for: the game of a workspace, and where its mission is. Read from JSON, see docs/run_time.md."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Dict, FrozenSet, Mapping
+
+from pursue_gen.diagnostics import PursueError, Severity, error
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.pipeline import CONTROLLABLE, REPORTED, Rules
+
+SECONDS = 10.0
+"""So long a plan is looked for where the request does not say."""
+
+_LONGEST = 1e9
+"""No clock of a mission shows more time units."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """A plan is wanted for this scenario, from this place, by controllers of that shape (see `partition`).
+
+    Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
+    `excused`. It may take so many `seconds`.
+    """
+
+    scenario: Scenario
+    rules: Rules
+    controllers: str
+    reach_obj: str
+    locations: Mapping[str, str]
+    values: Mapping[str, int]
+    clocks: Mapping[str, Fraction]
+    ahead: Fraction
+    excused: FrozenSet[str]
+    seconds: float
+
+
+def read_request(data: object) -> Request:
+    """The request in what JSON holds. Raises PursueError (exit status 2) that says what was expected where."""
+    request = _object(data, "the request")
+    _format(request, "the request")
+    game = _object(_of(request, "game", "the request"), "game")
+    _format(game, "game")
+    name, text = _text(game, "name", "game"), _text(game, "scenario", "game")
+    excused = _of(request, "excused", "the request")
+    if not isinstance(excused, (list, tuple)) or not all(isinstance(agent, str) for agent in excused):
+        raise wrong(f"excused is {_shown(excused)}", "a list of names of agents, [] for none")
+    seconds = request.get("limit", SECONDS)
+    if not _is_number(seconds) or not 0 < seconds < _LONGEST:
+        raise wrong(f"limit is {_shown(seconds)}", "a number of seconds above 0")
+    locations, values = (_object(_of(request, key, "the request"), key) for key in ("locations", "values"))
+    for table, kind, what in ((locations, str, "the name of a location"), (values, int, "a whole number")):
+        for key, value in table.items():
+            if not isinstance(value, kind) or isinstance(value, bool):
+                raise wrong(f"{key} is {_shown(value)}", what)
+    clocks = _object(_of(request, "clocks", "the request"), "clocks")
+    return Request(
+        scenario=_scenario(name, text),
+        rules=_rules(_object(_of(game, "rules", "game"), "rules")),
+        controllers=_text(game, "controllers", "game"),
+        reach_obj=_text(game, "reach_obj", "game"),
+        locations=locations,
+        values=values,
+        clocks={key: _time(value, key) for key, value in clocks.items()},
+        ahead=_time(_of(request, "ahead", "the request"), "ahead"),
+        excused=frozenset(excused),
+        seconds=float(seconds),
+    )
+
+
+def wrong(message: str, expected: str) -> PursueError:
+    """What is wrong with a request."""
+    return PursueError([error("RPL001", f"the request cannot be used: {message}", hint=f"expected {expected}")], 2)
+
+
+def _scenario(name: str, text: str) -> Scenario:
+    reading = read(text, f"{name}.pur", name)
+    findings = check_reading(reading)
+    if any(finding.severity is Severity.ERROR for finding in findings) or reading.scenario is None:
+        try:
+            without_errors(reading.scenario, findings)
+        except PursueError as problem:
+            raise PursueError(problem.diagnostics, 2) from None
+    assert reading.scenario is not None
+    return reading.scenario
+
+
+def _rules(data: Mapping[str, Any]) -> Rules:
+    ends = _text(data, "ends", "rules")
+    if ends not in (REPORTED, CONTROLLABLE):
+        raise wrong(f"ends is {_shown(ends)}", f"{REPORTED} or {CONTROLLABLE}")
+    slack = _object(data.get("slack", {}), "slack")
+    for agent, late in slack.items():
+        if not isinstance(late, int) or isinstance(late, bool) or late < 0:
+            raise wrong(f"the slack of {agent} is {_shown(late)}", "a whole number of time units")
+    given = _of(data, "reaction", "rules")
+    try:
+        reaction = Fraction(str(given))
+    except (ValueError, ZeroDivisionError):
+        reaction = Fraction(-1)
+    if isinstance(given, bool) or not 0 <= reaction <= 1000 or reaction.denominator > 1000:
+        raise wrong(f"reaction is {_shown(given)}", "a number of time units from 0 to 1000, such as 0.1 or 1/20")
+    return Rules(ends, reaction, dict(slack))
+
+
+def _object(data: object, name: str) -> Dict[str, Any]:
+    if not isinstance(data, dict) or not all(isinstance(key, str) for key in data):
+        raise wrong(f"{name} is {_shown(data)}", "an object with names")
+    return data
+
+
+def _format(data: Mapping[str, Any], name: str) -> None:
+    if _of(data, "format", name) != 1:
+        raise wrong(f"the format of {name} is {_shown(data['format'])}", "1: generate the workspace again")
+
+
+def _of(data: Mapping[str, Any], key: str, name: str) -> Any:
+    if key not in data:
+        raise wrong(f"{name} has no {key}", f"it beside {', '.join(data) or 'nothing'}")
+    return data[key]
+
+
+def _text(data: Mapping[str, Any], key: str, name: str) -> str:
+    value = _of(data, key, name)
+    if not isinstance(value, str):
+        raise wrong(f"{key} is {_shown(value)}", "text")
+    return value
+
+
+def _time(value: Any, name: str) -> Fraction:
+    """Exact to a millionth of a time unit: what differs by less is the same moment."""
+    if not _is_number(value) or not 0 <= value <= _LONGEST:
+        raise wrong(f"{name} is {_shown(value)}", "a number of time units, 0 or more")
+    return Fraction(round(Fraction(value) * 1_000_000), 1_000_000)
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return isinstance(value, int) or math.isfinite(value)
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."

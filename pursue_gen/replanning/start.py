@@ -1,0 +1,132 @@
+"""A network that starts where a mission is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import permutations
+from math import ceil, gcd
+from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple, TypeVar
+
+from pursue_gen.replanning.request import Request, wrong
+from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
+
+T = TypeVar("T")
+
+_FINEST = 10
+"""Clocks are told apart to a part of a time unit that is no longer than the tenth."""
+
+
+def begun(network: Network, request: Request) -> Network:
+    """The network at the place of the request, `ahead` time units later, and what nobody can count on taken away.
+
+    Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
+    than the model allows may stay. Raises PursueError (exit status 2) for a place that the network does not have.
+    """
+    locations, values, clocks = _place(network, request)
+    agents = {agent.name for agent in request.scenario.agents}
+    automata = []
+    for automaton in network.automata:
+        here = locations[automaton.name]
+        moved = replace(automaton, initial=here, home=automaton.home or automaton.initial)
+        if automaton.name in request.excused:
+            moved = _idle(_unbounded(moved, here), here, clocks)
+        elif automaton.name in agents and late(automaton, here, clocks):
+            moved = _unbounded(moved, here)
+        automata.append(moved)
+    there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
+    reaction = request.rules.reaction
+    grid = reaction.denominator * _FINEST // gcd(reaction.denominator, _FINEST)
+    return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
+
+
+def late(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Tuple[ClockBound, ...]:
+    """The bounds of the location that the clocks have passed."""
+    bounds = next(location.invariant for location in automaton.locations if location.name == here)
+    return tuple(bound for bound in bounds if not _holds(bound, clocks))
+
+
+def region(
+    clocks: Mapping[str, Fraction], beyond: Mapping[str, Fraction], grid: int
+) -> Tuple[Constraint, ...]:
+    """The clock values that no bound on the grid (parts of a time unit) tells from these; above `beyond` all are one.
+
+    Measured clocks are not exact, and who wins from one of these points wins from all of them.
+    """
+    constraints: List[Constraint] = []
+    far = {name for name, value in clocks.items() if value > beyond[name]}
+    for left, right in permutations((None, *clocks), 2):
+        if left in far or (left is not None and right in far):
+            continue
+        if right in far:
+            constraints.append(Constraint(None, right, -beyond[right or ""], True))
+            continue
+        difference = (clocks[left] if left else 0) - (clocks[right] if right else Fraction(0))
+        top = Fraction(ceil(difference * grid), grid)
+        constraints.append(Constraint(left, right, top, strict=difference < top))
+    return tuple(constraints)
+
+
+def _place(network: Network, request: Request) -> Tuple[Dict[str, str], Dict[str, int], Dict[str, Fraction]]:
+    """Locations, values and clocks of everything in the network; what else the request names is nobody's."""
+    for automaton in network.automata:
+        here = _known(request.locations, automaton.name, "location")
+        names = [location.name for location in automaton.locations]
+        if here not in names:
+            raise wrong(f"{automaton.name} has no location {here}", f"one of {', '.join(names)}")
+    locations = {automaton.name: request.locations[automaton.name] for automaton in network.automata}
+    values = {name: _known(request.values, name, "value") for name, _ in network.variables}
+    clocks = {name: _known(request.clocks, name, "clock") + request.ahead for name in network.clocks}
+    _check_names(request.excused, [agent.name for agent in request.scenario.agents])
+    return locations, values, clocks
+
+
+def _known(table: Mapping[str, T], name: str, what: str) -> T:
+    if name not in table:
+        raise wrong(f"there is no {what} of {name}", "every automaton, variable and clock of model.yaml")
+    return table[name]
+
+
+def _check_names(excused: AbstractSet[str], agents: Iterable[str]) -> None:
+    for name in sorted(excused - set(agents)):
+        raise wrong(f"{name} is excused", f"agents: {', '.join(agents)}")
+
+
+def _unbounded(automaton: Automaton, here: str) -> Automaton:
+    """It may stay where it is for ever."""
+    locations = (replace(place, invariant=()) if place.name == here else place for place in automaton.locations)
+    return replace(automaton, locations=tuple(locations))
+
+
+def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Automaton:
+    """Where it is, nobody commands it, and what it does may end too early."""
+    edges: List[Edge] = []
+    for edge in automaton.edges:
+        if edge.source == here and is_end(edge):
+            bounds = tuple(bound for bound in edge.guard.clocks if _holds(bound, clocks))
+            edge = replace(with_controllability(edge, False), guard=Guard(bounds, edge.guard.integers))
+        if edge.source != here or not edge.controllable:
+            edges.append(edge)
+    return replace(automaton, edges=tuple(edges))
+
+
+def _holds(bound: ClockBound, clocks: Mapping[str, Fraction]) -> bool:
+    value, limit = clocks[bound.clock], bound.bound
+    return {
+        "<": value < limit,
+        "<=": value <= limit,
+        ">": value > limit,
+        ">=": value >= limit,
+        "==": value == limit,
+    }[bound.op]
+
+
+def _beyond(network: Network, reaction: int) -> Dict[str, Fraction]:
+    """Per clock a value above all that it is compared with, when commands take effect up to the reaction later."""
+    largest = {name: 0 for name in network.clocks}
+    for automaton in network.automata:
+        bounds = [bound for location in automaton.locations for bound in location.invariant]
+        bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]
+        for bound in bounds:
+            largest[bound.clock] = max(largest[bound.clock], bound.bound)
+    return {name: Fraction(value + reaction + 1) for name, value in largest.items()}

@@ -1,0 +1,330 @@
+"""Every step of a recorded mission against its scenario: what was kept, where the world or a node left the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, List, Mapping, Optional, Tuple
+
+from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
+from pursue_gen.replay.game import Game
+from pursue_gen.replay.moves import Move, Moves, Place, after
+from pursue_gen.replay.orders import Orders, in_time, of_plan
+from pursue_gen.replay.record import ENDED, HOLDING, RUNNING, WAITING, WON, Record, State, Word
+from pursue_gen.replay.robots import check_robots
+from pursue_gen.replay.words import Said, dropped, who_said
+
+DRIFT = 0.001
+"""Seconds by which a clock may be beside the stamps."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
+    recorded)."""
+
+    before: State
+    state: State
+    move: Move
+    word: Optional[Word] = None
+
+    @property
+    def is_command(self) -> bool:
+        """True where a controller asked for it."""
+        return self.word is not None and self.word.seq is not None
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What was found: steps in order, findings in order of their states, how it ended."""
+
+    steps: Tuple[Step, ...]
+    findings: Tuple[Finding, ...]
+    status: str
+    reason: str
+    start: float
+    length: float
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def kept(self) -> bool:
+        """True where nothing left the model."""
+        return all(finding.level == NOTE for finding in self.findings)
+
+    @property
+    def won(self) -> bool:
+        """True where the mission was won."""
+        return self.status == WON
+
+
+def check(record: Record, game: Game, tolerance: float = 0.1) -> Findings:
+    """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
+    checker = _Checker(record, game, tolerance)
+    checker.run()
+    steps = checker.steps
+    said = who_said(record, [(step.before, step.state) for step in steps])
+    steps = [Step(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
+    findings = [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
+    findings += dropped(record, said, checker.moves)
+    if not record.by_words:
+        ordered = [(s.before, s.state, s.move[0][0], s.is_command) for s in steps]
+        findings += check_robots(record, game, ordered, checker.orders)
+    findings += [Finding(FAULT, "recording", 0, f"the recording is not whole: {what}") for what in record.problems]
+    last = max(record.states, key=lambda state: state.seq)
+    last = [state for state in record.states if state.seq == last.seq][-1]
+    start = next((state.stamp for state in record.states if state.status != WAITING), last.stamp)
+    counts = {
+        "states": len({state.seq for state in record.states}),
+        "steps": len(steps),
+        "commands": sum(step.is_command for step in steps),
+        "reports": sum(step.word is not None and not step.is_command for step in steps),
+        "dropped": len(said.left),
+        "plans": last.plan,
+        "holds": checker.holds,
+    }
+    findings.sort(key=lambda finding: finding.seq)
+    length = (last.stamp - start) / last.unit
+    return Findings(tuple(steps), tuple(findings), last.status, last.reason, start, length, counts)
+
+
+class _Checker:
+    def __init__(self, record: Record, game: Game, tolerance: float) -> None:
+        self.moves = Moves(game.network)
+        self.findings: List[Finding] = []
+        self.steps: List[Step] = []
+        self.orders: Dict[int, Orders] = {}
+        self.holds = 0
+        self._record, self._game, self._tolerance = record, game, tolerance
+        self._zeros: Dict[str, float] = {}
+
+    def run(self) -> None:
+        """The states one by one."""
+        self._read_orders()
+        before: Optional[State] = None
+        for state in self._record.states:
+            if not self.moves.knows(_place(state)):
+                self._tell(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
+                return
+            if before is None:
+                self._first(state)
+            elif state.seq == before.seq:
+                self._again(before, state)
+            elif state.seq > before.seq + 1:
+                self._tell(FAULT, "gap", state, f"states after {before.seq} are missing: what led here?")
+                self._resume(state)
+            else:
+                self._next(before, state)
+            before = state
+        if before is not None:
+            self._end(before)
+
+    def _tell(self, level: str, kind: str, state: State, text: str) -> None:
+        self.findings.append(Finding(level, kind, state.seq, text))
+
+    def _read_orders(self) -> None:
+        if self._game.orders is not None:
+            self.orders[0] = self._game.orders
+        else:
+            why = f"what was commanded is not checked against a strategy: {self._game.why_not}"
+            self.findings.append(Finding(NOTE, "strategy", 0, why))
+        for number, data in self._record.plans.items():
+            try:
+                self.orders[number] = of_plan(data)
+            except ValueError as problem:
+                self.findings.append(Finding(FAULT, "plan", 0, f"plan {number} cannot be read: {problem}"))
+
+    # One state after the other ----------------------------------------------------------------------------------------
+
+    def _first(self, state: State) -> None:
+        if state.seq > 1:
+            self._tell(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
+        elif _place(state) != self.moves.initial:
+            self._tell(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+        self._resume(state)
+        if state.seq == 1:
+            self._started(state)
+
+    def _resume(self, state: State) -> None:
+        """Clocks are believed as they are here."""
+        self._zeros = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
+
+    def _started(self, state: State) -> None:
+        self._zeros = dict.fromkeys(self.moves.network.clocks, state.stamp)
+        self._clocks(state)
+
+    def _again(self, before: State, state: State) -> None:
+        """The same number: a heartbeat, the answer to a ping, or an end."""
+        if not state.same_place(before):
+            self._tell(FAULT, "number", state, f"two different states have number {state.seq}")
+        elif state.status != before.status:
+            self._status(before, state)
+        if state.seq and state.status not in ENDED:
+            self._clocks(state)
+
+    def _next(self, before: State, state: State) -> None:
+        if before.status == WAITING:
+            if _place(state) != self.moves.initial:
+                self._tell(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+            self._started(state)
+            return
+        if before.status in ENDED:
+            self._tell(FAULT, "end", state, f"the mission went on after it was {before.status}")
+        if state.stamp < before.stamp - DRIFT:
+            self._tell(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
+        move = self._move(before, state)
+        if move is not None:
+            self.steps.append(Step(before, state, move))
+            self._zeros.update(dict.fromkeys(after(move, _place(before))[1], state.stamp))
+        elif not state.same_place(before):
+            could = ", ".join(self.moves.possible(_place(before))) or "nothing"
+            what = f"{state.event} by {state.agent}" if state.event else "what happened"
+            changed = _change(before, state)
+            self._tell(FAULT, "step", state, f"{what} is no step of the model ({changed}); possible: {could}")
+            self._resume(state)
+        self._clocks(state)
+        self._status(before, state)
+
+    def _move(self, before: State, state: State) -> Optional[Move]:
+        """The joint move that leads from one to the other, the one that fits the clocks best."""
+        if not state.event:
+            return None
+        place, clocks = _place(before), self._clocks_at(state)
+        found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == _place(state)]
+        return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
+
+    def _clocks_at(self, state: State) -> Dict[str, float]:
+        return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}
+
+    def _clocks(self, state: State) -> None:
+        """The clocks that are told, against the stamps of their last resets."""
+        wrong = {
+            clock: state.clocks.get(clock, float("inf")) - value
+            for clock, value in self._clocks_at(state).items()
+            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= DRIFT
+        }
+        if wrong:
+            told = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
+            self._tell(FAULT, "clock", state, f"clocks are not what the stamps say: {told} time units")
+            self._resume(state)
+
+    def _status(self, before: State, state: State) -> None:
+        """Holds, new plans, lost agents."""
+        for agent in sorted(set(state.lost) - set(before.lost)):
+            self._tell(WORLD, "lost", state, f"{agent} counts as lost: nothing is expected of it any more")
+        for agent in sorted(set(before.lost) - set(state.lost)):
+            self._tell(NOTE, "back", state, f"{agent} is back")
+        if state.plan != before.plan:
+            self._tell(NOTE, "plan", state, f"plan {state.plan} is in force")
+            if state.plan not in self.orders and not self._game.why_not:
+                self._tell(FAULT, "plan", state, f"plan {state.plan} is not in the recording")
+        if state.status == HOLDING and before.status != HOLDING:
+            self.holds += 1
+            self._tell(NOTE, "hold", state, f"the mission holds: {state.reason or 'no reason is given'}")
+        elif before.status == HOLDING and state.status == RUNNING:
+            self._tell(NOTE, "hold", state, "the mission goes on")
+
+    def _end(self, last: State) -> None:
+        goal, bad = self._game.objective.goal, self._game.objective.bad
+        if last.status == WON and goal is not None and last.locations[goal[0]] != goal[1]:
+            self._tell(FAULT, "end", last, f"it is said to be won, but {goal[0]} is not {goal[1]}")
+        if last.status == WON and bad is not None and last.locations[bad[0]] == bad[1]:
+            self._tell(FAULT, "end", last, f"it is said to be won, but {bad[0]} is {bad[1]}")
+        if last.status not in (*ENDED, WAITING):
+            overdue = self.moves.overdue(_place(last), self._clocks_at(last))
+            for agent, late in overdue.items():
+                if late > self._tolerance:
+                    text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
+                    self._tell(WORLD, "late", last, text)
+
+    # What was done, by whom -------------------------------------------------------------------------------------------
+
+    def timing(self, steps: List[Step]) -> List[Finding]:
+        """Steps that come at a time which the model does not know, and states that the strategy does not."""
+        found: List[Finding] = []
+        for step in steps:
+            before, state = step.before, step.state
+            clocks = _aged(before, state)
+            by, late = self.moves.untimely(step.move, _place(before), clocks)
+            own = step.move[0][0] == (self._game.objective.bad or ("", ""))[0]
+            if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
+                how = "late" if late else "early"
+                told = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
+                found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, told))
+            orders = self.orders.get(state.plan)
+            if orders is None or state.status != RUNNING:
+                continue
+            cover = orders.cover.at(_place(state))
+            if not in_time((zone for zones in cover for zone in zones), state.clocks, 0.0, self._tolerance):
+                what = "at these clocks" if cover else "in this state"
+                told = f"the strategy does not know what to do {what}: {_where(state)}{self._doubt()}"
+                found.append(Finding(WORLD, "uncovered", state.seq, told))
+        return found
+
+    def commands(self, steps: List[Step], said: Said) -> List[Finding]:
+        """Whether commands were the strategy's, given by those who may, and while the mission ran."""
+        found: List[Finding] = []
+        controllers = {node for orders in self.orders.values() for nodes in orders.owners.values() for node in nodes}
+        for step in steps:
+            before, state, word = step.before, step.state, step.word
+            agent, edge = step.move[0]
+            own = agent == (self._game.objective.bad or ("", ""))[0] and edge.sync is None
+            if word is None:
+                if not own:
+                    told = f"nobody said {state.event}, as far as it was recorded"
+                    found.append(Finding(FAULT, "unsaid", state.seq, told))
+                continue
+            if word.seq is None:
+                if word.node in controllers - {"UI"}:
+                    told = f"{word.node} says {word.text}, and ends are for robots to tell"
+                    found.append(Finding(FAULT, "owner", state.seq, told))
+                continue
+            orders = self.orders.get(before.plan)
+            if before.status == HOLDING:
+                found.append(Finding(FAULT, "held", state.seq, f"{word.text} was taken while the mission held"))
+            if orders is None:
+                continue
+            owners = orders.owners.get(agent, frozenset())
+            by_hand = bool(word.node) and word.node not in controllers
+            if word.node in controllers and word.node not in owners:
+                told = f"{word.node} commands {agent}, which is for {' or '.join(sorted(owners)) or 'nobody'}"
+                found.append(Finding(FAULT, "owner", state.seq, told))
+            if not self._wanted(orders, step):
+                told = f"{state.event} by {agent} is not what the strategy says in state {before.seq}"
+                told += f"; it was said by {word.node}" if by_hand else self._doubt()
+                found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, told))
+        return found
+
+    def _wanted(self, orders: Orders, step: Step) -> bool:
+        """True where the strategy has this command at the moment, or had it not longer ago than the reaction."""
+        before, state = step.before, step.state
+        zones = [
+            zone
+            for command in orders.commands.at(_place(before))
+            if (command.agent, command.event) == (step.move[0][0], state.event)
+            for zone in command.zones
+        ]
+        back = min(orders.reaction + self._tolerance, (state.stamp - before.stamp) / state.unit)
+        return in_time(zones, _aged(before, state), back, self._tolerance)
+
+    def _doubt(self) -> str:
+        """What else could be the reason for a strategy that does not fit."""
+        return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
+
+
+def _place(state: State) -> Place:
+    return Place(dict(state.locations), dict(state.values))
+
+
+def _aged(before: State, state: State) -> Dict[str, float]:
+    """The clocks of the state before, at the moment of this one."""
+    passed = (state.stamp - before.stamp) / state.unit
+    return {clock: value + passed for clock, value in before.clocks.items()}
+
+
+def _where(state: State) -> str:
+    return " ".join(f"{name}={location}" for name, location in state.locations.items())
+
+
+def _change(before: State, state: State) -> str:
+    old: Dict[str, object] = {**before.locations, **before.values}
+    new: Dict[str, object] = {**state.locations, **state.values}
+    return ", ".join(f"{name}: {old[name]} to {new[name]}" for name in old if old[name] != new.get(name))

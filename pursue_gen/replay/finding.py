@@ -1,0 +1,18 @@
+"""What the checker reports: a level, a kind, the state that it is about, a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+NOTE, WORLD, FAULT = "note", "world", "fault"
+"""Nothing wrong; the world did what the model does not know; a node did what it must not, or it cannot be known."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """`seq` is the number of the state (0: of the whole recording), `kind` a stable word for programs."""
+
+    level: str
+    kind: str
+    seq: int
+    text: str

@@ -1,0 +1,119 @@
+"""The game that a recorded mission is checked against: the scenario, its rules, and the strategy that was played."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Mapping, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.files import read_text
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition import partition
+from pursue_gen.pipeline import Rules, played, solution
+from pursue_gen.replay.orders import Orders, of_strategy
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+
+DISTRIBUTED, DEDICATED = "distributed", "dedicated"
+NAME_IT = "name the scenario: pursue-gen replay FILE SCENARIO"
+
+
+@dataclass(frozen=True)
+class Game:
+    """What is checked against. `orders` None: the strategy is not known, and `why_not` says why.
+
+    `given`: the strategy is the workspace's own, not one that was solved again.
+    """
+
+    scenario: Scenario
+    network: Network
+    objective: Objective
+    orders: Optional[Orders]
+    why_not: str = ""
+    given: bool = False
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a game comes from: a scenario's text, its rules, who commands, and a plan's text where there is one."""
+
+    name: str
+    text: str
+    file: str
+    rules: Rules
+    controllers: str = DISTRIBUTED
+    reach_obj: str = DEDICATED
+    plan: Optional[Tuple[str, str]] = None
+
+
+def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]] = None) -> Source:
+    """The source that game.yaml describes. Raises PursueError (exit status 2)."""
+    try:
+        rules = data["rules"]
+        slack = {str(agent): int(units) for agent, units in dict(rules.get("slack") or {}).items()}
+        told = Rules(str(rules["ends"]), Fraction(str(rules["reaction"])), slack)
+        name, text = str(data["name"]), str(data["scenario"])
+        shape = str(data.get("controllers", DISTRIBUTED)), str(data.get("reach_obj", DEDICATED))
+    except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
+        message = f"{file} does not describe a game: {problem!r}"
+        raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
+    return Source(name, text, file, told, *shape, plan)
+
+
+def from_workspace(folder: Path) -> Source:
+    """The source that a generated workspace holds. Raises PursueError (exit status 2)."""
+    games = [path for path in sorted(folder.glob("src/*/config/game.yaml")) if path.is_file()]
+    if not games:
+        hint = "name a workspace that pursue-gen ws wrote, or the scenario: pursue-gen replay FILE SCENARIO"
+        raise PursueError([error("RPL006", f"{folder} holds no game (src/observer/config/game.yaml)", hint=hint)], 2)
+    text = read_text(games[0], "a workspace's game.yaml")
+    path = folder / "UPPAAL_plan.txt"
+    plan = (read_text(path, "a plan"), str(path)) if path.is_file() else None
+    return from_data(read_game(text, str(games[0])), str(games[0]), plan)
+
+
+def read_game(text: str, file: str) -> Mapping[str, Any]:
+    """The data in a game.yaml. Raises PursueError (exit status 2, or 6 where PyYAML is needed and not there)."""
+    data: Any = None
+    with contextlib.suppress(ValueError, RecursionError):  # JSON is YAML, and needs no package
+        data = json.loads(text)
+    if data is None:
+        try:
+            import yaml
+        except ImportError:
+            message, hint = f"reading {file} needs the Python package PyYAML", f"pip install PyYAML, or {NAME_IT}"
+            raise PursueError([error("RPL007", message, hint=hint)], 6) from None
+        with contextlib.suppress(yaml.YAMLError, RecursionError):
+            data = yaml.safe_load(text)
+    if not isinstance(data, dict):
+        raise PursueError([error("RPL005", f"{file} does not describe a game", hint=NAME_IT)], 2)
+    return data
+
+
+def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Game:
+    """The game; its strategy is the plan of the source, or solved again where there is none.
+
+    Raises PursueError for a scenario or a plan with errors; that no strategy is found is no error.
+    """
+    scenario = parse(source.text, source.file, source.name)
+    ideal, objective = translate(scenario), scenario_objective(scenario)
+    network = played(ideal, source.rules)
+    strategy: Strategy
+    if source.plan is not None:
+        strategy = read_plan(source.plan[0], network, source.plan[1])
+    else:
+        try:
+            strategy = solution(ideal, objective, source.rules, limits, progress=progress).strategy
+        except PursueError as problem:
+            return Game(scenario, network, objective, None, problem.diagnostics[0].message)
+    subs = partition(strategy, network, scenario.agents, source.controllers, source.reach_obj)
+    orders = of_strategy(strategy, subs, source.rules.reaction)
+    return Game(scenario, network, objective, orders, given=source.plan is not None)

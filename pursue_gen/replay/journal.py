@@ -1,0 +1,219 @@
+"""The observer's journal: JSON lines, the first of them a head, then each call that changed something.
+
+A journal holds no states: `worked_out` walks the scenario's automata by its words.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+
+from pursue_gen.replay.moves import Move, Moves, Place, after
+from pursue_gen.replay.record import (
+    FINISH,
+    LOST,
+    PLANNED,
+    RUNNING,
+    START,
+    STOP,
+    STOPPED,
+    WAITING,
+    WON,
+    Record,
+    State,
+    Word,
+    read_word,
+)
+from pursue_gen.tga.network import Objective
+
+CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
+TOLD = "told"
+"""Closes a journal: everybody knows how the mission ended."""
+
+MOST = 1000
+"""By so many numbers one call may move a mission on; more is damage."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A call of the observer at a moment (seconds), and number and status ("": not told) of the state after it."""
+
+    at: float
+    call: str
+    args: Tuple[Any, ...]
+    seq: int
+    status: str = ""
+
+
+@dataclass(frozen=True)
+class Journal:
+    """The head (format, scenario, unit …), the entries, and what could not be read."""
+
+    head: Mapping[str, Any]
+    entries: Tuple[Entry, ...]
+    problems: Tuple[str, ...] = ()
+
+    @property
+    def unit(self) -> float:
+        """Seconds per time unit."""
+        return _unit(self.head) or 1.0
+
+
+def read_journal(content: bytes) -> Union[Journal, str]:
+    """The journal in a file; a sentence where it is none."""
+    lines = content.decode("utf-8", "replace").splitlines()
+    head = _object(lines[0]) if lines else None
+    if head is None or head.get("format") != 1 or "scenario" not in head:
+        return 'expected a first line such as {"format": 1, "scenario": …}'
+    if _unit(head) is None:
+        return "its first line gives no length of a time unit in seconds"
+    entries: List[Entry] = []
+    problems: List[str] = []
+    for number, line in enumerate(lines[1:], start=2):
+        entry = _entry(line)
+        if entry is not None:
+            entries.append(entry)
+        elif line.strip() and (_object(line) or {}).get("call") != TOLD:
+            problems.append(f"line {number} cannot be read, what follows was not read: {line[:60]!r}")
+            break
+    if not entries:
+        return "; ".join([*problems, "nothing has happened in it"])
+    return Journal(head, tuple(entries), tuple(problems))
+
+
+def _unit(head: Mapping[str, Any]) -> Optional[float]:
+    """Seconds per time unit, 1 where the head does not say; None for what is no length of time."""
+    settings = head.get("settings")
+    settings = settings if isinstance(settings, dict) else {}
+    unit = head.get("unit", settings.get("time_unit", 1.0))
+    good = isinstance(unit, (int, float)) and not isinstance(unit, bool) and 1e-9 < unit < 1e9
+    return float(unit) if good else None
+
+
+def _object(line: str) -> Optional[Dict[str, Any]]:
+    try:
+        data = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    return data if isinstance(data, dict) else None
+
+
+def _entry(line: str) -> Optional[Entry]:
+    data = _object(line) or {}
+    at, call, args, seq = (data.get(key) for key in ("at", "call", "args", "seq"))
+    if not isinstance(at, (int, float)) or not abs(at) < 1e15 or call not in CALLS:
+        return None
+    if not isinstance(args, list) or not isinstance(seq, int) or seq < 0:
+        return None
+    return Entry(float(at), str(call), tuple(args), seq, str(data.get("status", "")))
+
+
+def worked_out(journal: Journal, moves: Moves, objective: Objective) -> Record:
+    """The journal as a record: the states that its words lead to."""
+    walk = _Walk(journal, moves, objective)
+    for entry in journal.entries:
+        walk.follow(entry)
+    return Record(
+        tuple(walk.states), tuple(walk.words), plans=walk.plans, problems=tuple(walk.problems), by_words=True
+    )
+
+
+class _Walk:
+    def __init__(self, journal: Journal, moves: Moves, objective: Objective) -> None:
+        self.states: List[State] = []
+        self.words: List[Word] = []
+        self.plans: Dict[int, Mapping[str, Any]] = {}
+        self.problems = list(journal.problems)
+        self._unit, self._moves, self._objective = journal.unit, moves, objective
+        self._place = moves.initial
+        self._zeros: Dict[str, float] = {}
+        self._seq, self._plan, self._status = 0, 0, WAITING
+        self._event = self._agent = ""
+
+    def follow(self, entry: Entry) -> None:
+        """What one call did: the numbers that it took say how many steps to look for."""
+        word = read_word(entry.at, str(entry.args[0])) if entry.call == "hear" and entry.args else None
+        if word is not None:
+            self.words.append(word)
+        if entry.call == "planned" and len(entry.args) > 1 and isinstance(entry.args[1], dict):
+            number = entry.args[0] if isinstance(entry.args[0], int) else -1
+            self.plans[number] = {**entry.args[1], "plan": number}
+        if not self._seq <= entry.seq <= self._seq + MOST:
+            self.problems.append(f"after state {self._seq} the journal goes on with state {entry.seq}")
+            self._seq = entry.seq - 1
+        self._steps(entry, word)
+        status = entry.status or self._ending(entry, word)
+        if status and self.states and self.states[-1].status != status:
+            self._status = status
+            self._event = self._agent = ""
+            self._show(entry.at)
+
+    def _steps(self, entry: Entry, word: Optional[Word]) -> None:
+        while self._seq < entry.seq:
+            self._seq += 1
+            if self._status == WAITING:
+                self._status, self._zeros = RUNNING, dict.fromkeys(self._moves.network.clocks, entry.at)
+                word = None if word and word.event == START else word
+                self._event = self._agent = ""
+            else:
+                move = self._next(entry.at, word)
+                word = None if word and not word.event.startswith("_") else word
+                if move is None:
+                    self._event = self._agent = ""
+                    if word is not None and word.event == PLANNED and word.seq is not None:
+                        self._plan = word.seq
+                else:
+                    self._take(move, entry.at)
+            if self._seq == entry.seq and entry.status:
+                self._status = entry.status
+            self._show(entry.at)
+
+    def _next(self, at: float, word: Optional[Word]) -> Optional[Move]:
+        """The move of the word, else one that an objective makes by itself; None: the status has changed."""
+        clocks = self._clocks(at)
+        if word is not None and not word.event.startswith("_"):
+            found = list(self._moves.of(self._place, word.event, word.agent))
+            if found:
+                return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
+        return next(self._moves.own(self._place, self._objective), None)
+
+    def _take(self, move: Move, at: float) -> None:
+        self._place, resets = after(move, self._place)
+        self._zeros.update(dict.fromkeys(resets, at))
+        self._agent, self._event = move[0][0], self._moves.word(*move[0])
+        if _at(self._place, self._objective.goal):
+            self._status = WON
+        elif _at(self._place, self._objective.bad):
+            self._status = LOST
+
+    def _ending(self, entry: Entry, word: Optional[Word]) -> str:
+        """won or stopped, where this very call ends the mission without a step."""
+        if self._status in (WON, LOST):
+            return ""
+        if entry.call == "stop" or (word is not None and word.text == STOP):
+            return STOPPED
+        return WON if word is not None and word.text == FINISH and self._objective.goal is None else ""
+
+    def _clocks(self, at: float) -> Dict[str, float]:
+        return {clock: (at - zero) / self._unit for clock, zero in self._zeros.items()}
+
+    def _show(self, at: float) -> None:
+        self.states.append(
+            State(
+                seq=self._seq,
+                stamp=at,
+                locations=self._place.locations,
+                values=self._place.values,
+                clocks=self._clocks(at),
+                unit=self._unit,
+                plan=self._plan,
+                event=self._event,
+                agent=self._agent,
+                status=self._status,
+            )
+        )
+
+
+def _at(place: Place, where: Optional[Tuple[str, str]]) -> bool:
+    return where is not None and place.locations.get(where[0]) == where[1]

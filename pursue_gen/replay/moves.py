@@ -1,0 +1,144 @@
+"""Which joint moves of a network a word can mean, where they lead, and how far clocks are from allowing them."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
+from pursue_gen.tga.words import event_word
+
+Part = Tuple[str, Edge]
+"""An automaton and its edge."""
+
+Move = Tuple[Part, ...]
+"""The mover's part, then each receiver's."""
+
+
+class Place(NamedTuple):
+    """Where every automaton is, and the variables."""
+
+    locations: Mapping[str, str]
+    values: Mapping[str, int]
+
+
+class Untimely(NamedTuple):
+    """By how many time units the clocks miss a move (0: they do not), and whether it comes too late for them."""
+
+    amount: float
+    late: bool
+
+
+class Moves:
+    """The joint moves of one network."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        self.initial = Place(
+            {automaton.name: automaton.initial for automaton in network.automata}, dict(network.variables)
+        )
+        self._edges: Dict[Tuple[str, str], List[Edge]] = {}
+        self._invariants: Dict[Tuple[str, str], Tuple[ClockBound, ...]] = {}
+        for automaton in network.automata:
+            for location in automaton.locations:
+                self._invariants[automaton.name, location.name] = location.invariant
+            for edge in automaton.edges:
+                self._edges.setdefault((automaton.name, edge.source), []).append(edge)
+        self._names = [automaton.name for automaton in network.automata]
+
+    @staticmethod
+    def word(automaton: str, edge: Edge) -> str:
+        """What the step is called on the topics."""
+        return event_word(automaton, edge)
+
+    def knows(self, place: Place) -> bool:
+        """True where the place names these automata with locations of theirs, and these variables."""
+        return (
+            set(place.locations) == set(self._names)
+            and set(place.values) == set(self.initial.values)
+            and all(part in self._invariants for part in place.locations.items())
+        )
+
+    def of(self, place: Place, word: str, agent: str = "") -> Iterator[Move]:
+        """What the word (of this agent, or of anybody) can do there, whatever the clocks."""
+        for name in self._names:
+            if agent and name != agent:
+                continue
+            for edge in self._enabled(name, place):
+                receives = edge.sync is not None and not edge.sync.sends
+                if not receives and event_word(name, edge) == word:
+                    yield from self._joint(name, edge, place)
+
+    def own(self, place: Place, objective: Objective) -> Iterator[Move]:
+        """The steps that the safety objective makes by itself."""
+        if objective.bad is None:
+            return
+        name = objective.bad[0]
+        for edge in self._enabled(name, place):
+            if edge.sync is None:
+                yield ((name, edge),)
+
+    def possible(self, place: Place) -> List[str]:
+        """The words that can happen there, whatever the clocks."""
+        words = {
+            event_word(name, edge): None
+            for name in self._names
+            for edge in self._enabled(name, place)
+            if edge.sync is None or edge.sync.sends
+        }
+        return list(words)
+
+    def untimely(self, move: Move, place: Place, clocks: Mapping[str, float]) -> Untimely:
+        """How far the clocks are from the mover's guard and from the invariant of the place that it leaves."""
+        name, edge = move[0]
+        bounds = (*edge.guard.clocks, *self._invariants[name, edge.source])
+        worst = Untimely(0.0, False)
+        for bound in bounds:
+            value = clocks.get(bound.clock, 0.0)
+            early, late = bound.bound - value, value - bound.bound
+            misses = {"<": late, "<=": late, ">": early, ">=": early, "==": max(early, late)}[bound.op]
+            if misses > worst.amount:
+                worst = Untimely(misses, misses == late)
+        return worst
+
+    def overdue(self, place: Place, clocks: Mapping[str, float]) -> Dict[str, float]:
+        """Who should have moved already, and the time units since then."""
+        late: Dict[str, float] = {}
+        for part in place.locations.items():
+            for bound in self._invariants.get(part, ()):
+                over = clocks.get(bound.clock, 0.0) - bound.bound
+                if over > late.get(part[0], 0.0):
+                    late[part[0]] = over
+        return late
+
+    def _enabled(self, name: str, place: Place) -> Iterator[Edge]:
+        for edge in self._edges.get((name, place.locations.get(name, "")), ()):
+            if all(any(place.values.get(t.variable) == t.value for t in clause) for clause in edge.guard.integers):
+                yield edge
+
+    def _joint(self, mover: str, edge: Edge, place: Place) -> Iterator[Move]:
+        """The edge with every choice of one receiving edge for each automaton that has one."""
+        answers: List[Sequence[Part]] = []
+        if edge.sync is not None:
+            for name in self._names:
+                channel = edge.sync.channel
+                heard = [(name, e) for e in self._enabled(name, place) if _hears(e, channel)] if name != mover else []
+                if heard:
+                    answers.append(heard)
+        for chosen in itertools.product(*answers):
+            yield ((mover, edge), *chosen)
+
+
+def _hears(edge: Edge, channel: str) -> bool:
+    return edge.sync is not None and not edge.sync.sends and edge.sync.channel == channel
+
+
+def after(move: Move, place: Place) -> Tuple[Place, Tuple[str, ...]]:
+    """Where the move leads, and the clocks that it resets."""
+    locations, values = dict(place.locations), dict(place.values)
+    resets: Dict[str, Optional[str]] = {}
+    for name, edge in move:
+        locations[name] = edge.target
+        values.update(edge.assign)
+        resets.update(dict.fromkeys(edge.resets))
+    return Place(locations, values), tuple(resets)

@@ -1,0 +1,128 @@
+"""What a strategy wants in a state: the workspace's own, or one that was made during the mission (pursue/plan)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Sequence, Tuple, TypeVar
+
+from pursue_gen.partition import SubStrategy
+from pursue_gen.replay.moves import Place
+from pursue_gen.synthesis.plan_text import read_constraint
+from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
+from pursue_gen.tga.words import event_word
+
+EPSILON = 1e-6
+Payload = TypeVar("Payload")
+
+
+@dataclass(frozen=True)
+class Command:
+    """In one of the zones the agent is to do the event."""
+
+    agent: str
+    event: str
+    zones: Tuple[Zone, ...]
+
+
+class Table(Generic[Payload]):
+    """Payloads by state; an entry may leave out automata and variables."""
+
+    def __init__(self) -> None:
+        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
+
+    def put(self, state: Mapping[str, object], payload: Payload) -> None:
+        """Adds an entry."""
+        names = tuple(sorted(state))
+        self._tables.setdefault(names, {}).setdefault(tuple(str(state[name]) for name in names), []).append(payload)
+
+    def at(self, place: Place) -> List[Payload]:
+        """What was put there."""
+        everything = {**place.locations, **{name: str(value) for name, value in place.values.items()}}
+        return [
+            payload
+            for names, table in self._tables.items()
+            for payload in table.get(tuple(everything.get(name, "") for name in names), ())
+        ]
+
+
+@dataclass(frozen=True)
+class Orders:
+    """A strategy by state. `owners`: the nodes that command an agent; `reaction`: how late a command may come, in time
+    units."""
+
+    commands: Table[Command] = field(default_factory=Table)
+    cover: Table[Tuple[Zone, ...]] = field(default_factory=Table)
+    owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
+    reaction: float = 0.1
+
+
+def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:
+    """The workspace's own strategy."""
+    orders = Orders(owners=_owners((sub.controller, sub.agents) for sub in subs), reaction=float(reaction))
+    for block in strategy.blocks:
+        state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}
+        for command in block.commands:
+            first = command.moves[0]
+            orders.commands.put(state, Command(first.automaton, event_word(first.automaton, first.edge), command.zones))
+        orders.cover.put(state, (*block.wait, *(zone for command in block.commands for zone in command.zones)))
+    return orders
+
+
+def of_plan(data: Mapping[str, Any]) -> Orders:
+    """A strategy as it stands on pursue/plan. Raises ValueError where it cannot be read."""
+    try:
+        strategies = {**data["strategies"], **({"UI": data["people"]} if data.get("people") else {})}
+        owners = _owners((name, part["commands_agents"]) for name, part in strategies.items())
+        reaction = max((Fraction(str(part["reaction"])) for part in strategies.values()), default=Fraction(1, 10))
+        orders = Orders(owners=owners, reaction=float(reaction))
+        for part in strategies.values():
+            for entry in part["strategy"]:
+                for command in entry["commands"]:
+                    zones = tuple(read_zone(zone) for zone in command["when"])
+                    orders.commands.put(entry["state"], Command(str(command["agent"]), str(command["do"]), zones))
+        for entry in data["cover"]["cover"]:
+            orders.cover.put(entry["state"], tuple(read_zone(zone) for zone in entry["zones"]))
+    except (KeyError, TypeError, AttributeError, ZeroDivisionError) as problem:
+        raise ValueError(f"it lacks or misspells something: {problem!r}") from None
+    return orders
+
+
+def _owners(parts: Iterable[Tuple[str, Iterable[str]]]) -> Dict[str, FrozenSet[str]]:
+    owners: Dict[str, FrozenSet[str]] = {}
+    for controller, agents in parts:
+        for agent in agents:
+            owners[agent] = owners.get(agent, frozenset()) | {controller}
+    return owners
+
+
+def read_zone(text: str) -> Zone:
+    """A zone as it stands in strategy.yaml. Raises ValueError."""
+    if text.strip() == "always":
+        return ()
+    zone: List[Constraint] = []
+    for part in text.split("&&"):
+        found = read_constraint("".join(part.split()))
+        if found is None:
+            raise ValueError(f"not a comparison of clocks: {part.strip()[:60]!r}")
+        zone += found
+    return tuple(zone)
+
+
+def in_time(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, slack: float) -> bool:
+    """True if the clocks are in one of the zones, or were within the last `back` time units, but for `slack`."""
+    return any(_in_time(zone, clocks, back, slack) for zone in zones)
+
+
+def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> bool:
+    earliest, latest = 0.0, max(0.0, back)
+    for constraint in zone:
+        value = clocks.get(constraint.left or "", 0.0) - clocks.get(constraint.right or "", 0.0)
+        excess = value - float(constraint.bound) - slack - EPSILON
+        if constraint.right is None:  # clock - delay <= bound
+            earliest = max(earliest, excess)
+        elif constraint.left is None:  # -(clock - delay) <= bound
+            latest = min(latest, -excess)
+        elif excess > 0:
+            return False
+    return earliest <= latest

@@ -1,0 +1,119 @@
+"""A recording on the disk → its Record: a bag by its first bytes, a journal by its first line."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
+from pursue_gen.replay.journal import Journal, read_journal
+from pursue_gen.replay.record import Order, Record, State, Word, ordered, read_state, read_word
+
+EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
+
+_ORDERS = ("/move_base_simple/goal", "/pursue/actions", "/move_base/goal")
+"""Topics of a robot, below its name."""
+
+
+def read_recording(file: Path) -> Union[Record, Journal]:
+    """What is in the file. Raises PursueError (exit status 2) where that is nothing to check."""
+    try:
+        content = file.read_bytes()
+    except (OSError, ValueError) as problem:
+        raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
+    if content.startswith(b"#ROSBAG"):
+        return _bag(file, content)
+    if content.lstrip()[:1] == b"{":
+        journal = read_journal(content)
+        if isinstance(journal, str):
+            raise _unreadable(f"{file} is no journal: {journal}", "RPL002")
+        return journal
+    raise _unreadable(f"{file} is neither a bag nor a journal", "RPL002")
+
+
+def _bag(file: Path, content: bytes) -> Record:
+    try:
+        messages, problems = read_bag(content)
+    except Damage as damage:
+        known = MAGIC.decode().strip()
+        raise _unreadable(f"{file} is a bag of another format than {known}: {damage}", "RPL003") from None
+    record = from_messages(messages, problems)
+    if not record.states:
+        found = ", ".join(sorted({message.topic for message in messages})) or "no messages"
+        hint = "; ".join([*problems, EXPECTED])
+        raise _unreadable(f"{file} holds no state of a mission on pursue/system_state; it has {found}", "RPL004", hint)
+    return record
+
+
+def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> Record:
+    """What the messages of a bag say; those that are not ours are passed over."""
+    states: List[State] = []
+    words: List[Word] = []
+    orders: List[Order] = []
+    plans: Dict[int, Mapping[str, Any]] = {}
+    game: Optional[Mapping[str, Any]] = None
+    strange = 0
+    for message in messages:
+        topic = message.topic.strip("/")
+        if topic.endswith(_ORDERS):
+            orders.append(_order(message, topic))
+        elif topic.endswith(("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")):
+            text = _text(message.data)
+            state = read_state(text) if topic.endswith("system_state") else None
+            data = _json(text) if topic.endswith(("plan", "game")) else None
+            if topic.endswith("events"):
+                words.append(read_word(message.at, text, message.node))
+            elif state is not None:
+                states.append(state)
+            elif data is not None and topic.endswith("plan"):
+                plans[_whole(data.get("plan"))] = data
+            elif data is not None:
+                game = data
+            else:
+                strange += 1
+    found = [*problems, *([f"{strange} messages on our topics could not be read"] if strange else [])]
+    return Record(ordered(iter(states)), tuple(words), tuple(orders), plans, game, tuple(found))
+
+
+def _order(message: Message, topic: str) -> Order:
+    """What a robot was told; the robot's name stands first in the topic's last parts."""
+    kind = next(kind for kind in _ORDERS if topic.endswith(kind))
+    robot = topic[: -len(kind)].rpartition("/")[2]
+    if kind == "/pursue/actions":
+        return Order(message.at, robot, message.node, action=_text(message.data).strip() or "?")
+    goal = _position(message.data) if kind == "/move_base_simple/goal" else None
+    return Order(message.at, robot, message.node, goal)
+
+
+def _text(data: bytes) -> str:
+    """What a std_msgs/String says, as far as it is there."""
+    return data[4:].decode("utf-8", "replace")
+
+
+def _position(data: bytes) -> Optional[Tuple[float, float, float]]:
+    """x, y and z of a geometry_msgs/PoseStamped; None where it is cut."""
+    try:
+        (length,) = struct.unpack_from("<L", data, 12)
+        x, y, z = struct.unpack_from("<ddd", data, 16 + length)
+    except struct.error:
+        return None
+    return x, y, z
+
+
+def _json(text: str) -> Optional[Mapping[str, Any]]:
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return data if isinstance(data, dict) else None
+
+
+def _whole(value: Any) -> int:
+    return value if isinstance(value, int) else -1
+
+
+def _unreadable(message: str, code: str, hint: str = EXPECTED) -> PursueError:
+    return PursueError([error(code, message, hint=hint)], exit_status=2)

@@ -1,0 +1,126 @@
+"""What the robots were told, against what the states say that they do."""
+
+from __future__ import annotations
+
+import bisect
+from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.replay.finding import FAULT, Finding
+from pursue_gen.replay.game import Game
+from pursue_gen.replay.orders import Orders
+from pursue_gen.replay.record import Order, Record, State
+from pursue_gen.workspace.layout import poses
+
+LATE = 2.0
+"""Seconds by which an order may be heard after its activity is over: messages take time, and robots may be quick."""
+EARLY = 0.25
+"""Seconds by which the recorder's clock may be behind the observer's: another machine, a step of simulated time."""
+NEAR = 0.011  # metres: computed poses are rounded to centimetres
+
+Point = Tuple[float, float, float]
+
+Done = Tuple[State, State, str, bool]
+"""The state before a step and after it, its mover, and whether it was a command."""
+
+Activity = Tuple[State, float, str, str]
+"""The state in which it begins, its end (seconds), the robot, where it goes ("" for an action)."""
+
+
+def check_robots(record: Record, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]) -> List[Finding]:
+    """Goals and actions that no state asked for, those that were never sent, goals that lead elsewhere."""
+    robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
+    activities = _activities(steps, robots)
+    where = {name: (pose.x, pose.y, pose.z) for name, pose in poses(game.scenario)[0].items()}
+    ways = {f"going_{x.name}_to_{y.name}": y.name for x in game.scenario.pois for y in game.scenario.pois}
+    diary = _Diary(activities)
+    found: List[Finding] = []
+    told: Set[int] = set()
+    places: Dict[str, Point] = {}
+    for order in record.orders:
+        place = diary.activity(order)
+        if place is None:
+            what = "a goal" if order.is_goal else f"the action {order.action}"
+            seq = _number_at(record, order.at)
+            text = f"{order.node or 'somebody'} gave {order.robot} {what} that no state asks for"
+            found.append(Finding(FAULT, "order", seq, text))
+            continue
+        told.add(place)
+        state, _, robot, location = activities[place]
+        owners = orders[state.plan].owners.get(robot) if state.plan in orders else None
+        if owners and order.node and order.node not in owners:
+            text = f"{order.node} commands {robot}, which is for {' or '.join(sorted(owners))}"
+            found.append(Finding(FAULT, "owner", state.seq, text))
+        if order.goal is not None and location in ways:
+            problem = _elsewhere(order.goal, ways[location], places, where)
+            found += [Finding(FAULT, "goal", state.seq, f"{robot} is sent {problem}")] if problem else []
+    if not record.problems:
+        asked = {state.seq for _, state, _, is_command in steps if is_command}
+        for place, (state, _, robot, location) in enumerate(activities):
+            if place not in told and state.seq in asked:
+                text = f"{robot} was not told to begin {state.event} ({location or 'an action'})"
+                found.append(Finding(FAULT, "untold", state.seq, text))
+    return found
+
+
+def _activities(steps: Sequence[Done], robots: Sequence[str]) -> List[Activity]:
+    """What robots began, and until when (the next step of the robot)."""
+    begun: List[Activity] = []
+    open_: Dict[str, int] = {}
+    for before, state, mover, _ in steps:
+        for robot in robots:
+            here, there = before.locations[robot], state.locations[robot]
+            if there == here:
+                if mover == robot:  # something that takes no time, also under way to a place
+                    begun.append((state, state.stamp, robot, ""))
+                continue
+            if robot in open_:
+                place = open_.pop(robot)
+                begun[place] = (begun[place][0], state.stamp, robot, begun[place][3])
+            if there.startswith("going_"):
+                open_[robot] = len(begun)
+                begun.append((state, float("inf"), robot, there))
+            elif there.startswith("doing_"):
+                open_[robot] = len(begun)
+                begun.append((state, float("inf"), robot, ""))
+    return begun
+
+
+class _Diary:
+    """The activities of each robot by their beginnings, goals and actions apart."""
+
+    def __init__(self, activities: Sequence[Activity]) -> None:
+        self._activities = activities
+        self._places: Dict[Tuple[str, bool], List[Tuple[float, int]]] = {}
+        for place, (state, _, robot, location) in enumerate(activities):
+            self._places.setdefault((robot, bool(location)), []).append((state.stamp, place))
+
+    def activity(self, order: Order) -> Optional[int]:
+        """Which activity the order is for: of those of its kind that go on, the one that begins nearest to it."""
+        places = self._places.get((order.robot, order.is_goal), [])
+        number = bisect.bisect(places, (order.at + EARLY, len(self._activities)))
+        fitting = [
+            (abs(order.at - begins), place)
+            for begins, place in places[max(0, number - 2) : number]
+            if order.at <= self._activities[place][1] + LATE
+        ]
+        return min(fitting)[1] if fitting else None
+
+
+def _elsewhere(
+    goal: Point, poi: str, places: Dict[str, Point], where: Mapping[str, Point]
+) -> str:
+    """Where a goal leads that should lead to the POI; "" where it may be right: poses are the workspace's."""
+    known = places.setdefault(poi, goal)
+    if _far(goal, known):
+        return f"to ({goal[0]:.2f}, {goal[1]:.2f}), and {poi} was at ({known[0]:.2f}, {known[1]:.2f}) before"
+    others = [name for name, place in where.items() if not _far(goal, place)]
+    return f"to {others[0]} on its way to {poi}" if others and poi not in others else ""
+
+
+def _far(one: Point, other: Point) -> bool:
+    return any(not abs(a - b) <= NEAR for a, b in zip(one, other))
+
+
+def _number_at(record: Record, at: float) -> int:
+    earlier = [state.seq for state in record.states if state.stamp <= at]
+    return earlier[-1] if earlier else record.states[0].seq

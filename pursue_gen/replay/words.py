@@ -1,0 +1,124 @@
+"""Which word led to which state, and why the others led to nothing."""
+
+from __future__ import annotations
+
+import bisect
+from dataclasses import dataclass
+from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.replay.finding import NOTE, WORLD, Finding
+from pursue_gen.replay.moves import Moves, Place
+from pursue_gen.replay.record import (
+    ENDED,
+    FAILED,
+    FINISH,
+    HOLDING,
+    PING,
+    PLANNED,
+    START,
+    STOP,
+    WAITING,
+    Record,
+    State,
+    Word,
+)
+
+CONTROL = (START, PING, STOP, FINISH)
+APART = 60.0
+"""Seconds by which the recorder may have heard a report earlier or later than the observer: links may be cut."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """The word of each step (by the number of its state), the states by number, and the words that led to nothing."""
+
+    words: Mapping[int, Word]
+    states: Mapping[int, State]
+    left: Tuple[Word, ...]
+
+    def of(self, seq: int) -> Optional[Word]:
+        """The word that led to this state."""
+        return self.words.get(seq)
+
+
+def who_said(record: Record, steps: Sequence[Tuple[State, State]]) -> Said:
+    """A command is for the number of the state before it; of several reports the one nearest to the state counts."""
+    heard: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
+    for place, word in enumerate(record.words):
+        heard.setdefault((word.event, word.seq), []).append((word.at, place))
+    for words in heard.values():
+        words.sort()
+    used: Set[int] = set()
+    found: Dict[int, Word] = {}
+    for before, state in steps:
+        for words in (heard.get((state.event, before.seq), []), heard.get((state.event, None), [])):
+            near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
+            mine = [place for _, place in near if record.words[place].agent in ("", state.agent) and place not in used]
+            if mine:
+                best = min(mine, key=lambda place: abs(record.words[place].at - state.stamp))
+                used.add(best)
+                found[state.seq] = record.words[best]
+                break
+    states: Dict[int, State] = {}
+    for state in record.states:
+        states.setdefault(state.seq, state)
+    left = [word for place, word in enumerate(record.words) if place not in used and not _control(word)]
+    return Said(found, states, tuple(left))
+
+
+def _control(word: Word) -> bool:
+    return word.text in CONTROL or word.event in (PLANNED, FAILED)
+
+
+def dropped(record: Record, said: Said, moves: Moves) -> List[Finding]:
+    """Why each word that led to nothing did; and the words that steer the mission itself."""
+    found: List[Finding] = []
+    stamps = [state.stamp for state in record.states]
+
+    def now(word: Word) -> State:
+        return record.states[max(0, bisect.bisect(stamps, word.at + 1e-6) - 1)]
+
+    for word in record.words:
+        if word.text == STOP:
+            found.append(Finding(NOTE, "stop", now(word).seq, f"{_by(word)} said {STOP}"))
+        elif word.event == FAILED:
+            found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot do what it was told"))
+    for word in said.left:
+        seq, why = _why(now(word), word, said, moves)
+        found.append(Finding(NOTE, "dropped", seq, f"{word.text[:80]!r} of {_by(word)} led to nothing: {why}"))
+    return found
+
+
+def _by(word: Word) -> str:
+    return word.node or "somebody"
+
+
+def _why(now: State, word: Word, said: Said, moves: Moves) -> Tuple[int, str]:
+    """The state that it met, and the reason."""
+    if not word.event:
+        return now.seq, "it is no word"
+    if word.seq is None:
+        return now.seq, _impossible(now, word, moves) or "its moment had not come, or it was not heard"
+    state, following = said.states.get(word.seq), said.states.get(word.seq + 1)
+    taken = said.of(word.seq + 1)
+    if state is None:
+        return word.seq, f"state {word.seq} is not in the recording"
+    if taken is not None and (taken.agent, taken.event) == (word.agent, word.event):
+        return word.seq, "it was said again, and had been taken"
+    if following is not None:
+        what = f"{following.event} by {following.agent}" if following.event else "another status"
+        return word.seq, f"{what} came first"
+    return word.seq, _impossible(state, word, moves) or "the mission ended first, or its moment was over"
+
+
+def _impossible(state: State, word: Word, moves: Moves) -> str:
+    """Why the word cannot be taken there, whatever the clocks; "" where it can."""
+    if state.status == WAITING or state.status in ENDED:
+        return f"the mission was {state.status}"
+    if state.status == HOLDING and word.seq is not None:
+        return "the mission held"
+    place = Place(dict(state.locations), dict(state.values))
+    if next(moves.of(place, word.event, word.agent), None) is None:
+        return f"it cannot happen in state {state.seq}; possible: {', '.join(moves.possible(place)) or 'nothing'}"
+    return ""
+

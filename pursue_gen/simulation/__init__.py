@@ -1,0 +1,1 @@
+"""The generated decision code in closed loop with a simulated world, without ROS: thousands of missions a minute."""

@@ -1,0 +1,158 @@
+"""What may go wrong in a simulated mission, by name, and what goes wrong in one mission, drawn from its seed.
+
+Times are in seconds where they belong to messages and nodes, in time units where they belong to the model; a simulated
+time unit lasts one second.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+
+FAULTS: Mapping[str, str] = {
+    "delay": "one message in 10 is late by up to 5 s, and those behind it on the same connection wait",
+    "loss": "one message in 20 is lost",
+    "duplicates": "one message in 10 comes twice, the second up to 2 s later",
+    "reorder": "one message in 10 is overtaken by those sent up to 2 s after it",
+    "clocks": "the clock of each controller is wrong by up to 0.5 s, either way",
+    "deaths": "up to three times a controller or the observer dies, and is started again after 0.3 to 3 s",
+    "cut": "the machine of a controller and its robot is cut off for 1 to 60 s; what was sent comes later",
+    "early": "one movement or action in 5 ends before the model's window, by up to half of its least duration",
+    "late": "one movement or action in 5 ends 0.2 to 15 time units after the model's window",
+    "failed": "a robot says in the midst of something that it cannot do it; half of them do it 1 to 40 later",
+    "silent": "a robot is never heard of again, from the midst of something on",
+    "junk": "up to ten words on pursue/events that mean nothing, are impossible, or are commands for earlier states",
+}
+"""Every kind of fault, and its parameters."""
+
+HARMLESS = ("duplicates", "junk")
+"""What makes nobody late: missions in which nothing else goes wrong are won as if nothing did."""
+
+
+def read_faults(text: str) -> Tuple[str, ...]:
+    """The kinds of faults of `--faults`: names with commas between them, `all`, `none`. Raises PursueError."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if names == ["none"] or not names:
+        return ()
+    if names == ["all"]:
+        return tuple(FAULTS)
+    unknown = [name for name in names if name not in FAULTS]
+    if unknown:
+        hint = f"names with commas between them: {', '.join(FAULTS)}; or all, or none"
+        raise PursueError([error("SIM002", f"there are no faults called {', '.join(unknown)}", hint=hint)], 2)
+    return tuple(name for name in FAULTS if name in names)
+
+
+@dataclass(frozen=True)
+class Death:
+    """A node dies at the moment and is started again after so many seconds."""
+
+    moment: float
+    node: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Breakdown:
+    """The robot's `number`-th activity goes wrong after `share` of its least duration; `back`: it ends so much later
+    than that (time units), None: never. `says`: it tells."""
+
+    robot: str
+    number: int
+    share: float
+    says: bool
+    back: Optional[float] = None
+
+
+class Trouble:
+    """The faults of one mission: which kinds there are in it, and each case, drawn one after the other."""
+
+    def __init__(self, kinds: Sequence[str], seed: str, start: float, span: float, controllers: Sequence[str],
+                 robots: Sequence[str]) -> None:
+        """`start`: when the mission starts; `span`: the seconds after that in which faults begin that have a moment.
+
+        With one kind, the mission has it; of several, each with probability 1/2, but one at least.
+        """
+        self._draw = draw = random.Random(f"{seed}/faults")
+        chosen = [kind for kind in kinds if len(kinds) == 1 or draw.random() < 0.5]
+        self.kinds: FrozenSet[str] = frozenset(chosen or ([draw.choice(list(kinds))] if kinds else []))
+        self.happened: Dict[str, int] = {}
+        self.offsets = dict.fromkeys(controllers, 0.0)
+        if "clocks" in self.kinds:
+            self.offsets = {name: self._count("clocks", draw.uniform(-0.5, 0.5)) for name in controllers}
+        self.deaths = self._deaths(start, span, controllers)
+        self.cut: Optional[Tuple[str, float, float]] = None
+        if "cut" in self.kinds and controllers:
+            begin = start + draw.uniform(0.0, span)
+            self.cut = draw.choice(list(controllers)), begin, begin + draw.uniform(1.0, 60.0)
+        self.breakdown = self._breakdown(robots)
+        junk = draw.randint(1, 10) if "junk" in self.kinds else 0
+        self.junk: List[float] = sorted(start + draw.uniform(0.0, span) for _ in range(junk))
+
+    @property
+    def excuses(self) -> bool:
+        """True once something has gone wrong that breaks what the strategy was promised."""
+        return any(kind not in HARMLESS for kind in self.happened)
+
+    @property
+    def offset(self) -> float:
+        """By how much a clock may be wrong, in seconds."""
+        return 0.5 if "clocks" in self.kinds else 0.0
+
+    def lost(self) -> bool:
+        """Is this message lost?"""
+        return self._chance("loss", 0.05)
+
+    def late(self) -> float:
+        """Seconds by which this message is late, and holds up those behind it."""
+        return self._draw.uniform(0.0, 5.0) if self._chance("delay", 0.1) else 0.0
+
+    def overtaken(self) -> float:
+        """Seconds by which this message, and no other, is late."""
+        return self._draw.uniform(0.0, 2.0) if self._chance("reorder", 0.1) else 0.0
+
+    def again(self) -> Optional[float]:
+        """Seconds after which this message comes again."""
+        return self._draw.uniform(0.0, 2.0) if self._chance("duplicates", 0.1) else None
+
+    def duration(self, low: float, high: float, usual: float) -> float:
+        """How long an activity with this window takes, in time units, where it would have taken the usual time."""
+        if self._chance("late", 0.2):
+            return high + self._draw.uniform(0.2, 15.0)
+        if self._chance("early", 0.2):
+            return low * self._draw.uniform(0.5, 1.0)
+        return usual
+
+    def count(self, kind: str) -> None:
+        """A fault has happened that was drawn at the start."""
+        self.happened[kind] = self.happened.get(kind, 0) + 1
+
+    def _count(self, kind: str, value: float) -> float:
+        self.count(kind)
+        return value
+
+    def _chance(self, kind: str, probability: float) -> bool:
+        if kind not in self.kinds or self._draw.random() >= probability:
+            return False
+        self.count(kind)
+        return True
+
+    def _deaths(self, start: float, span: float, controllers: Sequence[str]) -> List[Death]:
+        if "deaths" not in self.kinds:
+            return []
+        nodes = ["observer", *controllers]
+        draw = self._draw
+        moments = [start + draw.uniform(0.0, span) for _ in range(draw.randint(1, 3))]
+        return [Death(moment, draw.choice(nodes), draw.uniform(0.3, 3.0)) for moment in moments]
+
+    def _breakdown(self, robots: Sequence[str]) -> Optional[Breakdown]:
+        kinds = sorted(self.kinds & {"failed", "silent"})
+        if not kinds or not robots:
+            return None
+        draw = self._draw
+        says = draw.choice(kinds) == "failed"
+        back = draw.uniform(1.0, 40.0) if says and draw.random() < 0.5 else None
+        return Breakdown(draw.choice(list(robots)), draw.randint(1, 3), draw.random(), says, back)

@@ -1,0 +1,193 @@
+"""Who watches the mission: by the network and the strategy as the solver had them, not by the generated code.
+
+Each state that the observer publishes must follow from the one before by one joint move of the network, at clocks that
+allow it; what is not so may be a report that a fault has put off the model, but never a command. A command must be
+held by the strategy in force in the state before, and have been due there since the state began (without faults: no
+longer ago than the reaction). A robot is told only what is such a command, and only while it is still to be done.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
+
+from pursue_gen.simulation.held import EPSILON, Commands, commands_in
+from pursue_gen.synthesis.dbm import INF, Dbm, constant
+from pursue_gen.synthesis.verify_moves import Arena, JointMove, State
+from pursue_gen.tga.network import ClockBound
+from pursue_gen.tga.words import event_word
+
+BUSY = ("going_", "doing_")
+
+
+class Step(NamedTuple):
+    """What led to the state of this number, and whether the strategy commanded it."""
+
+    seq: int
+    agent: str
+    event: str
+    target: str
+    commanded: bool
+
+
+class Judge:
+    """Watches one mission. `problems`: what must never be; `off_model`: how often the world left the model."""
+
+    def __init__(self, arena: Arena, commands: Commands, bad: Optional[Tuple[str, str]], reaction: float,
+                 faults: bool = False, offset: float = 0.0) -> None:
+        """`reaction` in time units; `offset`: by how much (time units) the clock of a controller may be wrong."""
+        self.problems: List[str] = []
+        self.off_model = 0
+        self.steps: List[Step] = []
+        self._arena, self._bad = arena, bad
+        self._names = [automaton.name for automaton in arena.network.automata]
+        self._plans: Dict[int, Commands] = {0: commands}
+        self._reaction, self._faults, self._offset = reaction, faults, offset
+        self._before: Any = None
+        self._entered = 0.0
+        self._zeros: Dict[str, float] = {}
+        self._told: Set[Tuple[str, int]] = set()
+
+    def planned(self, number: int, strategies: Mapping[str, Any], people: Optional[Mapping[str, Any]]) -> None:
+        """A new plan has been announced under this number."""
+        parts = [*strategies.values(), *([people] if people else [])]
+        self._plans[number] = commands_in(parts)
+
+    # States -----------------------------------------------------------------------------------------------------------
+
+    def saw(self, state: Any, now: float) -> None:
+        """The observer publishes a state, at this moment (seconds)."""
+        before, self._before = self._before, state
+        if before is None or before.seq == 0:
+            if state.seq > 0:
+                self._starts(state, now)
+            return
+        if state.seq == before.seq:
+            if (state.locations, state.values) != (before.locations, before.values):
+                self._problem(f"state {state.seq} is published again, but with other locations or values")
+        elif state.seq != before.seq + 1:
+            self._problem(f"state {state.seq} follows state {before.seq}")
+        elif state.event:
+            self._stepped(before, state, now)
+        elif (state.locations, state.values) != (before.locations, before.values):
+            self._problem(f"state {state.seq} differs from the one before, but nothing has happened")
+        if state.status != "waiting":
+            self._check_clocks(state, now)
+
+    def _starts(self, state: Any, now: float) -> None:
+        self._zeros = dict.fromkeys(self._arena.network.clocks, now)
+        self._entered = now
+        if (state.seq, self._key(state)) != (1, self._arena.initial):
+            self._problem(f"the mission starts with state {state.seq}, not where the network starts")
+        self._check_clocks(state, now)
+
+    def _stepped(self, before: Any, state: Any, now: float) -> None:
+        clocks = {clock: (now - zero) / state.unit for clock, zero in self._zeros.items()}
+        what = f"{state.event} by {state.agent} (state {state.seq})"
+        matching = [
+            move
+            for move in self._arena.situation(self._key(before)).moves
+            if (move.moves[0].automaton, _word(move)) == (state.agent, state.event) and move.target == self._key(state)
+        ]
+        if not matching:
+            self._problem(f"{what} is no step of the network")
+            return
+        move = next((m for m in matching if m.enabled and inside(m.enabled, self._point(clocks))), None)
+        if move is None:
+            move = matching[0]
+            self._off_model(move, clocks, what)
+        commanded = move.controllable and not self._gives_up(move)
+        if commanded:
+            self._check_command(before, state, clocks, what, now)
+        target = move.moves[0].edge.target
+        self.steps.append(Step(state.seq, state.agent, state.event, target, commanded))
+        self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
+        self._entered = now
+
+    def _off_model(self, move: JointMove, clocks: Mapping[str, float], what: str) -> None:
+        guard = move.moves[0].edge.guard.clocks
+        if not self._faults:
+            self._problem(f"{what} comes at clocks at which the network does not allow it")
+        elif move.controllable and not all(_holds(bound, clocks) for bound in guard):
+            self._problem(f"{what} is a command at clocks that its guard forbids")
+        self.off_model += 1
+
+    def _gives_up(self, move: JointMove) -> bool:
+        """True for the step that tells that a deadline has passed: no command, though nobody else owns it."""
+        first = move.moves[0]
+        return self._bad == (first.automaton, first.edge.target)
+
+    def _check_command(self, before: Any, state: Any, clocks: Mapping[str, float], what: str, now: float) -> None:
+        if before.status != "running":
+            self._problem(f"{what} is a command, but the mission was {before.status}")
+        plan = self._plans.get(before.plan)
+        if plan is None:
+            self._problem(f"plan {before.plan} is in force, which nobody has announced")
+            return
+        held = plan.find(before.discrete(), state.agent, state.event)
+        if not held:
+            self._problem(f"wrong command: the strategy does not hold {what} there")
+            return
+        stay = (now - self._entered) / state.unit
+        back = stay + self._offset if self._faults else min(stay, self._reaction)
+        if not any(command.due_between(clocks, -back, self._offset) for command in held):
+            self._problem(f"wrong command: {what} was not due there")
+
+    def _check_clocks(self, state: Any, now: float) -> None:
+        for clock, zero in self._zeros.items():
+            told, value = state.clocks.get(clock, -1.0), (now - zero) / state.unit
+            if abs(told - value) > EPSILON:
+                self._problem(f"state {state.seq}: {clock} is {told}, not {value}")
+                return
+
+    # Orders -----------------------------------------------------------------------------------------------------------
+
+    def told(self, agent: str, trigger: str, target: str, seq: int, newest: int, again: bool) -> None:
+        """A controller tells its robot what to do, because of state `seq`, when `newest` is the last that it knows.
+
+        `again`: it was started again, and may say it once more, while the news that it is done is on its way.
+        """
+        last = next((step for step in reversed(self.steps) if step.seq <= seq and step.agent == agent), None)
+        what = f"{agent} is told {trigger} ({target})"
+        if seq < newest:
+            self._problem(f"wrong order: {what}, as of state {seq}, though state {newest} is known")
+        elif last is None or (last.target, True) != (target, last.commanded):
+            self._problem(f"wrong order: {what}, which is not what was last commanded")
+        elif target.startswith(BUSY):
+            if self._before.locations.get(agent) != target and not again:
+                self._problem(f"wrong order: {what}, which is over already")
+        elif (agent, last.seq) in self._told:
+            self._problem(f"wrong order: {what}, for the second time")
+        if last is not None:
+            self._told.add((agent, last.seq))
+
+    # What they need ---------------------------------------------------------------------------------------------------
+
+    def _problem(self, text: str) -> None:
+        self.problems.append(text)
+
+    def _key(self, state: Any) -> State:
+        variables = (name for name, _ in self._arena.network.variables)
+        locations = tuple(state.locations.get(name, "") for name in self._names)
+        return locations, tuple(state.values.get(name, -1) for name in variables)
+
+    def _point(self, clocks: Mapping[str, float]) -> Tuple[float, ...]:
+        return (0.0, *(clocks[clock] for clock in self._arena.network.clocks))
+
+
+def inside(zone: Dbm, point: Tuple[float, ...]) -> bool:
+    """True where the point (0, clocks in order) is in the zone, or not farther beside it than clocks are exact."""
+    dim = zone.dim
+    return all(
+        bound >= INF or point[k // dim] - point[k % dim] <= constant(bound) + EPSILON
+        for k, bound in enumerate(zone.m)
+    )
+
+
+def _word(move: JointMove) -> str:
+    first = move.moves[0]
+    return event_word(first.automaton, first.edge)
+
+
+def _holds(bound: ClockBound, clocks: Mapping[str, float]) -> bool:
+    over = clocks[bound.clock] - bound.bound
+    return (">" in bound.op or over <= EPSILON) and ("<" in bound.op or over >= -EPSILON)

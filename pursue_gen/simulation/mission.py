@@ -1,0 +1,340 @@
+"""One simulated mission, from `_start_` to its end: nodes, wires, world and judge on one clockwork."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Mapping, Optional, Tuple
+
+from pursue_gen.simulation.clockwork import Act, Alarm, Clockwork
+from pursue_gen.simulation.faults import Death, Trouble
+from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
+from pursue_gen.simulation.opponents import OPPONENTS, Opponent
+from pursue_gen.simulation.planner import Planner
+from pursue_gen.simulation.remaining import Remaining
+from pursue_gen.simulation.stage import Stage
+from pursue_gen.simulation.wires import Wires
+from pursue_gen.simulation.world import Mover
+from pursue_gen.tga.network import Kind
+
+START = 1000.0
+"""The moment at which missions start, in seconds of ROS time."""
+
+GOAL, SAFE, STOPPED, HELD, LOST, FAILED = "goal", "safe", "stopped", "held", "lost", "failed"
+"""How missions end: goal reached; safe to the end; safe stop; still holding at the end; lost because a fault broke what
+the strategy was promised; and what must never be."""
+
+JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "nobody:nothing@3", "_plan_@1", "@@", ":_failed_")
+"""Words on pursue/events that change nothing."""
+
+HEARTBEAT, SILENCE, PLANNING = 1.0, 20.0, 10.0
+"""Seconds, as the observer's parameters ~heartbeat, ~silence and ~planning_limit have them."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is simulated. `until`: the time units after which a mission is over; `span`: faults begin within so many;
+    `bound`: how long it may take without faults (None: not known)."""
+
+    opponent: str = "mixed"
+    faults: Tuple[str, ...] = ()
+    until: float = 1000.0
+    span: float = 50.0
+    bound: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a mission ended, after so many time units. `play`: what happened, a line for each event, where it was asked
+    for; `problems`: what must never be; `happened`: how often which fault did."""
+
+    seed: int
+    opponent: str
+    end: str
+    time: float
+    reason: str
+    steps: int
+    plan: int
+    off_model: int
+    problems: Tuple[str, ...] = ()
+    happened: Mapping[str, int] = field(default_factory=dict)
+    play: Tuple[str, ...] = ()
+
+
+class Play:
+    """A mission in progress; it is what the nodes see as `Outside`."""
+
+    def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining],
+                 record: bool = False) -> None:
+        name = str(seed)
+        self.clockwork = Clockwork(START)
+        self.trouble = Trouble(settings.faults, name, START, settings.span, tuple(stage.strategies), stage.robots)
+        self.faulty = bool(self.trouble.kinds)
+        self.lines: List[str] = []
+        self._stage, self._settings, self._seed, self._record = stage, settings, seed, record
+        bad = stage.solution.objective.bad
+        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.trouble.offset)
+        self._wires = Wires(self.clockwork, self.trouble, name)
+        self._kind = _opponent(settings.opponent, name, remaining)
+        self._opponent = Opponent(stage, self._kind, name, remaining)
+        self._deed = Alarm(self.clockwork, self._act)
+        self._word = ""
+        self._said: List[str] = []
+        self._complaints: List[str] = []
+        self._observer = ObserverNode(stage, self, self._log)
+        self._planner = Planner(stage, self.clockwork, name, self._answered)
+        offsets = self.trouble.offsets
+        self._controllers = {node: ControllerNode(stage, node, self, offsets[node]) for node in stage.strategies}
+        self._people = PeopleNode(stage, self) if stage.people is not None else None
+        self._movers = {
+            agent: Mover(stage, agent, self.clockwork, self.trouble, name, self._report, stage.reaction)
+            for agent in stage.reports
+        }
+        self._latched: Any = None
+        self._plan: Optional[Dict[str, Any]] = None
+        self._reachable = dict.fromkeys(stage.strategies, START)
+        self._seen: Tuple[int, str] = (-1, "")
+
+    # The course of the mission ----------------------------------------------------------------------------------------
+
+    def run(self) -> Outcome:
+        """Plays it to its end."""
+        clockwork, end = self.clockwork, START + self._settings.until
+        self._observer.beat()
+        self._trouble_ahead()
+        clockwork.at(START, lambda: self._observer.call("hear", "_start_"))
+        ended = self._stage.pursue_library.ENDED
+        while self._observer.mission.status not in ended and not (self._judge.problems or self._complaints):
+            moment = clockwork.next()
+            if moment is None or moment > end:
+                clockwork.now = end
+                break
+            clockwork.step()
+        return self._outcome()
+
+    def _trouble_ahead(self) -> None:
+        """Sets what faults there will be, and what faults make necessary."""
+        trouble, clockwork = self.trouble, self.clockwork
+        if not self.faulty:
+            return
+        clockwork.at(START + HEARTBEAT, self._beat)
+        for death in trouble.deaths:
+            clockwork.at(death.moment, lambda death=death: self._die(death))  # type: ignore[misc]
+        draw = random.Random(f"{self._seed}/junk")
+        for moment in trouble.junk:
+            clockwork.at(moment, lambda: self._junk(draw))
+
+    def _outcome(self) -> Outcome:
+        mission, problems = self._observer.mission, [*self._judge.problems, *self._complaints]
+        end, reason = self._end(mission)
+        time = self.clockwork.now - START
+        bound = self._settings.bound
+        if not self.trouble.excuses and end == GOAL and bound is not None and time > bound + 1e-3:
+            end, reason = FAILED, f"it took {time:.3f} time units, more than the guaranteed {bound:.3f}"
+        if problems:
+            end, reason = FAILED, problems[0]
+        happened = dict(sorted(self.trouble.happened.items()))
+        return Outcome(
+            self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
+            tuple(problems), happened, tuple(self.lines),
+        )
+
+    def _end(self, mission: Any) -> Tuple[str, str]:
+        """How it ended, before the judge's problems are looked at."""
+        library = self._stage.pursue_library
+        safety = self._stage.solution.objective.kind is Kind.SAFETY
+        ends = {library.STOPPED: STOPPED, library.LOST: LOST, library.HOLDING: HELD}
+        if mission.status == library.WON:
+            return GOAL, ""
+        if mission.status in ends and self.trouble.excuses:
+            return ends[mission.status], mission.reason
+        if mission.status == library.RUNNING and safety:
+            return SAFE, ""
+        if mission.status == library.RUNNING:
+            return FAILED, "it neither reached the goal nor stopped"
+        return FAILED, f"the mission is {mission.status}: {mission.reason}"
+
+    # What the nodes do (Outside) --------------------------------------------------------------------------------------
+
+    def publish(self, state: Any) -> None:
+        """The observer says a state: all subscribers get its text."""
+        text = self._stage.pursue_library.format_state(state)
+        state = self._stage.pursue_library.parse_state(text)
+        self._latched = state
+        news = (state.seq, state.status) != self._seen
+        self._seen = (state.seq, state.status)
+        if news and self._record:
+            self._note(_told(state))
+        self._judge.saw(state, self.clockwork.now)
+        for node in self._controllers.values():
+            self._tell(node, state, self._stage.reaction)
+        if news:
+            for mover in self._movers.values():
+                mover.see(state)
+            self._look(state)
+        if self._people is not None:
+            self._people.see(state)
+
+    def _tell(self, node: ControllerNode, state: Any, latest: float) -> None:
+        """Sends a state to a controller: to the process that listens now."""
+        self._wires.send(f"state:{node.name}", latest, _to(node, lambda: node.see(state)), node.name)
+
+    def _teach(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
+        self._wires.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.learn(plan)), node.name)
+
+    def _hear(self, connection: str, text: str, latest: float, machine: str) -> None:
+        """Sends a word to the observer."""
+        self._wires.send(connection, latest, _to(self._observer, lambda: self._observer.call("hear", text)), machine)
+
+    def propose(self, plan: Dict[str, Any]) -> None:
+        """The observer has another plan for everybody."""
+        self._plan = plan
+        self._judge.planned(plan["plan"], plan["strategies"], plan["people"])
+        self._note(f"plan {plan['plan']} is published")
+        for node in self._controllers.values():
+            self._teach(node, plan)
+        if self._people is not None:
+            self._people.learn(plan)
+
+    def want(self, request: Optional[Any]) -> None:
+        """The observer wants another plan, or none any longer."""
+        self._planner.want(request)
+
+    def say(self, node: str, word: Any, latest: float) -> None:
+        """A controller or the UI says a word."""
+        text = self._stage.pursue_library.format_word(word)
+        self._note(f"{node} says {text}")
+        self._said.append(text)
+        self._hear(f"word:{node}", text, max(0.0, latest - self.clockwork.now), node)
+
+    def order(self, node: str, order: Any, seq: int, newest: int, again: bool) -> None:
+        """A controller tells its robot what to do."""
+        self._note(f"{node} tells {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
+        self._judge.told(order.agent, order.trigger, order.target, seq, newest, again)
+        mover = self._movers.get(order.agent)
+        if mover is not None:
+            self._wires.send(f"order:{order.agent}", 0.0, mover.order)
+
+    # What the world does ----------------------------------------------------------------------------------------------
+
+    def _report(self, agent: str, text: str) -> None:
+        self._note(f"{agent} reports {text}")
+        machine = self._stage.controller_of(agent) or ""
+        self._hear(f"report:{agent}", text, 0.0, machine)
+
+    def _look(self, state: Any) -> None:
+        """The agents that nobody controls look at the state."""
+        deed = None
+        if state.status in self._stage.pursue_library.LIVE:
+            network, clocks = self._stage.arena.network, state.clocks_at(self.clockwork.now)
+            locations = tuple(state.locations[automaton.name] for automaton in network.automata)
+            key = locations, tuple(state.values[name] for name, _ in network.variables)
+            deed = self._opponent.next(key, (0.0, *(clocks[clock] for clock in network.clocks)))
+        self._word = deed.word if deed else ""
+        self._deed.set(self.clockwork.now + deed.delay if deed else None)
+
+    def _act(self) -> None:
+        if self._word:
+            self._report(self._word.partition(":")[0], self._word)
+        else:
+            self._look(self._latched)
+
+    # Faults -----------------------------------------------------------------------------------------------------------
+
+    def _beat(self) -> None:
+        """Once a second: the observer says its state again, and notices who is silent."""
+        clockwork, observer = self.clockwork, self._observer
+        live = observer.mission.status in self._stage.pursue_library.LIVE
+        clockwork.at(clockwork.now + HEARTBEAT, self._beat)
+        observer.beat()
+        for name, node in self._controllers.items():
+            if node.alive and not self._wires.is_cut(name):
+                self._reachable[name] = clockwork.now
+            if not observer.alive:
+                continue
+            away = name in observer.mission.away
+            if away and self._reachable[name] == clockwork.now:
+                self._note(f"{name} is heard again")
+                observer.call("back", name)
+            elif not away and live and clockwork.now > self._reachable[name] + SILENCE:
+                self._note(f"{name} is silent")
+                observer.call("silent", name)
+
+    def _die(self, death: Death) -> None:
+        node: Any = self._observer if death.node == "observer" else self._controllers[death.node]
+        if not node.alive:
+            return
+        self.trouble.count("deaths")
+        self._note(f"{death.node} dies")
+        node.die()
+        self.clockwork.at(self.clockwork.now + death.seconds, lambda: self._respawn(death.node, node))
+
+    def _respawn(self, name: str, node: Any) -> None:
+        self._note(f"{name} is started again")
+        node.start_again()
+        if name == "observer":
+            return
+        if self._observer.alive:  # what is latched comes at once
+            self._tell(node, self._latched, 0.3)
+            if self._plan is not None:
+                self._teach(node, self._plan)
+
+    def _junk(self, draw: random.Random) -> None:
+        """A word that must change nothing."""
+        library, mission = self._stage.pursue_library, self._observer.mission
+        words = [*JUNK, "x" * 3000]
+        words += [text for text in self._said if not text.endswith(f"@{mission.seq}")]
+        possible = set(mission.model.possible(mission.position(self.clockwork.now), timed=False))
+        words += [e.word for a in mission.model.automata for e in a.edges if e.word not in possible]
+        text = draw.choice(words)
+        if library.parse_word(text) is not None and library.parse_word(text).seq == mission.seq:
+            return
+        self.trouble.count("junk")
+        self._note(f"somebody says {text[:40]!r}")
+        self._observer.call("hear", text)
+
+    def _answered(self, name: str, *args: Any) -> None:
+        self._note(f"the planner: {name} {args[0]}")
+        self._observer.call(name, *args)
+
+    # The record -------------------------------------------------------------------------------------------------------
+
+    def _note(self, text: str) -> None:
+        if self._record:
+            self.lines.append(f"{self.clockwork.now - START:9.3f}  {text}")
+
+    def _log(self, level: str, text: str) -> None:
+        if level != "info":
+            self._note(f"observer, {level}: {text}")
+            if not self.faulty:
+                self._complaints.append(f"the observer complains: {text}")
+
+
+def play(stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining] = None,
+         record: bool = False) -> Outcome:
+    """One mission: the same for the same stage, settings and seed. `record`: with its play, a line for each event."""
+    return Play(stage, settings, seed, remaining, record).run()
+
+
+def _to(node: Any, deliver: Act) -> Act:
+    """Delivers to the process that the node is now: what is on its way when that dies is lost."""
+    life = node.life
+
+    def arrive() -> None:
+        if node.life == life:
+            deliver()
+
+    return arrive
+
+
+def _opponent(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
+    """The kind of opponent in this mission."""
+    return random.Random(f"{seed}/kind").choice([k for k in OPPONENTS if k != "mixed"]) if kind == "mixed" else kind
+
+
+def _told(state: Any) -> str:
+    """A state as a line of a play."""
+    what = f"{state.event} by {state.agent}" if state.event else state.status
+    more = f" ({state.status})" if state.event and state.status != "running" else ""
+    return f"state {state.seq}: {what}{more}" + (f": {state.reason}" if state.reason else "")

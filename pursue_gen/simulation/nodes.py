@@ -1,0 +1,201 @@
+"""The nodes of a workspace on simulated wires: what their thin ROS parts do, around the generated cores."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Callable, Dict, List, Optional, Protocol
+
+from pursue_gen.simulation.clockwork import Alarm, Clockwork
+from pursue_gen.simulation.stage import Stage
+
+TICK = 1e-9
+"""Seconds by which an alarm rings after its moment, so that its moment has come by any clock."""
+
+
+class Outside(Protocol):
+    """What the nodes need of the mission around them."""
+
+    clockwork: Clockwork
+    faulty: bool
+
+    def publish(self, state: Any) -> None:
+        """The observer says a state."""
+
+    def propose(self, plan: Dict[str, Any]) -> None:
+        """The observer has another plan for everybody."""
+
+    def want(self, request: Optional[Any]) -> None:
+        """The observer wants another plan (None: no longer)."""
+
+    def say(self, node: str, word: Any, latest: float) -> None:
+        """A controller or the UI says a word, which is promised to be heard by the moment `latest`."""
+
+    def order(self, node: str, order: Any, seq: int, newest: int, again: bool) -> None:
+        """A controller tells its robot what to do, because of state `seq`; `newest` is the last one that it knows,
+        `again`: it was started again since it has told it anything."""
+
+
+class ObserverNode:
+    """The observer. `alive` False: it was killed; its journal is kept as lines of text, as on a disk. `life` counts its
+    processes: what was sent to one never comes to the next."""
+
+    def __init__(self, stage: Stage, outside: Outside, log: Callable[[str, str], None]) -> None:
+        self.alive, self.life = True, 1
+        self._stage, self._outside, self._log = stage, outside, log
+        self._entries: List[str] = []
+        self._alarm = Alarm(outside.clockwork, lambda: self.call("tick"))
+        self._proposed = 0
+        self.mission = self._mission()
+
+    def _mission(self) -> Any:
+        stage = self._stage
+        return stage.observer_core.Mission(
+            stage.model, stage.cover, self._log, on_uncovered="plan", controllers=tuple(stage.strategies)
+        )
+
+    def call(self, name: str, *args: Any) -> None:
+        """Calls the mission, writes down what has changed it, and says what follows."""
+        if not self.alive:
+            return
+        mission, now = self.mission, self._outside.clockwork.now
+        before = mission.mark() if self._outside.faulty else None
+        states = getattr(mission, name)(*args, now)
+        if before is not None and mission.mark() != before:
+            end = {"seq": mission.seq, "status": mission.status}
+            self._entries.append(json.dumps({"at": now, "call": name, "args": args, **end}))
+        self._say(states)
+
+    def beat(self) -> None:
+        """Says the state again."""
+        if self.alive:
+            if self.mission.proposal is not None:
+                self._proposed = 0
+            self._say([self.mission.state(self._outside.clockwork.now)])
+
+    def start_again(self) -> None:
+        """A new process: it has the journal, and nothing else."""
+        self.alive = True
+        self.life += 1
+        self.mission = self._mission()
+        self._stage.observer_journal.replay(self.mission, [json.loads(entry) for entry in self._entries])
+        self._proposed = 0
+        self.beat()
+
+    def die(self) -> None:
+        """It is killed."""
+        self.alive = False
+        self._alarm.set()
+
+    def _say(self, states: List[Any]) -> None:
+        outside, mission = self._outside, self.mission
+        for state in states:
+            outside.publish(state)
+        proposal = mission.proposal or mission.in_force
+        if proposal is not None and proposal["plan"] != self._proposed:
+            self._proposed = proposal["plan"]
+            outside.propose(proposal)
+        outside.want(mission.wanted)
+        self._alarm.set(mission.next_moment(outside.clockwork.now))
+
+
+class ControllerNode:
+    """A controller. `offset`: seconds by which its clock is ahead."""
+
+    def __init__(self, stage: Stage, name: str, outside: Outside, offset: float) -> None:
+        self.name, self.life = name, 1
+        self.alive, self._restarted, self._newest = True, False, 0
+        self._stage, self._outside, self._offset = stage, outside, offset
+        self._alarm = Alarm(outside.clockwork, self._ring)
+        self._player = self._new()
+
+    def _new(self) -> Any:
+        return self._stage.controller_core.Player(self._stage.strategies[self.name], self.name)
+
+    @property
+    def _now(self) -> float:
+        return self._outside.clockwork.now + self._offset
+
+    def see(self, state: Any) -> None:
+        """A state has come."""
+        if not self.alive:
+            return
+        self._newest = max(self._newest, state.seq)
+        known = self._player.state
+        for order in self._player.see(state, self._now):
+            if order.agent in self._stage.robots and _is_for_robots(order):
+                self._outside.order(self.name, order, state.seq, self._newest, self._restarted)
+        self._restarted = False
+        receipt = self._player.receipt()
+        if receipt:
+            self._outside.say(self.name, receipt, self._outside.clockwork.now)
+        if known is None or (known.seq, known.status) != (state.seq, state.status):
+            self._set()  # a state that is said again must not make it more patient
+
+    def learn(self, plan: Dict[str, Any]) -> None:
+        """Another plan has come."""
+        if self.alive:
+            strategy = self._stage.pursue_strategy.Strategy(plan["strategies"][self.name])
+            word = self._player.learn(plan["plan"], strategy, self._now)
+            self._outside.say(self.name, word, self._outside.clockwork.now)
+            self._set()
+
+    def start_again(self) -> None:
+        """A new process: it knows nothing."""
+        self.alive = self._restarted = True
+        self.life += 1
+        self._newest = 0
+        self._player = self._new()
+
+    def die(self) -> None:
+        """It is killed."""
+        self.alive = False
+        self._alarm.set()
+
+    def _ring(self) -> None:
+        decided = self._player.wake()[0]
+        word = self._player.ring(self._now)
+        if word:
+            stage = self._stage
+            moment = self._outside.clockwork.now if decided is None else decided - self._offset
+            self._outside.say(self.name, word, moment + stage.reaction)
+        self._set()
+
+    def _set(self) -> None:
+        moment, patience = self._player.wake()
+        now = self._outside.clockwork.now
+        self._alarm.set(
+            None if moment is None else moment - self._offset + TICK, None if patience is None else now + patience
+        )
+
+
+class PeopleNode:
+    """The part of the UI that tells human allies what to do. It hears the observer at once."""
+
+    def __init__(self, stage: Stage, outside: Outside) -> None:
+        self._stage, self._outside = stage, outside
+        self._ui = stage.ui_core.Mission(stage.model, stage.ui_players.StandStill(), stage.people)
+        self._alarm = Alarm(outside.clockwork, self._ring)
+
+    def see(self, state: Any) -> None:
+        """A state has come."""
+        self._ui.on_state(state, self._outside.clockwork.now)
+        self._ring()
+
+    def learn(self, plan: Dict[str, Any]) -> None:
+        """Another plan has come."""
+        if plan["people"]:
+            self._ui.learn(plan["plan"], self._stage.pursue_strategy.Strategy(plan["people"]))
+            self._ring()
+
+    def _ring(self) -> None:
+        now, stage = self._outside.clockwork.now, self._stage
+        for text in self._ui.due(now, now):
+            self._outside.say("UI", stage.pursue_library.parse_word(text), now + stage.reaction)
+        self._alarm.set(*self._ui.next_moments(now))
+
+
+def _is_for_robots(order: Any) -> bool:
+    """What the exeggutor sends: goals and actions, not ends."""
+    if order.target.startswith("going_"):
+        return bool(order.target != order.origin)
+    return bool(order.target == order.origin or order.target.startswith("doing_"))

@@ -1,0 +1,52 @@
+"""Planning again in a simulated mission: the planner itself, in this process, and a simulated time that it takes."""
+
+from __future__ import annotations
+
+import random
+from typing import Any, Callable, Dict, Optional
+
+from pursue_gen.simulation.clockwork import Clockwork
+from pursue_gen.simulation.stage import Stage
+
+SHORTEST, LONGEST = 0.2, 3.0
+"""Seconds between which the planner answers."""
+
+LIMIT = 10.0
+"""Seconds that it really may take, as the observer's ~planning_limit has it."""
+
+
+class Planner:
+    """Looks for one plan at a time; `answer` gets `planned` or `unplanned`, and what the mission is to be told."""
+
+    def __init__(self, stage: Stage, clockwork: Clockwork, seed: str, answer: Callable[..., None]) -> None:
+        self._stage, self._clockwork, self._answer = stage, clockwork, answer
+        self._draw = random.Random(f"{seed}/planner")
+        self._number = 0
+
+    def want(self, request: Optional[Any]) -> None:
+        """This plan is wanted now (None: none is)."""
+        number = request.number if request else 0
+        if number == self._number:
+            return
+        self._number = number
+        if request is not None:
+            delay = self._draw.uniform(SHORTEST, LONGEST)
+            self._clockwork.at(self._clockwork.now + delay, lambda: self._look(request))
+
+    def _look(self, request: Any) -> None:
+        if request.number != self._number:
+            return
+        found = self._ask(request)
+        if found.get("won"):
+            self._answer("planned", request.number, found)
+        else:
+            self._answer("unplanned", request.number, str(found["why"]))
+
+    def _ask(self, request: Any) -> Dict[str, Any]:
+        if self._stage.request is None:
+            return {"won": False, "why": "the workspace has no planner"}
+        from pursue_gen.replanning import replan
+
+
+        what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
+        return dict(replan({"format": 1, "game": self._stage.request, "limit": LIMIT, **what}))

@@ -1,0 +1,122 @@
+"""How long a strategy may need to the goal from a point of a play: what the worst opponent makes as long as it can.
+
+The closed loop of network and strategy is played on from the point in all ways, as `synthesis.worst_case` does from
+the start: commands are decided as soon as controllers do (those of a workspace: a quarter of the reaction inside a
+zone that opens with a strict bound) and take effect up to the reaction later.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from fractions import Fraction
+from typing import Deque, Dict, List, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.pipeline import Solution
+from pursue_gen.synthesis.dbm import INF, Dbm, constant, raw
+from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry
+from pursue_gen.synthesis.verify_moves import JointMove, State
+from pursue_gen.synthesis.verify_time import Broken
+from pursue_gen.synthesis.verify_zones import with_neighbours
+from pursue_gen.synthesis.worst_case import LONGEST, counting_clock, with_counter, with_deadline
+from pursue_gen.tga.network import Kind
+
+STATES = 2_000
+"""So many symbolic states are looked at from one point; a game with longer plays is too large."""
+
+KNOWN = 20_000
+"""So many points are remembered."""
+
+FOREVER = 1e9
+"""Where the strategy does not know how to go on: time units."""
+
+
+class Remaining:
+    """The worst times to the goal from points of plays, in time units; nothing is known where there is no goal."""
+
+    def __init__(self, won: Solution, states: int = STATES) -> None:
+        self._loop: Optional[ClosedLoop] = None
+        self._states = states
+        self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
+        if won.objective.kind is Kind.SAFETY:
+            return
+        game = with_deadline(with_counter(won.network), won.objective, LONGEST)
+        self._added = len(game.clocks) - len(won.network.clocks)
+        instant = won.reaction / 4 or Fraction(1, 50)
+        try:
+            self._loop = ClosedLoop(game, won.objective, won.strategy, won.reaction, None, instant)
+        except PursueError:
+            return
+        self._count = self._loop.arena.clock[counting_clock(game) or ""]
+        if self.at(self._loop.arena.initial, (0.0,) * (self._loop.arena.dim - self._added)) is None:
+            self._loop = None
+
+    @property
+    def works(self) -> bool:
+        """True where something is known."""
+        return self._loop is not None
+
+    def bound(self) -> Optional[float]:
+        """The longest that a mission takes with the workspace's controllers, in time units."""
+        if self._loop is None:
+            return None
+        bound = self.at(self._loop.arena.initial, (0.0,) * (self._loop.arena.dim - self._added))
+        return None if bound == FOREVER else bound
+
+    def after(self, move: JointMove, point: Tuple[float, ...], delay: float) -> Optional[float]:
+        """From where the move leads that is made after the delay, from the point (0 first, then the clocks) on."""
+        moved = [value + delay if k else 0.0 for k, value in enumerate(point)]
+        for index in move.resets:
+            moved[index] = 0.0
+        return self.at(move.target, tuple(moved))
+
+    def at(self, state: State, point: Tuple[float, ...]) -> Optional[float]:
+        """From this point (0 first, then the clocks) on; FOREVER where the strategy fails; None: not known."""
+        loop = self._loop
+        if loop is None:
+            return None
+        ticks = tuple(int(value * loop.arena.scale) for value in (*point, *(0.0,) * self._added))
+        if (state, ticks) not in self._known:
+            if len(self._known) >= KNOWN:
+                self._known.clear()
+            try:
+                self._known[state, ticks] = self._latest(loop, (state, _point(ticks)))
+            except Broken:
+                self._known[state, ticks] = FOREVER
+        latest = self._known[state, ticks]
+        if latest is None or latest == FOREVER:
+            return latest
+        return latest - ticks[self._count] / loop.arena.scale
+
+    def _latest(self, loop: ClosedLoop, start: Entry) -> Optional[float]:
+        """The largest value of the counting clock at the goal, breadth first."""
+        latest, met = 0, 0
+        passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
+        pending: Deque[Entry] = deque([start])
+        while pending:
+            state, zone = pending.popleft()
+            if not any(other is zone for other in passed[state]):
+                continue
+            if loop.won(state):
+                bound = zone.m[self._count * zone.dim]
+                if bound >= INF:
+                    return None
+                latest = max(latest, constant(bound))
+                continue
+            met += 1
+            if met > self._states:
+                return None
+            for _, (target, entered) in loop.followers((state, zone)):
+                after = loop.horizon.forget(entered, target)
+                known = passed.setdefault(target, [])
+                if any(other.includes(after) for other in known):
+                    continue
+                after = with_neighbours(after, known)
+                known[:] = [other for other in known if not after.includes(other)] + [after]
+                pending.append((target, after))
+        return latest / loop.arena.scale
+
+
+def _point(ticks: Tuple[int, ...]) -> Dbm:
+    """The zone of one point."""
+    return Dbm(len(ticks), tuple(raw(a - b, False) for a in ticks for b in ticks))

@@ -1,0 +1,164 @@
+"""Many simulated missions, on several cores where that is wanted, and what they came to."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from collections import Counter
+from dataclasses import dataclass, replace
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from statistics import median
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.pipeline import Solution
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Outcome, Settings, play
+from pursue_gen.simulation.remaining import Remaining
+from pursue_gen.simulation.stage import Stage, stage_of
+from pursue_gen.workspace import Options
+
+ENDS = (GOAL, SAFE, STOPPED, HELD, LOST, FAILED)
+"""In the order of tables."""
+
+_SHARE = 20
+"""So many missions are handed to a core at once."""
+
+_SPAN, _PART = 50.0, 0.6
+"""Faults begin within so many time units, or within this part of the longest that a mission may take."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is simulated: everything that another process needs to make its own stage of it."""
+
+    scenario: Scenario
+    won: Solution
+    options: Options
+    settings: Settings
+
+
+@dataclass(frozen=True)
+class Row:
+    """The missions that ended in one way: how many, and their times in time units."""
+
+    end: str
+    missions: int
+    least: float
+    median: float
+    worst: float
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the missions came to. `failures`: the first few that must never be, with their plays; `failed`: how many
+    there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force."""
+
+    missions: int
+    rows: Tuple[Row, ...]
+    failures: Tuple[Outcome, ...]
+    failed: int
+    happened: Dict[str, int]
+    planned: int
+    bound: Optional[float]
+    remaining: bool
+
+
+def case_of(scenario: Scenario, won: Solution, options: Options, settings: Settings) -> Tuple[Case, bool]:
+    """The case with what the solver can tell of times: how long a mission takes at most, and how long it may be
+    expected to take. Also: can the worst opponent tell plays by their length?"""
+    remaining = Remaining(won)
+    bound = remaining.bound()
+    span = _SPAN if bound is None else _PART * bound
+    return Case(scenario, won, options, replace(settings, bound=bound, span=span)), remaining.works
+
+
+class Players:
+    """A stage, and what the missions on it share."""
+
+    def __init__(self, case: Case) -> None:
+        self.stage: Stage = stage_of(case.scenario, case.won, case.options)
+        self._settings = case.settings
+        self._remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
+
+    def play(self, seed: int, record: bool = False) -> Outcome:
+        """One mission."""
+        return play(self.stage, self._settings, seed, self._remaining, record)
+
+
+def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
+    """The outcomes of these missions, in their order, whatever the number of jobs (processes)."""
+    shares = [list(seeds[k : k + _SHARE]) for k in range(0, len(seeds), _SHARE)]
+    jobs = min(jobs, len(shares))
+    if jobs <= 1:
+        players = Players(case)
+        yield from (players.play(seed) for seed in seeds)
+        return
+    context = multiprocessing.get_context("spawn")
+    resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
+    ends, workers = [], []
+    try:
+        for job in range(jobs):
+            ours, theirs = context.Pipe(duplex=False)
+            worker = context.Process(target=_work, args=(case, shares[job::jobs], theirs), daemon=True)
+            # Ctrl-C is for the process that was started first; the others have that blocked from their birth.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                worker.start()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            theirs.close()
+            ends.append(ours)
+            workers.append(worker)
+        for number in range(len(shares)):
+            yield from _received(ends[number % jobs])
+    finally:
+        for worker in workers:
+            worker.terminate()
+        for worker in workers:
+            worker.join()
+
+
+def _work(case: Case, shares: Sequence[Sequence[int]], end: Connection) -> None:
+    """A process: plays its shares, and sends the outcomes of each; or else, what went wrong."""
+    try:
+        players = Players(case)
+        for share in shares:
+            end.send([players.play(seed) for seed in share])
+    except Exception as problem:
+        end.send(problem)
+
+
+def _received(end: Connection) -> List[Outcome]:
+    try:
+        found: Any = end.recv()
+    except EOFError:
+        raise PursueError([error("SIM003", "a process that simulates has died", hint="use fewer --jobs")], 5) from None
+    if isinstance(found, Exception):
+        raise found
+    return list(found)
+
+
+def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, told: Callable[[int], Any] = lambda done: None,
+             shown: int = 1, remaining: bool = True) -> Summary:
+    """Plays the missions; `told` hears how many are done. The first `shown` failures come with their plays."""
+    times: Dict[str, List[float]] = {}
+    happened: Counter[str] = Counter()
+    failed: List[Outcome] = []
+    count = planned = done = 0
+    for outcome in outcomes(case, seeds, jobs):
+        times.setdefault(outcome.end, []).append(outcome.time)
+        happened.update(outcome.happened)
+        planned += outcome.plan > 0
+        if outcome.end == FAILED:
+            count += 1
+            failed += [outcome] if len(failed) < shown else []
+        done += 1
+        told(done)
+    rows = tuple(
+        Row(end, len(times[end]), min(times[end]), median(times[end]), max(times[end])) for end in ENDS if end in times
+    )
+    players = Players(case) if failed else None
+    plays = tuple(players.play(outcome.seed, record=True) for outcome in failed) if players else ()
+    return Summary(done, rows, plays, count, dict(sorted(happened.items())), planned, case.settings.bound, remaining)

@@ -1,0 +1,73 @@
+"""What simulated missions came to, as text and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Optional, Sequence
+
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Outcome
+from pursue_gen.simulation.runs import Summary
+
+WORDS = {
+    GOAL: "goal reached",
+    SAFE: "safe to the end",
+    STOPPED: "safe stop",
+    HELD: "holding, to the end",
+    LOST: "lost, by a fault",
+    FAILED: "FAILED",
+}
+
+
+def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
+    """The outcomes with their times; `guaranteed` is what is said of the strategy's time."""
+    cells = [["outcome", "missions", "%", "min", "median", "worst"]]
+    for row in summary.rows:
+        share = f"{100 * row.missions / summary.missions:.1f}"
+        times = [f"{time:.2f}" for time in (row.least, row.median, row.worst)]
+        cells.append([WORDS[row.end], f"{row.missions:,}", share, *times])
+    widths = [max(len(line[column]) for line in cells) for column in range(len(cells[0]))]
+    lines = [_line(cells[0], widths), _line(["-" * width for width in widths], widths)]
+    lines += [_line(line, widths) for line in cells[1:]]
+    lines += ["", *_notes(summary, guaranteed)]
+    return "\n".join(lines).rstrip()
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    parts = (cell.rjust(width) if k else cell.ljust(width) for k, (cell, width) in enumerate(zip(cells, widths)))
+    return "  ".join(parts).rstrip()
+
+
+def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:
+    lines = ["Times are in time units from the start."]
+    lines += [guaranteed] if guaranteed else []
+    if summary.bound is not None:
+        lines.append(f"With the workspace's controllers, and without faults: at most {summary.bound:.3f} time units.")
+    if summary.happened:
+        faults = ", ".join(f"{kind} {times:,}" for kind, times in summary.happened.items())
+        lines += [f"Faults: {faults}.", f"Missions that went on with a new plan: {summary.planned:,}."]
+    return lines
+
+
+def failure(outcome: Outcome, again: str) -> List[str]:
+    """A mission that must never be: what is wrong, how to repeat it, the play."""
+    lines = [f"mission {outcome.seed} ({outcome.opponent}) failed after {outcome.time:.3f}: {outcome.reason}"]
+    lines += [f"    {problem}" for problem in outcome.problems[1:]]
+    return [*lines, f"again: {again}", *(f"    {line}" for line in outcome.play)]
+
+
+def as_json(summary: Summary, facts: Dict[str, Any]) -> Dict[str, Any]:
+    """The same for machines; `facts` come first."""
+    return {
+        **facts,
+        "missions": summary.missions,
+        "outcomes": {
+            row.end: {"missions": row.missions, "min": row.least, "median": row.median, "worst": row.worst}
+            for row in summary.rows
+        },
+        "bound": summary.bound,
+        "happened": summary.happened,
+        "planned": summary.planned,
+        "failures": [
+            {"seed": o.seed, "opponent": o.opponent, "time": o.time, "reason": o.reason, "play": list(o.play)}
+            for o in summary.failures
+        ],
+    }

@@ -1,0 +1,200 @@
+"""A new plan from wherever a mission has come to: won where it can be, else a sentence says what cannot be met."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List
+
+import pytest
+import yaml
+
+from pursue_gen.partition import partition
+from pursue_gen.partition.strategy_file import render
+from pursue_gen.replanning import replan
+from pursue_gen.synthesis import native
+from pursue_gen.tga.network import Network
+from tests.replanning.plays import asked, beginning, busy, ended, game_of, solved, walk
+
+pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
+
+THESIS = [f"thesis/{name}" for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief")]
+WON = [*THESIS, "work_cell/work_cell"]
+
+
+def won(request: Dict[str, Any]) -> Dict[str, Any]:
+    answer = replan(request)
+    assert answer["won"], (answer, request["locations"], request["clocks"])
+    return answer
+
+
+def why(request: Dict[str, Any]) -> str:
+    answer = replan(request)
+    assert answer["format"] == 1 and answer["won"] is False and set(answer) == {"format", "won", "why"}
+    text: str = answer["why"]
+    assert "\n" not in text
+    return text
+
+
+@pytest.mark.parametrize("name", WON)
+def test_from_every_place_of_a_play_there_is_a_plan(name: str) -> None:
+    places = 0
+    for seed in range(2):
+        for state, clocks in walk(name, seed, 30):
+            won(asked(name, state, clocks))
+            places += 1
+    assert places >= 10
+
+
+@pytest.mark.parametrize("name", THESIS)
+def test_from_every_place_where_somebody_was_early_or_late_there_is_a_plan(name: str) -> None:
+    places = 0
+    for state, clocks in walk(name, 7, 30):
+        request = asked(name, state, clocks)
+        for agent in busy(request["locations"]) if len(busy(request["locations"])) == 1 else ():
+            now = request["clocks"][f"C{agent}"]
+            for at in (now + 0.5, now + 5, now + 400):
+                won(ended(name, request, agent, at))
+                places += 1
+    assert places > 2
+
+
+@pytest.mark.parametrize("name", THESIS)
+def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
+    from tests.runtime.node_modules import library, pursue_strategy
+
+    for state, clocks in walk(name, 3, 8):
+        request = asked(name, state, clocks, ahead=0.0)
+        answer = won(request)
+        there = library.SystemState(5, 0.0, request["locations"], request["values"], request["clocks"])
+        zones = [zone for some in pursue_strategy.read_cover(answer["cover"]).find(there) for zone in some]
+        at_goal = request["locations"].get("reachObj") == "win"
+        assert at_goal or any(pursue_strategy.holds(zone, request["clocks"], 1e-6) for zone in zones)
+        for data in answer["strategies"].values():
+            pursue_strategy.Strategy(data)
+
+
+def test_the_answer_holds_what_the_files_of_a_workspace_hold() -> None:
+    answer = won(beginning("thesis/scenario_1"))
+    assert answer == json.loads(json.dumps(answer))
+    assert list(answer) == ["format", "won", "strategies", "people", "cover"]
+    assert list(answer["strategies"]) == ["controller_bot1", "controller_bot2", "controllerObj"]
+    assert answer["people"] is None
+    for name, data in answer["strategies"].items():
+        assert (data["format"], data["controller"], data["reaction"]) == (1, name, 0.1)
+    assert answer["cover"]["format"] == 1 and answer["cover"]["cover"]
+
+
+def test_people_get_their_part() -> None:
+    scenario, _ = solved("thesis/scenario_1")
+    text = scenario.text.replace('"bot2" controllable', '"bot2" human controllable')
+    request = beginning("thesis/scenario_1")
+    answer = won({**request, "game": {**request["game"], "scenario": text}})
+    assert list(answer["strategies"]) == ["controller_bot1", "controllerObj"]
+    assert answer["people"]["commands_agents"] == ["bot2"]
+
+
+@pytest.mark.parametrize(
+    ("shape", "reach_obj", "names"),
+    [("centralized", "dedicated", ["controller"]), ("distributed", "bot1", ["controller_bot1", "controller_bot2"])],
+)
+def test_controllers_are_shaped_as_in_the_workspace(shape: str, reach_obj: str, names: List[str]) -> None:
+    scenario, _ = solved("thesis/scenario_1")
+    request = beginning("thesis/scenario_1", game=game_of(scenario, controllers=shape, reach_obj=reach_obj))
+    assert list(won(request)["strategies"]) == names
+
+
+def test_the_original_s_game_is_planned_again_as_well() -> None:
+    scenario, _ = solved("thesis/scenario_1")
+    rules = {"ends": "controllable", "reaction": 0, "slack": {}}
+    answer = won(beginning("thesis/scenario_1", game=game_of(scenario, rules=rules, controllers="general")))
+    (data,) = answer["strategies"].values()
+    assert any("_going_" in command["do"] for entry in data["strategy"] for command in entry["commands"])
+
+
+def test_the_same_request_gives_the_same_answer() -> None:
+    request = beginning("thesis/scenario_2")
+    assert json.dumps(replan(request)) == json.dumps(replan(request))
+
+
+# Who cannot be counted on.
+
+
+def test_without_a_robot_that_is_needed_there_is_no_plan() -> None:
+    text = why(beginning("thesis/scenario_1", excused=["bot1"]))
+    assert text == "'reach_objective: do bot2_ina after 0' cannot be guaranteed from here without relying on bot1"
+    assert "without relying on bot1 and bot2" in why(beginning("thesis/scenario_1", excused=["bot2", "bot1"]))
+
+
+def test_without_a_robot_that_is_not_needed_there_is_a_plan_that_leaves_it_alone() -> None:
+    answer = won(beginning("thesis/catch_the_thief", excused=["polBot1"]))
+    assert not answer["strategies"]["controller_polBot1"]["strategy"]
+    assert answer["strategies"]["controller_polBot2"]["strategy"]
+
+
+def test_a_robot_that_failed_on_its_way_may_come_at_any_time_or_never() -> None:
+    name = "thesis/scenario_1"
+    places = [asked(name, *place) for place in walk(name, 1, 12)]
+    on_its_way = next(request for request in places if request["locations"]["bot1"].startswith("going_"))
+    won(on_its_way)
+    assert "without relying on bot1" in why({**on_its_way, "excused": ["bot1"]})
+
+
+def test_who_is_excused_but_no_longer_needed_does_not_matter() -> None:
+    name = "thesis/scenario_1"
+    done = [asked(name, *place) for place in walk(name, 1, 40)]
+    later = [r for r in done if r["values"]["Prule1"] != 0 and r["locations"]["bot1"] == "b"]
+    assert later, "rule1 is past bot1's part"
+    won({**later[0], "excused": ["bot1"]})
+
+
+def test_a_robot_that_is_late_may_stay_for_ever() -> None:
+    name = "thesis/scenario_1"
+    places = [asked(name, *place) for place in walk(name, 1, 12)]
+    request = next(r for r in places if busy(r["locations"]) == ("bot1",))
+    text = why({**request, "ahead": 100.0})
+    assert text.endswith("cannot be guaranteed from here without relying on bot1")
+
+
+# What is over, and what takes too long.
+
+
+def test_a_mission_that_is_won_needs_nothing() -> None:
+    request = beginning("thesis/scenario_1")
+    answer = won({**request, "locations": {**request["locations"], "reachObj": "win"}})
+    assert not any(data["strategy"] for data in answer["strategies"].values())
+
+
+def test_a_mission_that_is_lost_is_said_to_be() -> None:
+    request = beginning("work_cell/work_cell")
+    assert why({**request, "locations": {**request["locations"], "obj": "lose"}}) == (
+        "the mission is lost already: obj is in lose"
+    )
+
+
+def test_a_deadline_that_has_passed_is_named() -> None:
+    request = beginning("work_cell/work_cell")
+    locations = {**request["locations"], "obj": "atRisk"}
+    text = why({**request, "locations": locations, "clocks": {**request["clocks"], "Cobj": 5000.0}})
+    assert "cannot be met any more: Cobj is 5001, at most" in text and "'objective: " in text
+
+
+def test_a_plan_that_takes_too_long_is_none() -> None:
+    assert why(beginning("thesis/scenario_4", limit=1e-5)) == "no plan was found within 1e-05 s"
+
+
+def test_what_the_file_of_the_game_says_is_what_is_asked_with() -> None:
+    from tests.workspace.worlds import files
+
+    game = yaml.safe_load(files("thesis/scenario_2")["src/observer/config/game.yaml"])
+    scenario, _ = solved("thesis/scenario_2")
+    assert game == game_of(scenario)
+    assert won(beginning("thesis/scenario_2", game=game))
+
+
+def test_the_data_of_an_answer_is_what_render_writes() -> None:
+    scenario, solution = solved("thesis/scenario_1")
+    network: Network = solution.network
+    state = tuple(a.initial for a in network.automata), tuple(value for _, value in network.variables)
+    answer = won(asked("thesis/scenario_1", state, [0] * len(network.clocks)))
+    for sub in partition(solution.strategy, network, scenario.agents):
+        assert yaml.safe_load(render(sub, "s", "0", solution.reaction)) == answer["strategies"][sub.controller]

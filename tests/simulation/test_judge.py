@@ -1,0 +1,134 @@
+"""The judge sees what must never be: each part of the generated code is sabotaged in turn."""
+
+from __future__ import annotations
+
+from typing import Any, Dict
+
+import pytest
+from stages import THIEF, files, missions, sabotaged, solved, stage
+
+from pursue_gen.simulation.held import commands_of
+from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.mission import FAILED, Settings
+
+SABOTAGE = {
+    "another command": (
+        "src/controller_polBot1/config/strategy.yaml",
+        "do: polBot1_a2b\n    agent: polBot1\n    from: a\n    to: going_a_to_b",
+        "do: polBot1_a2d\n    agent: polBot1\n    from: a\n    to: going_a_to_d",
+        "wrong command: the strategy does not hold polBot1_a2d",
+    ),
+    "a clock that is not reset": (
+        "src/observer/scripts/observer_board.py",
+        "dict.fromkeys(edge.resets, now)",
+        "dict.fromkeys(edge.resets[:0], now)",
+        ", not 0.0",
+    ),
+    "a variable that is not set": (
+        "src/observer/scripts/observer_board.py",
+        "self._values.update(edge.assign)",
+        "self._values.update({})",
+        "is no step of the network",
+    ),
+    "a number that is skipped": (
+        "src/observer/scripts/observer_core.py",
+        "            self.seq += 1\n            self.counts",
+        "            self.seq += 2\n            self.counts",
+        "state 3 follows state 1",
+    ),
+    "an order for another place": (
+        "src/controller_polBot1/scripts/controller_core.py",
+        'orders.append(Order(agent, state.event if own else action_of(target), origin, target))',
+        'orders.append(Order(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
+        "wrong order: polBot1 is told",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", SABOTAGE)
+def test_sabotage_is_seen(what: str) -> None:
+    path, old, new, problem = SABOTAGE[what]
+    if path.endswith("controller_core.py"):  # any copy of a module is the one that is loaded
+        path = next(other for other in sorted(files(THIEF)) if other.endswith("/controller_core.py"))
+    outcomes = missions(THIEF, 10, Settings("random"), sabotaged(THIEF, path, old, new))
+    failed = [outcome for outcome in outcomes if outcome.end == FAILED]
+    assert failed
+    assert any(problem in outcome.reason for outcome in failed), failed[0].reason
+
+
+def test_a_command_at_another_time_is_seen() -> None:
+    """The controller's zone opens sooner than the strategy's."""
+    name = "ecobot/ecobot"
+    path = "src/controller_ecoBot/config/strategy.yaml"
+    text = files(name)[path].decode()
+    late = next(line for line in text.splitlines() if " < CecoBot" in line and "- 1 < " in line)
+    early = sabotaged(name, path, late, late.replace("1 <", "0 <"))
+    outcomes = missions(name, 10, Settings("random", until=100.0), early)
+    assert any("was not due there" in o.reason or "complains" in o.reason for o in outcomes if o.end == FAILED)
+
+
+# The judge alone ------------------------------------------------------------------------------------------------------
+
+
+def judge(faults: bool = False) -> Judge:
+    on, (_, won) = stage(THIEF), solved(THIEF)
+    return Judge(on.arena, commands_of(won.strategy), won.objective.bad, 0.1, faults)
+
+
+def first(seq: int = 1, now: float = 0.0, **more: Any) -> Any:
+    on = stage(THIEF)
+    at: Dict[str, str] = {automaton.name: automaton.initial for automaton in on.model.automata}
+    clocks = dict.fromkeys(on.model.clocks, now)
+    state = on.pursue_library.SystemState(seq, now, at, dict(on.model.variables), clocks)
+    return state._replace(**more)
+
+
+def leaving(now: float, **more: Any) -> Any:
+    """polBot1 leaves for b, as nobody commands before reachObj is unlocked."""
+    state = first(2, now)
+    state.locations["polBot1"] = "going_a_to_b"
+    state.values["PpolBot1"] = -12
+    state.clocks["CpolBot1"] = 0.0
+    return state._replace(event="polBot1_a2b", agent="polBot1", **more)
+
+
+def test_a_mission_begins_where_the_network_does() -> None:
+    watching = judge()
+    watching.saw(first(), 0.0)
+    assert watching.problems == []
+    watching = judge()
+    watching.saw(first(3), 0.0)
+    assert "not where the network starts" in watching.problems[0]
+
+
+def test_a_step_too_early_is_a_problem_without_faults_and_with_them_where_it_is_a_command() -> None:
+    for faults in (False, True):
+        watching = judge(faults)
+        watching.saw(first(), 0.0)
+        watching.saw(leaving(0.5), 0.5)
+        assert "polBot1_a2b" in watching.problems[0]
+
+
+def test_what_is_held_is_ordered_once_and_only_while_it_lasts() -> None:
+    watching = judge()
+    watching.saw(first(), 0.0)
+    watching.told("polBot1", "polBot1_a2b", "going_a_to_b", 1, 1, False)
+    assert "not what was last commanded" in watching.problems[0]
+
+
+def test_an_order_as_of_an_old_state_is_a_problem() -> None:
+    watching = judge()
+    watching.saw(first(), 0.0)
+    watching.told("polBot1", "polBot1_a2b", "going_a_to_b", 1, 2, False)
+    assert "though state 2 is known" in watching.problems[0]
+
+
+def test_a_state_may_be_said_again_but_not_another_one() -> None:
+    watching = judge()
+    watching.saw(first(), 0.0)
+    watching.saw(first(now=1.0), 1.0)
+    assert watching.problems == []
+    changed = first(now=2.0)
+    changed.locations["thief"] = "d"
+    watching.saw(changed, 2.0)
+    assert "published again" in watching.problems[0]

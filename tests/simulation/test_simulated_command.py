@@ -1,0 +1,107 @@
+"""`pursue-gen sim` as a person calls it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from stages import SCENARIOS
+
+THIEF = SCENARIOS / "thesis" / "catch_the_thief.pur"
+
+
+def called(*words: Any) -> "subprocess.CompletedProcess[str]":
+    """The command in a process of its own."""
+    command = [sys.executable, "-m", "pursue_gen", "sim", *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert "Traceback" not in done.stderr, done.stderr
+    return done
+
+
+def test_a_table_and_what_is_guaranteed() -> None:
+    done = called(THIEF, "--runs", 30, "--seed", 5)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[0].split() == ["outcome", "missions", "%", "min", "median", "worst"]
+    assert lines[2].split()[:4] == ["goal", "reached", "30", "100.0"]
+    assert "Time to the goal: at most 35.704 time units" in done.stdout
+    assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
+
+
+def test_jobs_do_not_change_what_comes_out() -> None:
+    alone, both = (called(THIEF, "--runs", 45, "--faults", "delay,loss,deaths", "--jobs", n, "--json") for n in (1, 2))
+    assert alone.returncode == both.returncode == 0, alone.stderr + both.stderr
+    assert json.loads(alone.stdout) == json.loads(both.stdout)
+    facts = json.loads(alone.stdout)
+    assert (facts["missions"], facts["faults"]) == (45, ["delay", "loss", "deaths"])
+    assert sum(row["missions"] for row in facts["outcomes"].values()) == 45
+    assert set(facts["happened"]) == {"delay", "loss", "deaths"}
+
+
+def test_a_failure_is_shown_with_its_play_and_can_be_repeated() -> None:
+    done = called(THIEF, "--runs", 6, "--seed", 3, "--until", 8)
+    assert done.returncode == 1
+    assert "it neither reached the goal nor stopped" in done.stderr
+    again = next(line for line in done.stderr.splitlines() if line.startswith("again: "))
+    words = shlex.split(again[len("again: ") :])
+    assert words[:2] == ["pursue-gen", "sim"]
+    assert "--runs" in words and words[words.index("--runs") + 1] == "1"
+    repeated = called(*words[2:])
+    assert repeated.returncode == 1
+    play = [line for line in done.stderr.splitlines() if line.startswith("    ")]
+    assert play == [line for line in repeated.stderr.splitlines() if line.startswith("    ")]
+    assert any("state 2: reachObj_going_initial_location2unlocked by reachObj" in line for line in play)
+
+
+def test_the_faults_are_listed() -> None:
+    done = called(THIEF, "--faults", "help")
+    assert done.returncode == 0
+    assert [line.split()[0] for line in done.stdout.splitlines()][:2] == ["delay", "loss"]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--faults", "rain"), "there are no faults called rain"),
+        (("--until", "-3"), "--until is -3"),
+        (("--runs", "0"), "Invalid value for '--runs'"),
+        (("--opponent", "evil"), "Invalid value for '--opponent'"),
+        (("--reaction", "soon"), "the reaction is 'soon'"),
+        (("--reach-obj", "nobody"), "'nobody' cannot have reachObj's commands"),
+    ],
+)
+def test_bad_options_are_refused(words: Any, message: str) -> None:
+    done = called(THIEF, "--runs", 3, *words)
+    assert done.returncode == 2
+    assert message in done.stderr
+
+
+def test_a_lost_scenario_is_not_simulated() -> None:
+    done = called(THIEF, "--reaction", "3")
+    assert done.returncode == 4
+    assert "cannot be met" in done.stderr
+
+
+def test_ctrl_c_ends_all_processes() -> None:
+    command = [sys.executable, "-m", "pursue_gen", "sim", str(THIEF), "--runs", "1000000", "--jobs", "2"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True) as process:
+        try:
+            children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+            while process.poll() is None and len(children.read_text().split()) < 2:
+                time.sleep(0.05)
+            os.killpg(process.pid, signal.SIGINT)
+            _, said = process.communicate(timeout=30)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 130, said
+    assert b"Traceback" not in said
