@@ -1,0 +1,53 @@
+"""SVG to PNG, by what the machine has: the program rsvg-convert, or the Python package cairosvg."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import shutil
+import subprocess
+
+from pursue_gen.diagnostics import PursueError, error
+
+_SECONDS = 60
+_HINT = "install it (Debian, Ubuntu: sudo apt install librsvg2-bin; or pip install cairosvg)"
+
+
+def available() -> bool:
+    """Can PNGs be made here?"""
+    return shutil.which("rsvg-convert") is not None or importlib.util.find_spec("cairosvg") is not None
+
+
+def png(svg: str, zoom: float = 2.0) -> bytes:
+    """The picture as PNG, `zoom` pixels for each of its own.
+
+    Raises PursueError, exit status 6 where nothing here can make PNGs.
+    """
+    program = shutil.which("rsvg-convert")
+    if program is not None:
+        return _converted(program, svg, zoom)
+    try:
+        cairosvg = importlib.import_module("cairosvg")
+    except (ImportError, OSError):  # OSError: it is there and the library cairo is not
+        message = "rsvg-convert is missing, which makes PNG of SVG"
+        raise PursueError([error("REP003", message, hint=_HINT)], exit_status=6) from None
+    return bytes(cairosvg.svg2png(bytestring=svg.encode("utf-8"), scale=zoom))
+
+
+def _converted(program: str, svg: str, zoom: float) -> bytes:
+    words = [program, "--format", "png", "--zoom", f"{zoom:g}", "--unlimited"]
+    try:
+        done = subprocess.run(
+            words,
+            input=svg.encode("utf-8"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            timeout=_SECONDS,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError) as problem:
+        said = getattr(problem, "stderr", None) or b""
+        reason = said.decode("utf-8", "replace").strip() or str(problem)
+        message = f"rsvg-convert could not make a PNG: {reason}"
+        raise PursueError([error("REP004", message, hint=_HINT)], exit_status=6) from None
+    return done.stdout

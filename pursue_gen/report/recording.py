@@ -1,0 +1,142 @@
+"""What happened in one mission, whoever recorded it: a bag, a journal, or a simulated mission."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
+
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.replay.record import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, Record, State, read_state
+from pursue_gen.simulation.mission import Play, Settings
+from pursue_gen.simulation.remaining import Remaining
+from pursue_gen.simulation.runs import Case
+from pursue_gen.simulation.stage import Stage, stage_of
+from pursue_gen.tga.network import Network
+
+
+@dataclass(frozen=True)
+class Step:
+    """A state that the mission came to, `at` time units since its start; by an event of an agent ("": something else).
+
+    `locations` and `values` are those of the network's automata and variables; `plan` counts the plans in force.
+    """
+
+    at: float
+    locations: Mapping[str, str]
+    values: Mapping[str, int]
+    agent: str = ""
+    event: str = ""
+    status: str = RUNNING
+    reason: str = ""
+    plan: int = 0
+    lost: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A mission: `steps` by time, the first at 0; it was recorded until `end` (time units). `source`: where from."""
+
+    scenario: Scenario
+    network: Network
+    steps: Tuple[Step, ...]
+    end: float
+    source: str
+
+    @property
+    def status(self) -> str:
+        """How it stood at the end."""
+        return self.steps[-1].status if self.steps else WAITING
+
+    @property
+    def agents(self) -> Tuple[str, ...]:
+        """The agents, in order of declaration."""
+        return tuple(agent.name for agent in self.scenario.agents)
+
+
+@dataclass(frozen=True)
+class Stay:
+    """Something that lasted: from, to (time units), what, and whether it ended before the recording did."""
+
+    start: float
+    end: float
+    what: str
+    over: bool = True
+
+
+def ending_words(recording: Recording) -> str:
+    """How the mission ended, in a word or two."""
+    words = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
+    return words.get(recording.status, "end of the recording")
+
+
+def stays(recording: Recording, automaton: str) -> Tuple[Stay, ...]:
+    """Where an automaton was, one place after the other."""
+    return lasting(recording, ((step.at, step.locations.get(automaton, "")) for step in recording.steps))
+
+
+def lasting(recording: Recording, told: Iterable[Tuple[float, str]]) -> Tuple[Stay, ...]:
+    """What was so for how long, of (moment, what it is from then on); equal ones are joined."""
+    found: List[Stay] = []
+    for at, what in told:
+        if found and found[-1].what == what:
+            continue
+        if found:
+            found[-1] = replace(found[-1], end=at, over=True)
+        found.append(Stay(at, recording.end, what, False))
+    return tuple(stay for stay in found if stay.end > stay.start or stay is found[-1])
+
+
+# Where recordings come from -------------------------------------------------------------------------------------------
+
+
+def from_record(record: Record, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
+    """What a bag or a journal holds; None where the mission never started in it."""
+    return from_states(record.states, scenario, network, source)
+
+
+def from_states(
+    states: Iterable[State], scenario: Scenario, network: Network, source: str, until: float = 0.0
+) -> Optional[Recording]:
+    """The mission that these published states tell, at least until so many time units."""
+    steps: List[Step] = []
+    begun: Optional[float] = None
+    seen: Dict[int, str] = {}
+    for state in sorted(states, key=lambda state: state.seq):
+        if state.status == WAITING or seen.get(state.seq) == state.status:
+            continue
+        seen[state.seq] = state.status
+        begun = state.stamp if begun is None else begun
+        at = max((state.stamp - begun) / state.unit, steps[-1].at if steps else 0.0)
+        steps.append(Step(at, state.locations, state.values, state.agent, state.event, state.status, state.reason,
+                          state.plan, state.lost))
+    if not steps:
+        return None
+    end = steps[-1].at if steps[-1].status in ENDED else max(steps[-1].at, until)
+    return Recording(scenario, network, tuple(steps), end, source)
+
+
+def simulated(case: Case, seed: int) -> Recording:
+    """One simulated mission: the same as `simulation.runs` plays with this seed."""
+    stage = stage_of(case.scenario, case.won, case.options)
+    remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
+    mission = _Recorded(stage, case.settings, seed, remaining)
+    outcome = mission.run()
+    found = from_states(mission.states, case.scenario, case.won.network, f"simulated mission {seed}", outcome.time)
+    assert found is not None, "a simulated mission starts at once"
+    return found
+
+
+class _Recorded(Play):
+    """A simulated mission that keeps what its observer publishes."""
+
+    def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
+        super().__init__(stage, settings, seed, remaining)
+        self.states: List[State] = []
+        self._format = stage.pursue_library.format_state
+
+    def publish(self, state: Any) -> None:
+        """A state of the mission."""
+        read = read_state(self._format(state))
+        if read is not None:
+            self.states.append(read)
+        super().publish(state)

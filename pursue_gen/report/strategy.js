@@ -1,0 +1,209 @@
+"use strict";
+(() => {
+  const book = JSON.parse(document.getElementById("strategy-data").textContent);
+  const at = (id) => document.getElementById(`strategy-${id}`);
+  const agents = [...book.automata.keys()].filter((k) => ["robot", "person", "other"].includes(book.automata[k].kind));
+  const AT_ONCE = 20;
+
+  const make = (tag, more, ...children) => {
+    const element = Object.assign(document.createElement(tag), more);
+    element.append(...children);
+    return element;
+  };
+  const state = (n) => { const [places, values, wait, ours, others, goal] = book.states[n]; return { places, values, wait, ours, others, goal }; };
+  const step = ([who, text, target, when]) => ({ who: book.automata[who].shown, number: who, text: book.texts[text], target, when });
+  const place = (k, p) => book.automata[k].places[p][0];
+  const where = (s) => agents.map((k) => `${book.automata[k].name} ${place(k, s.places[k])}`).join("; ");
+  const rest = (s) => [
+    ...book.automata.map((a, k) => [a, k]).filter(([a, k]) => !agents.includes(k) && a.kind !== "states")
+      .map(([a, k]) => `${a.shown}: ${place(k, s.places[k])}`),
+    ...book.variables.map((name, k) => `${name}: ${s.values[k] ? "true" : "false"}`)].join("; ");
+  const changed = (s, t) => {
+    const parts = [...s.places.keys()].filter((k) => s.places[k] !== t.places[k])
+      .map((k) => `${book.automata[k].shown}${agents.includes(k) ? "" : ":"} ${place(k, t.places[k])}`);
+    book.variables.forEach((name, k) => { if (s.values[k] !== t.values[k]) parts.push(`${name} is ${t.values[k] ? "true" : "false"}`); });
+    return parts.join("; ") || "nothing has changed";
+  };
+  const times = (zones) => {
+    const parts = [];
+    zones.forEach((z, k) => {
+      const [words, exact] = book.zones[z];
+      parts.push(k ? "; or " : "", words, ...(exact === "always" ? [] : [" ", make("code", {}, exact)]));
+    });
+    return parts;
+  };
+  const owners = (k) => (book.controllers[book.automata[k].name] || []).join(", ");
+
+  // A situation: closed, one line; opened, what is done in it, what is waited for, and where that leads.
+  const card = (n, before) => {
+    const s = state(n);
+    const told = before === undefined ? where(s) : changed(state(before), s);
+    const box = make("details", { className: "state" }, make("summary", {}, `#${n}  ${told}`));
+    box.dataset.state = n;
+    box.addEventListener("toggle", () => { if (box.open && !box.dataset.full) { box.dataset.full = 1; box.append(...inside(n, before)); } });
+    return box;
+  };
+  const inside = (n, before) => {
+    const s = state(n);
+    const parts = [];
+    if (before !== undefined) parts.push(make("p", { className: "kind" }, where(s)));
+    if (rest(s)) parts.push(make("p", { className: "kind" }, rest(s)));
+    if (s.goal) return [...parts, make("p", { className: "goal" }, "The goal is reached.")];
+    const list = make("ul");
+    s.ours.map(step).forEach((c) => list.append(make("li", {}, order(c), card(c.target, n))));
+    if (s.wait.length || !s.ours.length) list.append(make("li", {}, waiting(s)));
+    parts.push(make("p", { className: "kind" }, "What is commanded"), list);
+    if (s.others.length) {
+      const may = make("ul");
+      s.others.map(step).forEach((c) => may.append(make("li", {}, make("span", { className: "others" }),
+        make("span", { className: "who" }, c.who), ` ${c.text}`, card(c.target, n))));
+      parts.push(make("p", { className: "kind" }, "What is waited for: each of these may happen"), may);
+    }
+    return parts;
+  };
+  const order = (c) => make("div", {}, make("span", { className: "ours" }), make("span", { className: "who" }, c.who),
+    ` ${c.text}: `, ...times(c.when), ...(owners(c.number) ? [` (${owners(c.number)})`] : []));
+  const waiting = (s) => make("div", {}, make("span", { className: "waits" }), "nobody is told anything",
+    ...(s.ours.length ? [": ", ...times(s.wait)] : []));
+
+  // What a question says: of whom, and who is where. ---------------------------------------------------------------
+  const SMALL = new Set(("a an the what will would does do is are be being who where how if when while once and or then that it " +
+    "goes go going moves move walks walk drives drive on way of gets get happens happen now must should can has have there " +
+    "to towards toward into from leaves leave at in reaches reach arrives doing begins true false not").split(" "));
+  const HOW = { to: "to", towards: "to", toward: "to", into: "to", from: "from", leaves: "from", leave: "from", at: "at", in: "at",
+    reaches: "at", arrives: "at", doing: "doing", begins: "doing" };
+  const fits = {
+    to: (p, w) => p[0] === "way" && p[2] === w,
+    from: (p, w) => p[0] === "way" && p[1] === w,
+    at: (p, w) => (p[0] === "at" || p[0] === "doing") && p[1] === w,
+    doing: (p, w) => p[0] === "doing" && p[2] === w,
+    "": (p, w) => p.slice(1).includes(w),
+  };
+  const findName = (names, word) => {
+    const exact = names.indexOf(word);
+    return exact >= 0 ? exact : names.findIndex((name) => name.toLowerCase() === word.toLowerCase());
+  };
+  const understand = (question) => {
+    const asked = { of: new Set(), places: new Map(), values: new Map(), unknown: [] };
+    const agentNames = agents.map((k) => book.automata[k].name);
+    let who = null, how = "", hows = new Map(), value = null, or = false;
+    for (const word of question.match(/[\p{L}\p{N}_]+/gu) || []) {
+      const small = word.toLowerCase();
+      const agent = findName(agentNames, word);
+      if (agent >= 0) { who = agents[agent]; how = ""; asked.of.add(who); continue; }
+      const variable = findName(book.variables, word);
+      if (variable >= 0) { value = variable; asked.values.set(variable, 1); continue; }
+      if (value !== null && (small === "false" || small === "not")) { asked.values.set(value, 0); continue; }
+      if (who !== null) {
+        const all = book.automata[who].places.map((p) => p[1]);
+        const name = all.flatMap((p) => p.slice(1)).find((one) => one === word) ||
+          (SMALL.has(small) ? undefined : all.flatMap((p) => p.slice(1)).find((one) => one.toLowerCase() === small));
+        const event = name && all.some((p) => p[0] === "doing" && p[2] === name);
+        if (name && (how || !SMALL.has(small))) {
+          const rule = event ? "doing" : how === "doing" ? "at" : how;
+          let found = new Set([...all.keys()].filter((k) => fits[rule](all[k], name)));
+          if (!found.size && rule) found = new Set([...all.keys()].filter((k) => fits[""](all[k], name)));
+          const known = asked.places.get(who);
+          if (known) found = or ? new Set([...known, ...found]) : new Set([...found].filter((k) => known.has(k)));
+          asked.places.set(who, found);
+          or = false;
+          continue;
+        }
+      }
+      if (small === "or") or = true;
+      if (["if", "when", "while", "once", "and"].includes(small)) { who = null; how = ""; value = null; }
+      if (HOW[small]) how = HOW[small];
+      if (!SMALL.has(small)) asked.unknown.push(word);
+    }
+    for (const k of asked.places.keys()) asked.of.delete(k);
+    return asked;
+  };
+  const matching = (asked) => [...book.states.keys()].filter((n) => {
+    const s = state(n);
+    return [...asked.places].every(([k, good]) => good.has(s.places[k])) && [...asked.values].every(([k, v]) => s.values[k] === v);
+  });
+  const repeated = (asked) => {
+    const parts = [...asked.places].map(([k, good]) => `${book.automata[k].name} is ${[...good].map((p) => place(k, p)).join(" or ") || "nowhere"}`);
+    asked.values.forEach((v, k) => parts.push(`${book.variables[k]} is ${v ? "true" : "false"}`));
+    return parts.join(" and ") || "anything";
+  };
+
+  // The answer: in few words for each agent that was asked about, then the situations. -------------------------------
+  const answer = (asked) => {
+    const found = matching(asked);
+    const told = found.filter((n) => !state(n).goal);
+    const out = at("found");
+    out.replaceChildren();
+    const box = make("div", { className: "strategy-answer" });
+    if (asked.unknown.length)
+      box.append(make("p", {}, `Not understood: ${asked.unknown.join(", ")}. Names are: ` +
+        `${agents.map((k) => book.automata[k].name).join(", ")}; where they can be is listed under “Choose places”.`));
+    box.append(make("p", {}, `${found.length} ${found.length === 1 ? "situation" : "situations"} of the strategy: ${repeated(asked)}.` +
+      (found.length > told.length ? ` In ${found.length - told.length} of them the goal is reached.` : "") +
+      (found.length ? "" : " This never happens while the strategy is followed.")));
+    for (const k of asked.of) if (told.length) box.append(summed(k, told));
+    out.append(box);
+    let shown = 0;
+    const more = make("button", { type: "button" }, "Show more");
+    const show = () => {
+      found.slice(shown, shown + AT_ONCE).forEach((n) => more.before(card(n)));
+      shown += AT_ONCE;
+      more.hidden = shown >= found.length;
+      more.textContent = `Show more (${found.length - shown} left)`;
+    };
+    out.append(more);
+    more.addEventListener("click", show);
+    show();
+    const first = out.querySelector(".state");
+    if (first && found.length <= 3) first.open = true;
+  };
+  const summed = (k, found) => {
+    const name = book.automata[k].name;
+    const lines = new Map();
+    const add = (rank, text, n, parts) => { if (!lines.has(text)) lines.set(text, { rank, parts, in: new Set() }); lines.get(text).in.add(n); };
+    for (const n of found) {
+      const s = state(n);
+      const own = s.ours.map(step).filter((c) => c.number === k);
+      own.forEach((c) => add(0, `${c.text} ${c.when}`, n, [`${name} ${c.text}: `, ...times(c.when)]));
+      const may = s.others.map(step).filter((c) => c.number === k);
+      if (book.automata[k].kind === "other") may.forEach((c) => add(1, `may ${c.text}`, n, [`${name} may do this, nobody decides it: ${c.text}`]));
+      else if (!own.length) add(2, `stay ${s.places[k]}`, n, [`${name} gets no command: it is ${place(k, s.places[k])}`]);
+    }
+    const all = [...lines.values()].sort((a, b) => a.rank - b.rank || b.in.size - a.in.size);
+    const list = make("ul");
+    all.slice(0, 12).forEach((line) => list.append(make("li", {}, ...line.parts, ` — in ${line.in.size} of ${found.length}`)));
+    if (all.length > 12) list.append(make("li", {}, `and ${all.length - 12} more; see the situations`));
+    return make("div", {}, make("p", { className: "who" }, `${name}${owners(k) ? ` (${owners(k)})` : ""}:`), list);
+  };
+
+  // The form --------------------------------------------------------------------------------------------------------
+  const selects = book.automata.map((a, k) => {
+    if (a.places.length < 2) return null;
+    const select = make("select", {}, make("option", { value: "" }, "anywhere"));
+    a.places.forEach((p, n) => select.append(make("option", { value: n }, p[0])));
+    if (!agents.includes(k)) select.firstChild.textContent = "any";
+    at("choose").append(make("label", {}, a.shown, select));
+    return select;
+  });
+  const values = book.variables.map((name) => {
+    const select = make("select", {}, ...[["", "any"], ["1", "true"], ["0", "false"]].map(([value, text]) => make("option", { value }, text)));
+    at("choose").append(make("label", {}, name, select));
+    return select;
+  });
+  const subject = make("select", {}, make("option", { value: "" }, "anybody"));
+  agents.forEach((k) => subject.append(make("option", { value: k }, book.automata[k].name)));
+  at("choose").prepend(make("label", {}, "what is done by", subject));
+  at("choose").addEventListener("change", () => {
+    const asked = { of: new Set(subject.value ? [Number(subject.value)] : []), places: new Map(), values: new Map(), unknown: [] };
+    selects.forEach((select, k) => { if (select && select.value) asked.places.set(k, new Set([Number(select.value)])); });
+    values.forEach((select, k) => { if (select.value) asked.values.set(k, Number(select.value)); });
+    answer(asked);
+  });
+  at("form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    if (at("question").value.trim()) answer(understand(at("question").value)); else at("found").replaceChildren();
+  });
+  at("tree").append(card(0));
+  at("tree").firstChild.open = true;
+  at("live").hidden = false;
+})();

@@ -1,0 +1,105 @@
+"""What was found out, in words: can the objective be met, how fast, how late may commands come; or why it cannot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
+
+from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.explanation.explain import Explanation
+from pursue_gen.explanation.words import time_text
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.pipeline import Rules, Solution
+from pursue_gen.report.html import Section, table
+from pursue_gen.report.look import safe
+from pursue_gen.report.words import kind_words, objective_words, speed_words, units
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A scenario that is not won: what the solver said, and what explains it (None: it was not looked for)."""
+
+    findings: Sequence[Diagnostic]
+    explanation: Optional[Explanation]
+    decided: bool = True
+
+
+def section(
+    scenario: Scenario, rules: Rules, won: Optional[Solution], margin: str = "", lost: Optional[Lost] = None
+) -> Section:
+    """The verdict on the page; either `won` or `lost` is there."""
+    wanted = "".join(f"<li>{safe(sentence)}</li>" for sentence in objective_words(scenario))
+    parts = [f"<p>What is wanted:</p><ul>{wanted}</ul>"]
+    if won is not None:
+        parts += _won(won, margin)
+    elif lost is not None:
+        parts += _lost(lost)
+    parts.append(f"<p class='quiet'>{safe(_game(rules))}</p>")
+    parts.append(_agents(scenario))
+    return Section("verdict", "The verdict", "\n".join(parts))
+
+
+def _won(won: Solution, margin: str) -> List[str]:
+    parts = [
+        "<p class='verdict'><strong>It can be met, whatever the others do.</strong> The strategy that does it was "
+        "proven by a second, independent program.</p>"
+    ]
+    if won.guarantee:
+        parts.append(f"<p>{safe(won.guarantee.in_words())}</p>")
+    if margin:
+        parts.append(f"<p>{safe(margin)}</p>")
+    return parts
+
+
+def _lost(lost: Lost) -> List[str]:
+    if not lost.decided:
+        parts = ["<p class='verdict no'><strong>It was not decided whether it can be met.</strong></p>"]
+    else:
+        parts = ["<p class='verdict no'><strong>It cannot be met: the others can always prevent it.</strong></p>"]
+    for finding in lost.findings:
+        sentences = [text for text in (finding.message, finding.hint) if text]
+        parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")
+    return parts + (_explained(lost.explanation) if lost.explanation else [])
+
+
+def _explained(told: Explanation) -> List[str]:
+    parts = ["<h3>What would change that</h3>"]
+    if told.changes:
+        items = []
+        for change in told.changes:
+            notes = [f"line {change.span.line}"] if change.span else []
+            if change.next_lost != change.before:
+                notes.insert(0, f"{change.next_lost} is not enough")
+            told_so = f" ({'; '.join(notes)})" if notes else ""
+            items.append(f"<li>{safe(change.sentence + told_so)}</li>")
+        parts.append(f"<p>Each of these alone (found by solving again):</p><ul>{''.join(items)}</ul>")
+    else:
+        parts.append("<p>No single small change that was tried would change that.</p>")
+    for title, entries in (("Not enough alone", told.lost), ("Not decided in the time", told.undecided)):
+        if entries:
+            parts.append(f"<p>{title}: {safe('; '.join(entries))}.</p>")
+    parts.append("<h3>How it goes wrong, for example</h3>")
+    rows = [(time_text(line.at), line.who, line.text) for line in told.play]
+    none = "<p>A play that shows it was not computed in the time.</p>"
+    return [*parts, table(("time (units)", "who", "what"), rows) if rows else none]
+
+
+def _game(rules: Rules) -> str:
+    """The rules of the game, for people."""
+    reaction = f"{float(rules.reaction):g}"
+    if rules.ends == "reported":
+        ends = "Robots report when they have arrived or finished, at any moment within one unit of the model"
+    else:
+        ends = "The plan decides when movements and actions end, within one unit of the model (no real robot lets it)"
+    slack = "".join(f"; {agent} may be {units(str(late))} later" for agent, late in rules.slack.items())
+    return f"{ends}{slack}. A command may take effect up to {reaction} units after it was due."
+
+
+def _agents(scenario: Scenario) -> str:
+    rows = []
+    for agent in scenario.agents:
+        does = ", ".join(ref.name for ref in agent.can_do) or "-"
+        reacts = ", ".join(ref.name for ref in agent.reacts_to) or "-"
+        speed = speed_words(agent)
+        rows.append((agent.name, kind_words(agent), agent.location.name, speed, does, reacts))
+    return table(("agent", "is", "starts at", "moves", "can do", "takes part in"), rows, "Who is there")

@@ -1,0 +1,181 @@
+"""The network in the words of its scenario: where somebody is, what somebody does, how long ago something was."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Tuple
+
+from pursue_gen.language.scenario import Agent, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.synthesis.plan_text import constraint_texts, number_text
+from pursue_gen.synthesis.strategy import Constraint, Zone
+from pursue_gen.tga import names
+from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.positions import directions
+
+
+@dataclass(frozen=True)
+class Words:
+    """What to call things. `clocks`: clock → the moment since which it counts; `turns`: (rule, location) → its words.
+
+    `places`: location of any agent → words; `moves`: (automaton, channel, location left by a step of its own) → words;
+    `parts`: location of any agent → (at, place), (way, from, to) or (doing, place, event).
+    """
+
+    clocks: Dict[str, str]
+    turns: Dict[Tuple[str, str], str]
+    places: Dict[str, str]
+    moves: Dict[Tuple[str, str, str], str]
+    parts: Dict[str, Tuple[str, ...]]
+
+    def place(self, automaton: str, location: str) -> str:
+        """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
+        if automaton == names.REACH:
+            return {"win": "reached", "unlocked": "to be reached"}.get(location, "not counting yet")
+        if automaton == names.OBJECTIVE:
+            return {"idle": "kept", "atRisk": "a deadline is running", "lose": "broken"}.get(location, location)
+        return self.turns.get((automaton, location)) or self.places.get(location) or f"at {location}"
+
+    def move(self, automaton: str, edge: Edge) -> str:
+        """What it does by that edge, as in "sets off from c to b"."""
+        if edge.sync:
+            return self.moves.get((automaton, edge.sync.channel, ""), edge.sync.channel)
+        if automaton == names.REACH:
+            return "begins to count"
+        if automaton == names.OBJECTIVE and edge.target == "lose":
+            return "the objective is broken"
+        return self.moves.get((automaton, "", edge.source), f"goes from {edge.source} to {edge.target}")
+
+    def when(self, zone: Zone) -> str:
+        """The zone in words; "at any time" for the one without constraints."""
+        return ", and ".join(self._phrases(zone)) or "at any time"
+
+    def _phrases(self, zone: Zone) -> Iterator[str]:
+        """Bounds of each clock, then differences of clocks."""
+        for clock, since in self.clocks.items():
+            lower = next((c for c in zone if c.right == clock and c.left is None), None)
+            upper = next((c for c in zone if c.left == clock and c.right is None), None)
+            if lower or upper:
+                yield f"{_span(lower, upper)} after {since}"
+        done = set()
+        for c in zone:
+            if c.left is None or c.right is None or (c.right, c.left) in done:
+                continue
+            done.add((c.left, c.right))
+            back = next((o for o in zone if (o.left, o.right) == (c.right, c.left)), None)
+            yield self._between(c, back)
+
+    def _between(self, c: Constraint, back: Optional[Constraint]) -> str:
+        """`left - right` within a bound: how much earlier the left clock's moment was."""
+        assert c.left is not None and c.right is not None
+        left, right = self.clocks.get(c.left, c.left), self.clocks.get(c.right, c.right)
+        if back is not None and back.bound == -c.bound:
+            if c.bound == 0:
+                return f"{left} and {right} were at the same moment"
+            early, late = (left, right) if c.bound > 0 else (right, left)
+            return f"{early} was exactly {units(number_text(abs(c.bound)))} before {late}"
+        told = self._bounded(c, left, right)
+        return told if back is None else f"{told}, and {self._bounded(back, right, left)}"
+
+    @staticmethod
+    def _bounded(c: Constraint, left: str, right: str) -> str:
+        if c.bound == 0:
+            return f"{left} was {'later than' if c.strict else 'no earlier than'} {right}"
+        amount = units(number_text(abs(c.bound)))
+        if c.bound > 0:
+            return f"{left} was {'less than' if c.strict else 'at most'} {amount} before {right}"
+        return f"{right} was {'more than' if c.strict else 'at least'} {amount} before {left}"
+
+
+def words_of(scenario: Scenario, network: Network) -> Words:
+    """The words for a scenario and its network."""
+    clocks = {names.agent_clock(agent.name): f"{agent.name}'s last step" for agent in scenario.agents}
+    if isinstance(scenario.safety, Respond):
+        clocks[names.CLOCK_OBJECTIVE] = f"the last {scenario.safety.trigger.name} or {scenario.safety.response.name}"
+    clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
+    turns = {}
+    for rule in scenario.rules:
+        automaton = network.automaton(rule.name)
+        for location in automaton.locations:
+            turns[rule.name, location.name] = _turn(automaton, location.name)
+    places, moves = {}, {}
+    parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}
+    for a, b in (way for connection in scenario.connections for way in directions(connection)):
+        places[names.going(a, b)] = f"on the way from {a} to {b}"
+        parts[names.going(a, b)] = ("way", a, b)
+        for agent in scenario.agents:
+            moves[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
+            moves[agent.name, "", names.going(a, b)] = f"arrives at {b} from {a}"
+    for event in scenario.events:
+        for poi in scenario.pois:
+            places[names.doing(event.name, poi.name)] = f"doing {event.name} at {poi.name}"
+            parts[names.doing(event.name, poi.name)] = ("doing", poi.name, event.name)
+        for agent in scenario.agents:
+            begins = f"does {event.name}" if event.duration is None else f"begins {event.name}"
+            moves[agent.name, event.name, ""] = begins
+            moves[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
+    return Words(clocks, turns, places, moves, parts)
+
+
+def units(amount: str) -> str:
+    """`1 unit`, `2 units`."""
+    return f"{amount} unit{'' if amount == '1' else 's'}"
+
+
+def zone_texts(zone: Zone) -> str:
+    """The zone exactly, as plans and strategy files have it."""
+    return " && ".join(constraint_texts(zone, space=" ")) or "always"
+
+
+def objective_words(scenario: Scenario) -> List[str]:
+    """What is wanted, a sentence for each objective."""
+    safety, reach, result = scenario.safety, scenario.reach, []
+    if isinstance(safety, Respond):
+        deadline = units(str(safety.deadline))
+        result.append(f"Whenever {safety.trigger.name} happens, {safety.response.name} happens within {deadline}.")
+    elif isinstance(safety, Avoid):
+        result.append(f"{safety.event.name} never happens.")
+    elif isinstance(safety, NeverWith):
+        result.append(f"{safety.first.name} and {safety.second.name} are never at one place or on one connection.")
+    if reach:
+        after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
+        result.append(f"{reach.event.name} happens{after}.")
+    return result
+
+
+def speed_words(agent: Agent) -> str:
+    """How fast an agent is, in words."""
+    if agent.mobile is None:
+        return "stays there"
+    return f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"
+
+
+def kind_words(agent: Agent) -> str:
+    """What an agent is, in words."""
+    if not agent.controllable:
+        return "not controlled"
+    return "a person who is instructed" if agent.human else "a robot"
+
+
+def _turn(automaton: Automaton, location: str) -> str:
+    """What a rule waits for in a location."""
+    channels = [edge.sync.channel for edge in automaton.edges if edge.source == location and edge.sync]
+    shown = (f"the end of {c[:-4]}" if c.endswith("DONE") else c for c in dict.fromkeys(channels))
+    return "next: " + " or ".join(shown)
+
+
+def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:
+    """`more than 1 and at most 5 units`."""
+    parts, amount = [], ""
+    if lower is not None and upper is not None and lower.bound == -upper.bound:
+        return f"exactly {units(number_text(upper.bound))}" if upper.bound else "right"
+    if lower is not None and upper is None and lower.bound == 0:
+        return "some time"
+    if lower is not None:
+        amount = number_text(-lower.bound)
+        parts.append(f"{'more than' if lower.strict else 'at least'} {amount}")
+    if upper is not None:
+        amount = number_text(upper.bound)
+        if upper.bound == 0:
+            return "right"
+        parts.append(f"{'less than' if upper.strict else 'at most'} {amount}")
+    return f"{' and '.join(parts)} {'unit' if amount == '1' else 'units'}"

@@ -1,0 +1,112 @@
+"""Floor plans of map_server: what can be used is used as it is, what cannot is said, with what to do."""
+
+from __future__ import annotations
+
+import base64
+import struct
+import zlib
+from pathlib import Path
+from typing import List, Tuple
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.report.floor import Floor, read_floor
+
+pytest.importorskip("yaml", reason="PyYAML reads map files")
+
+GOOD = "image: floor.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
+
+
+def plan(folder: Path, image: bytes, text: str = GOOD, name: str = "floor.pgm") -> Floor:
+    (folder / name).write_bytes(image)
+    (folder / "map.yaml").write_text(text)
+    return read_floor(folder / "map.yaml")
+
+
+def greys(floor: Floor) -> Tuple[int, int, List[int]]:
+    """What is in the PNG that we write: one grey byte per pixel, rows without a filter."""
+    content = base64.b64decode(floor.uri.split(",")[1])
+    width, height = struct.unpack(">II", content[16:24])
+    place = content.index(b"IDAT")
+    (length,) = struct.unpack(">I", content[place - 4 : place])
+    rows = zlib.decompress(content[place + 4 : place + 4 + length])
+    return width, height, [b for k in range(height) for b in rows[k * (width + 1) + 1 : (k + 1) * (width + 1)]]
+
+
+def test_a_map_of_map_saver_is_taken_pixel_by_pixel(tmp_path: Path) -> None:
+    floor = plan(tmp_path, b"P5\n# CREATOR: map_saver 0.050 m/pix\n3 2\n255\n" + bytes([0, 205, 254, 10, 35, 13]))
+    assert greys(floor) == (3, 2, [0, 205, 254, 10, 35, 13])
+    assert (floor.resolution, floor.x, floor.y, floor.yaw) == (0.05, -1.0, 2.0, 0.0)
+    corners = [number for corner in floor.corners() for number in corner]
+    assert corners == pytest.approx([-1, 2, -0.85, 2, -0.85, 2.1, -1, 2.1])
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        b"P2\n3 2 # plain\n4\n0 1 2\n# and\n2 3 4\n",
+        b"P5 3 2 65535 " + struct.pack(">6H", 0, 16384, 32768, 32768, 49152, 65535),
+    ],
+)
+def test_other_depths_become_eight_bits(tmp_path: Path, image: bytes) -> None:
+    assert greys(plan(tmp_path, image))[2] == [0, 63, 127, 127, 191, 255]
+
+
+def test_a_png_is_embedded_as_it_is(tmp_path: Path) -> None:
+    made = plan(tmp_path, b"P5 1 1 255 \x07")
+    content = base64.b64decode(made.uri.split(",")[1])
+    again = plan(tmp_path, content, GOOD.replace("floor.pgm", "floor.png"), "floor.png")
+    assert again == made
+
+
+@pytest.mark.parametrize(
+    ("text", "image", "told"),
+    [
+        (GOOD.replace("0.05", "fast"), b"P5 1 1 255 \x07", "resolution is not a number"),
+        (GOOD.replace("0.05", "-1"), b"P5 1 1 255 \x07", "resolution is -1"),
+        (GOOD.replace("resolution: 0.05\n", ""), b"P5 1 1 255 \x07", "resolution is missing"),
+        (GOOD.replace("[-1.0, 2.0, 0.0]", "[1, 2]"), b"P5 1 1 255 \x07", "origin is not a list"),
+        (GOOD.replace("[-1.0, 2.0, 0.0]", "[.inf, 2, 0]"), b"P5 1 1 255 \x07", "origin is not a list"),
+        (GOOD.replace("image: floor.pgm", "image: 3"), b"", "image is missing"),
+        (GOOD.replace("floor.pgm", "none.pgm"), b"", "cannot be read"),
+        ("- a\n- b\n", b"", "no settings"),
+        ("image: [\n", b"", "not YAML"),
+        (GOOD, b"GIF89a", "neither PGM nor PNG"),
+        (GOOD, b"P5 2 2 255 \x07", "ends after 1 of 4 pixels"),
+        (GOOD, b"P5 2 0 255 \x07", "2 times 0 pixels"),
+        (GOOD, b"P5 99999 99999 255 \x07", "million pixels"),
+        (GOOD, b"P5 2 2 0 \x07\x07\x07\x07", "largest grey is 0"),
+        (GOOD, b"P2 1 1 255 x", "no grey"),
+        (GOOD, b"P5\n2", "head is damaged"),
+        (GOOD, b"\x89PNG\r\n\x1a\nshort", "damaged PNG"),
+    ],
+)
+def test_bad_maps_are_told_with_the_file_and_what_was_expected(
+    tmp_path: Path, text: str, image: bytes, told: str
+) -> None:
+    with pytest.raises(PursueError) as problem:
+        plan(tmp_path, image, text)
+    finding = problem.value.diagnostics[0]
+    assert told in f"{finding.message}; {finding.hint}"
+    assert str(tmp_path) in finding.message and problem.value.exit_status == 2
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(
+    st.binary(max_size=60),
+    st.sampled_from([b"", b"P5 ", b"P2 3 1 9 ", b"P5 2 2 255 ", b"\x89PNG\r\n\x1a\n"]),
+    st.text(max_size=30),
+)
+def test_whatever_the_files_hold_there_is_a_plan_or_a_message(
+    tmp_path: Path, rest: bytes, head: bytes, more: str
+) -> None:
+    for text in (GOOD, GOOD + more):
+        try:
+            floor = plan(tmp_path, head + rest, "".join(c for c in text if not "\ud800" <= c <= "\udfff"))
+        except PursueError as problem:
+            assert problem.diagnostics[0].hint
+        else:
+            assert floor.width * floor.height > 0

@@ -1,0 +1,105 @@
+"""The command: what it writes and where, what it refuses, and what it says when something is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple, Tuple
+
+import pytest
+from typer.testing import CliRunner
+
+from pursue_gen.cli import app
+from pursue_gen.report import graphviz
+from pursue_gen.report.png import available
+
+SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
+FIRST, CELL = SCENARIOS / "thesis" / "scenario_1.pur", SCENARIOS / "work_cell" / "work_cell.pur"
+LOST = """
+poi "a" poi "b"
+connect a and b distance 3
+event "catch" collaborative
+agent "bot" controllable mobile 3 location a can_do catch
+agent "thief" mobile 1 location b reacts_to catch
+reach_objective: do catch after 0
+"""
+
+
+class Told(NamedTuple):
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each test has a folder of its own to be in."""
+    monkeypatch.chdir(tmp_path)
+
+
+def pursue(*words: object) -> Told:
+    """The command line; `err` holds all that was said."""
+    done = CliRunner().invoke(app, [str(word) for word in words])
+    return Told(done.exit_code, done.stdout, done.output)
+
+
+def test_the_page_goes_to_the_file_or_beside_and_is_named_on_stdout(tmp_path: Path) -> None:
+    told = pursue("report", FIRST, "--html", "--runs", 0)
+    assert (told.status, told.out.split()[0]) == (0, "scenario_1_report.html")
+    assert (tmp_path / "scenario_1_report.html").read_text().startswith("<!DOCTYPE html>")
+    assert pursue("report", FIRST, "--html", "there/page.html", "--runs", 0).status == 0
+    assert (tmp_path / "there" / "page.html").read_bytes() == (tmp_path / "scenario_1_report.html").read_bytes()
+
+
+def test_a_page_replaces_a_page_and_nothing_else(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.pur"
+    mine.write_text("// my work")
+    refused = pursue("report", FIRST, "--html", mine, "--runs", 0)
+    assert refused.status == 2 and mine.read_text() == "// my work" and "--force" in refused.err
+    assert pursue("report", FIRST, "--html", mine, "--runs", 0, "--force").status == 0
+    assert pursue("report", FIRST, "--html", mine, "--runs", 0).status == 0
+
+
+def test_a_lost_scenario_gets_its_page_too(tmp_path: Path) -> None:
+    (tmp_path / "lost.pur").write_text(LOST)
+    told = pursue("report", "lost.pur", "--html")
+    assert told.status == 0 and "SYN021" in told.err
+    assert "It cannot be met" in (tmp_path / "lost_report.html").read_text()
+
+
+@pytest.mark.skipif(not (graphviz.installed() and available()), reason="graphviz or a maker of PNGs is missing")
+def test_every_picture_is_written_twice(tmp_path: Path) -> None:
+    told = pursue("report", CELL, "--pictures", "pictures")
+    assert told.status == 0
+    names = {file.stem for file in (tmp_path / "pictures").iterdir()}
+    assert {"map", "strategy", "ros_graph"} < names
+    assert {file.name for file in (tmp_path / "pictures").iterdir()} == {
+        f"{n}.{end}" for n in names for end in ("svg", "png")
+    }
+    assert all((tmp_path / line).is_file() for line in told.out.split() if line.startswith("pictures/"))
+
+
+@pytest.mark.skipif(not available(), reason="a maker of PNGs is missing")
+def test_without_graphviz_the_rest_is_written_and_the_status_is_6(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(graphviz.shutil, "which", lambda name: None if name == "dot" else f"/usr/bin/{name}")
+    told = pursue("report", FIRST, "--pictures", "pictures")
+    assert told.status == 6 and "apt install graphviz" in told.err
+    assert {file.name for file in (tmp_path / "pictures").iterdir()} == {
+        f"{name}.{end}" for name in ("map", "timeline") for end in ("svg", "png")
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("page.html",), "--html page.html"),
+        (("--map", "map.yaml"), "--html or --pictures"),
+        (("--html", "--json"), "--json is for the tables alone"),
+        (("--html", "--map", "none.yaml"), "none.yaml"),
+    ],
+)
+def test_options_without_meaning_are_refused(tmp_path: Path, words: Tuple[str, ...], said: str) -> None:
+    told = pursue("report", FIRST, *words)
+    assert told.status == 2 and said in told.err
+    assert not list(tmp_path.iterdir())
