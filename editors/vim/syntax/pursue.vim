@@ -1,0 +1,31 @@
+" Colours for scenarios in PuRSUE-ML.
+if exists('b:current_syntax')
+  finish
+endif
+
+syntax case match
+syntax iskeyword @,48-57,_
+
+syntax keyword pursueStatement agent connect event objective poi reach_objective rule state stateDependency
+syntax keyword pursueConstant false is_false is_true true
+syntax keyword pursueKeyword after and avoid before can_do collaborative controllable distance do duration false_if human
+syntax keyword pursueKeyword if initially location mobile never_with only_if or reacts_to then true_if within
+syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
+syntax match pursueName +"[^"]*"+
+syntax match pursueTail "control[ \t]*:.*"
+syntax keyword pursueTodo TODO FIXME contained
+syntax match pursueComment "//.*" contains=pursueTodo
+syntax match pursuePose "//[ \t]*\[.*"
+syntax region pursueComment start="/\*" end="\*/" contains=pursueTodo
+
+highlight default link pursueStatement Statement
+highlight default link pursueConstant Constant
+highlight default link pursueKeyword Keyword
+highlight default link pursueNumber Number
+highlight default link pursueName String
+highlight default link pursueTail PreProc
+highlight default link pursueTodo Todo
+highlight default link pursueComment Comment
+highlight default link pursuePose SpecialComment
+
+let b:current_syntax = 'pursue'

@@ -1,0 +1,160 @@
+"""The text of a first scenario, with the comments that a beginner needs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Iterable, List, Optional
+
+from pursue_gen.authoring.wishes import AVOID, CATCH, KINDS, NEVER_WITH, REACH, RESPOND, Task, Wishes, deadline, unused
+from pursue_gen.console import usage
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.names import check_names
+from pursue_gen.language.parser import parse, read, without_errors
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.synthesis.limits import Limits, Listener
+
+_PATIENCE = 10.0
+
+
+def scenario_text(wishes: Wishes, file: str) -> str:
+    """A scenario that is what was wished for, laid out; `file` is what it will be called."""
+    parts = [_head(wishes, file), _places(wishes), _events(wishes), _order(wishes), _agents(wishes), _goal(wishes)]
+    return format_text("\n\n".join("\n".join(part) for part in parts if part), file)
+
+
+def _head(wishes: Wishes, file: str) -> List[str]:
+    return [
+        f"// A first scenario: {KINDS[wishes.kind]}.",
+        "// Change whatever you like, then ask again:",
+        f"//   pursue-gen check {file}   is anything wrong with it?",
+        f"//   pursue-gen solve {file}   can it be done, and how?",
+    ]
+
+
+def _places(wishes: Wishes) -> List[str]:
+    lines = ["// Places. Names stand in quotes here, and without quotes wherever they are used."]
+    lines += [f'poi "{place}"' for place in wishes.places]
+    if wishes.distances:
+        lines += ["", "// Ways, in both directions. The unit of distance is yours to choose."]
+    for a, b, distance in zip(wishes.places, wishes.places[1:], wishes.distances):
+        lines.append(f"connect {a} and {b} distance {distance}")
+    return lines
+
+
+def _event(task: Task) -> str:
+    return f'event "{task.event}" location {task.place}' + (f" duration {task.duration}" if task.duration else "")
+
+
+def _events(wishes: Wishes) -> List[str]:
+    lines = ["// What can happen. Without a location: anywhere. Without a duration: it takes no time."]
+    lines += [_event(task) for task in wishes.tasks]
+    if wishes.kind == RESPOND:
+        lines.append(f'event "{wishes.event}"')
+    elif wishes.kind == AVOID:
+        lines.append(f'event "{wishes.event}" location {wishes.tasks[0].place}')
+    elif wishes.event:
+        lines += [
+            "// It takes two: one who can do it, and one who reacts to it.",
+            f'event "{wishes.event}" collaborative',
+        ]
+    return lines
+
+
+def _order(wishes: Wishes) -> List[str]:
+    """The rule, or for avoid the state."""
+    if wishes.kind == AVOID:
+        state, prevents = unused("safe", wishes.names), wishes.tasks[0].event
+        return [
+            f"// A state is true or false. When {prevents} has made this one true, {wishes.event} is not possible.",
+            f'state "{state}": initially false, true_if {prevents}',
+            f"stateDependency: {wishes.event} only_if {state} is_false",
+        ]
+    steps = [task.event for task in wishes.tasks]
+    if wishes.kind == RESPOND:
+        steps.insert(0, wishes.event)
+    elif wishes.kind == REACH and wishes.event:
+        steps.append(wishes.event)
+    if len(steps) < 2:
+        return []
+    body = steps[0]
+    for number, step in enumerate(steps[1:]):
+        body = f"({body}) before {step}" if number else f"{body} before {step}"
+    rule = unused("order", wishes.names)
+    return ["// The order, round after round: each of these waits for its turn.", f'rule "{rule}": {body}']
+
+
+def _agents(wishes: Wishes) -> List[str]:
+    first, last = wishes.places[0], wishes.places[-1]
+    lines = [
+        "// Who is there. What is controllable does what the plan says.",
+        "// mobile 2: needs 2 units of time for one unit of distance; so a larger number is slower.",
+    ]
+    for number, robot in enumerate(wishes.robots):
+        can = [robot.task.event] if robot.task is not None else []
+        if wishes.kind == CATCH or (wishes.kind == REACH and wishes.event and number == len(wishes.robots) - 1):
+            can.append(wishes.event)
+        start = last if wishes.kind == NEVER_WITH and number == 1 else first
+        if robot.mobile is None and robot.task is not None:
+            start = robot.task.place
+        lines.append(_agent(robot.name, "controllable", robot.mobile, start, f"can_do {', '.join(can)}"))
+    if wishes.other:
+        lines += ["", "// Not controllable: does what it likes, also the worst."]
+        part = {RESPOND: "can_do", AVOID: "can_do", REACH: "reacts_to", CATCH: "reacts_to"}.get(wishes.kind, "")
+        lines.append(_agent(wishes.other, "", wishes.mobile, last, f"{part} {wishes.event}" if part else ""))
+    return lines
+
+
+def _agent(name: str, controllable: str, mobile: Optional[int], location: str, part: str) -> str:
+    moves = "" if mobile is None else f"mobile {mobile}"
+    return _words((f'agent "{name}"', controllable, moves, f"location {location}", part))
+
+
+def _words(words: Iterable[str]) -> str:
+    return " ".join(word for word in words if word)
+
+
+def _goal(wishes: Wishes) -> List[str]:
+    tasks = wishes.tasks
+    if wishes.kind == RESPOND:
+        time = deadline(wishes.distances, wishes.robots)
+        return [
+            "// What has to hold always. Try a shorter time: when it is too short, solve says so, and what would help.",
+            f"objective: if {wishes.event} then {tasks[-1].event} within {time}",
+        ]
+    if wishes.kind == AVOID:
+        return ["// What must never happen.", f"objective: avoid {wishes.event}"]
+    if wishes.kind == NEVER_WITH:
+        second = wishes.other or wishes.robots[1].name
+        return [
+            "// What must always hold (never at one place, and never face to face on a way), and what has to be done.",
+            f"objective: {wishes.robots[0].name} never_with {second}",
+            f"reach_objective: do {tasks[-1].event}",
+        ]
+    return ["// What is wanted.", f"reach_objective: do {wishes.event or tasks[-1].event}"]
+
+
+def place_for(name: str, output: Optional[Path]) -> Path:
+    """The file of a scenario with this name, in the folder or the file `output`, else here.
+
+    Raises PursueError (exit status 2) for a name that cannot be a scenario's.
+    """
+    place = Path(name if name.endswith(".pur") else name + ".pur")
+    file = place if output is None else output / place.name if output.is_dir() else output
+    for word in (place.stem, file.stem):
+        if any(check_names(parse("", file=word, name=word))):
+            hint = "use letters, digits and _, a letter first: pursue-gen new my_floor"
+            raise usage(f"{word!r} cannot be the name of a scenario", hint)
+    return file
+
+
+def checked(text: str, file: str) -> Scenario:
+    """The scenario in the text. Raises PursueError with every error (names that are fine alone may collide)."""
+    reading = read(text, file)
+    return without_errors(reading.scenario, check_reading(reading))
+
+
+def tried(scenario: Scenario, progress: Optional[Listener] = None) -> None:
+    """Solves it in the default game. Raises PursueError where it is lost, or not decided in `_PATIENCE` seconds."""
+    solve_scenario(scenario, Rules(), Limits(_PATIENCE), progress=progress)

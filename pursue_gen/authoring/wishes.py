@@ -1,0 +1,119 @@
+"""What somebody wants of a first scenario, and which numbers make sure that the robots can do it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterable, Optional, Tuple
+
+REACH, RESPOND, AVOID, NEVER_WITH, CATCH = "reach", "respond", "avoid", "never-with", "catch"
+
+KINDS: Dict[str, str] = {
+    REACH: "the robots do something, one after the other",
+    RESPOND: "whenever somebody calls, the robots answer in time",
+    AVOID: "something must never happen, and a robot prevents it",
+    NEVER_WITH: "the robots do something, and two of those who are there never meet",
+    CATCH: "the robots catch somebody who runs away",
+}
+"""The goals that a first scenario can have, in words."""
+
+MOST_PLACES, MOST_ROBOTS = 20, 9
+MOST_DISTANCE, MOST_MOBILE, MOST_DURATION = 100, 20, 500
+"""The largest answers: with them every number of the scenario is one that the language has."""
+
+_BETWEEN = 3
+"""Time units that pass at most between two steps of a robot, beyond their durations: an end may come 1 later than
+the model's shortest time, the next step can begin after 1 more, and a command may take effect a little later."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """An event that one robot does: where, and for how many time units (0: it takes no time)."""
+
+    event: str
+    place: str
+    duration: int
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot; `mobile`: time units per unit of distance, None: stands where its task is; `task`: None in `catch`."""
+
+    name: str
+    mobile: Optional[int]
+    task: Optional[Task] = None
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The answers. The places lie in a row, `distances` (units of distance) are those between neighbours.
+
+    `other`: who is not controlled, "" for nobody; `mobile`: the other's time units per unit of distance, None: stands
+    still. `event`: what the other does or takes part in (reach: the hand-over, respond: the call, avoid: what must
+    not happen, catch: the catch). In `avoid` all robots have the one task that prevents it. Robots that move start in
+    the first place, the other in the last one; never-with: the second robot in the last one, too.
+    """
+
+    kind: str
+    places: Tuple[str, ...]
+    distances: Tuple[int, ...]
+    robots: Tuple[Robot, ...]
+    other: str = ""
+    mobile: Optional[int] = None
+    event: str = ""
+
+    @property
+    def names(self) -> Tuple[str, ...]:
+        """Every name that was given."""
+        robots = [robot.name for robot in self.robots]
+        names = (*self.places, *robots, *(task.event for task in self.tasks), self.other, self.event)
+        return tuple(name for name in names if name)
+
+    @property
+    def tasks(self) -> Tuple[Task, ...]:
+        """The tasks of the robots, each once."""
+        return tuple(dict.fromkeys(robot.task for robot in self.robots if robot.task is not None))
+
+
+def fewest_places(kind: str) -> int:
+    """How many places a goal of this kind needs: who is to be avoided or caught is somewhere else at first."""
+    return 1 if kind in (REACH, RESPOND) else 2
+
+
+def allowed_places(kind: str, places: Tuple[str, ...], robot: int) -> Tuple[str, ...]:
+    """Where the robot of this number (from 0) can have its task.
+
+    In a row of places nobody gets past another one: who must not meet leaves the other's end free. And what must not
+    happen cannot happen where the other is at first.
+    """
+    if kind == AVOID or (kind == NEVER_WITH and robot == 0):
+        return places[:-1]
+    return places[1:] if kind == NEVER_WITH and robot == 1 else places
+
+
+def may_stand(kind: str) -> bool:
+    """True where a robot need not move. Who catches or makes way has to."""
+    return kind not in (NEVER_WITH, CATCH)
+
+
+def deadline(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
+    """Time units in which the robots can answer a call, at any moment: all go to their places first, and stay there."""
+    slowest = max(robot.mobile or 0 for robot in robots)
+    travel = sum(distance * slowest + _BETWEEN for distance in distances) if slowest else 0
+    return travel + sum((robot.task.duration if robot.task else 0) + _BETWEEN for robot in robots)
+
+
+def slow_enough(kind: str, places: Tuple[str, ...], distances: Tuple[int, ...], robots: Tuple[Robot, ...]) -> int:
+    """The smallest `mobile` of the other with which the robots surely win (kinds avoid and catch)."""
+    fastest = min(robot.mobile or 0 for robot in robots)  # 0: one stands where its task is
+    if kind == CATCH:  # on each way a robot gains more than it loses by turning after the other
+        return fastest + -(-_BETWEEN // min(distances))
+    (task,) = {robot.task for robot in robots if robot.task is not None}
+    at = places.index(task.place)
+    travel = sum(distance * fastest + _BETWEEN for distance in distances[:at]) if fastest else 0
+    return max(1, -(-(travel + task.duration + _BETWEEN) // sum(distances[at:])))
+
+
+def unused(name: str, taken: Iterable[str]) -> str:
+    """The name, or the name with the first number that makes it a new one."""
+    known = set(taken)
+    return next(new for new in [name, *(f"{name}_{number}" for number in range(2, len(known) + 3))] if new not in known)

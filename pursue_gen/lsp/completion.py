@@ -1,0 +1,187 @@
+"""What may be written at a place of a text: words, names that fit there, whole statements to fill in."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Tuple
+
+from lark import Token
+
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, kind_behind, statements
+from pursue_gen.lsp.words import FORMS, MEANINGS
+
+_SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
+_POSE = "//[0, 0, 0, 0, 0, 0, 1]"
+_WORD_BEFORE = re.compile(r"[\w-]*\Z")
+_WORD_AFTER = re.compile(r"\w*")
+_HOLE = re.compile(r"\{(=?)([^}]*)\}")
+_SPECIAL = re.compile(r"[$},|\\]")
+_MOST_CHOICES = 50
+_EXAMPLES = {"POI": "a", "event": "work", "state": "open", "agent": "bot", "rule": "order"}
+
+
+@dataclass(frozen=True)
+class Completion:
+    """Something that may be written for text[start:end].
+
+    `token`: the kind of token that it begins with; `kind`: "name" (with `of` saying a name of what), "word", "sign",
+    "value" or "statement"; `insert`: in the form of editors' snippets where `snippet`.
+    """
+
+    label: str
+    insert: str
+    token: str
+    kind: str
+    start: int
+    end: int
+    detail: str = ""
+    about: str = ""
+    of: str = ""
+    snippet: bool = False
+
+
+def complete(document: Document, offset: int) -> Tuple[Completion, ...]:
+    """What may be written at an offset; the likeliest first."""
+    if document.in_comment(offset):
+        return ()
+    place = _place(document, offset)
+    if place.quoted is not None:
+        return tuple(_missing(document, place, place.quoted))
+    expected = accepts(place.behind)
+    items = list(_names(document, place, expected)) + list(_words(place, expected))
+    if not place.behind or "$END" in expected or place.opens_line:
+        items += _statements(document, place)
+    return tuple(items)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where something is to be written: behind which tokens of its statement, in place of which stretch of text.
+
+    `opens_line`: nothing stands before it in its line; `quoted`: the statement that declares the name which is begun
+    here, if its opening quote stands already; `same_line`: it is on the line of the token before.
+    """
+
+    behind: Tuple[Token, ...]
+    start: int
+    end: int
+    opens_line: bool
+    same_line: bool
+    quoted: Optional[str] = None
+
+
+def _place(document: Document, offset: int) -> _Place:
+    text = document.text
+    before = [part.start for part in document.statements if part.start < offset]
+    begin = before[-2] if len(before) > 1 else 0  # the cutter has to see one statement that is complete
+    start = offset - len(_WORD_BEFORE.search(text, begin, offset).group())  # type: ignore[union-attr]
+    after = _WORD_AFTER.match(text, offset)
+    end = after.end() if after and start < offset else offset
+    tokens = all_tokens(text[begin:offset])
+    quoted = None
+    if tokens and tokens[-1].type == "UNCLOSED_NAME":
+        start, tokens = begin + (tokens[-1].start_pos or 0) + 1, tokens[:-1]
+        closing = text.find('"', offset, document.positions.line_end(document.positions.line_of(offset)))
+        end = closing if closing >= 0 else offset
+        quoted = ""
+    else:
+        tokens = tuple(token for token in tokens if begin + (token.start_pos or 0) < start)
+    parts: Sequence[Statement] = statements(tokens)
+    behind = parts[-1].tokens if parts else ()
+    if quoted is not None and len(behind) == 1:
+        quoted = behind[0].type
+    line = document.positions.line_start(document.positions.line_of(start))
+    same_line = bool(behind) and "\n" not in text[begin + (behind[-1].start_pos or 0) : start]
+    return _Place(behind, start, end, not text[line:start].strip(), same_line, quoted)
+
+
+def _missing(document: Document, place: _Place, opens: str) -> Iterator[Completion]:
+    """Names that are used as what this statement declares, but are declared nowhere."""
+    kind = DECLARED.get(opens, "")
+    known = document.declared.get(kind, {})
+    closed = document.text[place.end : place.end + 1] == '"'
+    for name in sorted({o.name for o in document.occurrences if o.kind == kind and o.name not in known}):
+        insert = name if closed else name + '"'
+        yield Completion(name, insert, "NAME", "name", place.start, place.end, f"{kind}, declared nowhere", of=kind)
+
+
+def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
+    """Declared names that fit here."""
+    kind = kind_behind(place.behind)
+    if "WORD" not in expected or kind is None:
+        return
+    used = {str(token) for token in place.behind if token.type in ("WORD", "HUMAN")}
+    known = document.declared[kind]
+    fitting = [name for name in known if name not in used]
+    if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
+        together = [name for name in fitting if document.statements[known[name].statement].has("COLLABORATIVE")]
+        fitting = together or fitting
+    for name in fitting:
+        part = document.statements[known[name].statement]
+        about = " ".join(document.text[part.start : part.end].split())[:200]
+        token = "HUMAN" if name == "human" else "WORD"
+        yield Completion(name, name, token, "name", place.start, place.end, kind, about, of=kind)
+
+
+def _last_word(place: _Place) -> str:
+    return next((token.type for token in reversed(place.behind) if token.type in KEYWORDS), "")
+
+
+def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
+    """Words and signs of the language, and values, that may come next within the statement."""
+    if not place.behind:
+        return
+    span = (place.start, place.end)
+    for token, word in KEYWORDS.items():
+        # an agent may be called human: then its name is offered
+        if token in expected and not (token == "HUMAN" and "WORD" in expected):
+            yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
+    if "NUMBER" in expected:
+        yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a whole number", snippet=True)
+    if "NAME" in expected:
+        example = _EXAMPLES[DECLARED[place.behind[0].type]]
+        yield Completion(f'"{example}"', f'"${{1:{example}}}"', "NAME", "value", *span, "a new name", snippet=True)
+    if "POSE" in expected and place.same_line:
+        about = "x, y, z in metres on the robot's map, then the orientation as a unit quaternion qx, qy, qz, qw"
+        yield Completion(_POSE, _POSE, "POSE", "value", *span, "a pose", about)
+    for token, sign in _SIGNS.items():
+        if token in expected:
+            yield Completion(sign, sign, token, "sign", *span)
+
+
+def _statements(document: Document, place: _Place) -> List[Completion]:
+    """Whole statements, with choices of names where names are asked for."""
+    items = []
+    for token, forms in FORMS.items():
+        for form in forms:
+            label = f"{KEYWORDS[token]} … {form.title}"
+            insert = fill_in(form.words, {kind: list(names) for kind, names in document.declared.items()})
+            span = (place.start, place.end)
+            about = f"{MEANINGS[token]}\n\n    {fill_in(form.words, {}, plain=True)}"
+            items.append(Completion(label, insert, token, "statement", *span, form.title, about, snippet=True))
+    return items
+
+
+def fill_in(words: str, names: Dict[str, List[str]], plain: bool = False) -> str:
+    """A form as an editor's snippet, with choices of names; `plain`: as text, with examples in its holes."""
+    number = 0
+
+    def hole(match: re.Match[str]) -> str:
+        nonlocal number
+        number += 1
+        given, what = match.groups()
+        example = what if given else _EXAMPLES[what]
+        if plain:
+            return example
+        choices = [] if given else names.get(what, [])[:_MOST_CHOICES]
+        if not choices:
+            return f"${{{number}:{example}}}"
+        # where the form asks twice, the second hole begins with another name than the first
+        turn = words[: match.start()].count(match.group()) % len(choices)
+        turned = choices[turn:] + choices[:turn]
+        return f"${{{number}|" + ",".join(_SPECIAL.sub(r"\\\g<0>", name) for name in turned) + "|}"
+
+    return _HOLE.sub(hole, words)

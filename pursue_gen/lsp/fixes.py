@@ -1,0 +1,77 @@
+"""Quick fixes: what an editor can do at a click about a finding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Dict, Iterator, Optional, Tuple
+
+from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.lsp import fixes_meaning as meaning
+from pursue_gen.lsp import fixes_syntax as syntax
+from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.tokens import Statement
+
+Proposal = Tuple[str, Tuple[Edit, ...]]
+"""What it would do, for the person, and the edits that do it; the likeliest proposal comes first."""
+
+_Proposer = Callable[[Document, Diagnostic, Optional[Statement], int], Iterator[Proposal]]
+
+_PROPOSERS: Dict[str, _Proposer] = {
+    "PML010": syntax.unexpected,
+    "PML011": syntax.did_you_mean,
+    "PML012": syntax.close_name,
+    "PML013": syntax.close_comment,
+    "PML015": syntax.visible_blank,
+    "PML017": syntax.delete_finding,
+    "PML101": meaning.fitting_name,
+    "PML103": meaning.delete_statement,
+    "PML110": meaning.unknown_name,
+    "PML130": meaning.add_agent,
+    "PML131": meaning.add_controllable,
+    "PML132": meaning.add_poi,
+    "PML140": meaning.one_instead_of_zero,
+    "PML141": meaning.one_instead_of_zero,
+    "PML142": meaning.one_instead_of_zero,
+    "PML143": meaning.one_instead_of_zero,
+    "PML145": meaning.delete_statement,
+    "PML146": meaning.delete_statement,
+    "PML147": meaning.connect_island,
+    "PML150": meaning.give_event,
+    "PML151": meaning.find_partner,
+    "PML152": meaning.make_collaborative,
+    "PML153": meaning.get_there,
+    "PML155": meaning.not_own_partner,
+    "PML156": meaning.delete_listed,
+    "PML170": meaning.delete_statement,
+    "PML171": meaning.add_objective,
+    "PML180": meaning.human_ally,
+    "PML190": meaning.sort_statements,
+}
+
+
+@dataclass(frozen=True)
+class Fix:
+    """A quick fix for a finding: its title, and the edits; `preferred`: the one that an editor may do unasked."""
+
+    title: str
+    finding: Diagnostic
+    edits: Tuple[Edit, ...]
+    preferred: bool
+
+
+def fixes(document: Document, start: int, end: int) -> Tuple[Fix, ...]:
+    """The quick fixes for the findings whose statements touch text[start:end], in the order of the findings."""
+    found = []
+    for finding in document.findings:
+        proposer = _PROPOSERS.get(finding.code)
+        if proposer is None or finding.span is None:
+            continue
+        first, last = document.positions.of_span(finding.span)
+        part = document.statement_at(first)
+        if max(last, part.end if part else 0) < start or min(first, part.start if part else first) > end:
+            continue
+        proposals = list(proposer(document, finding, part, first))
+        for number, (title, edits) in enumerate(proposals):
+            if edits:
+                found.append(Fix(title, finding, edits, number == 0))
+    return tuple(found)

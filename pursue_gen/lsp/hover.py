@@ -1,0 +1,233 @@
+"""What a name, a number or a word of a scenario means, in plain words, as Markdown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Dict, Iterable, List, Optional, Tuple
+
+from pursue_gen.language.behaviour import predecessors
+from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.names import refs_of
+from pursue_gen.language.parser import MOST
+from pursue_gen.language.scenario import (
+    Agent,
+    Avoid,
+    Choice,
+    Event,
+    NeverWith,
+    Poi,
+    Ref,
+    Respond,
+    Rule,
+    RuleBody,
+    Scenario,
+    Sequence,
+    State,
+)
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.tokens import Statement
+from pursue_gen.lsp.words import MEANINGS
+
+_MOST_LINES = 12
+
+
+@dataclass(frozen=True)
+class Hover:
+    """What to tell about text[start:end]."""
+
+    markdown: str
+    start: int
+    end: int
+
+
+def hover(document: Document, offset: int) -> Optional[Hover]:
+    """What stands at an offset, in plain words; None where there is nothing to say."""
+    occurrence = document.occurrence_at(offset)
+    if occurrence is not None:
+        text = _about(document.scenario, occurrence.kind, occurrence.name)
+        if text is None:
+            text = f"There is no {occurrence.kind} `{occurrence.name}`."
+        return Hover(text, occurrence.start, occurrence.end)
+    token = document.token_at(offset)
+    part = document.statement_at(offset)
+    if token is None:
+        return None
+    start = token.start_pos or 0
+    if token.type in KEYWORDS:
+        form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
+        return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
+    if token.type == "NUMBER" and part is not None and token.isdigit() and len(token) <= len(str(MOST)):
+        told = _number(document.scenario, part, start, int(token))
+        return Hover(told, start, start + len(token)) if told else None
+    return None
+
+
+def units(number: int) -> str:
+    """`1 unit`, `2 units`."""
+    return f"{number} unit{'' if number == 1 else 's'}"
+
+
+def lasts(duration: int) -> str:
+    """How long something takes that takes `duration` in the model: its end comes within one unit more."""
+    return f"{duration} to {duration + 1} units of time"
+
+
+def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
+    parts: Dict[str, Tuple[Tuple[object, ...], Callable[..., List[str]]]] = {
+        "POI": (scenario.pois, _poi),
+        "event": (scenario.events, _event),
+        "rule": (scenario.rules, _rule),
+        "state": (scenario.states, _state),
+        "agent": (scenario.agents, _agent),
+    }
+    found, told = parts[kind]
+    part = next((part for part in found if getattr(part, "name", None) == name), None)
+    return None if part is None else "\n".join(told(scenario, part))
+
+
+def _listed(lines: List[str]) -> List[str]:
+    more = len(lines) - _MOST_LINES
+    return lines if more <= 0 else [*lines[:_MOST_LINES], f"- … and {more} more"]
+
+
+def _poi(scenario: Scenario, poi: Poi) -> List[str]:
+    lines = [f"**{poi.name}**: a place", ""]
+    ways = [(w.b if w.a == poi.name else w.a, w.distance) for w in scenario.connections if poi.name in (w.a, w.b)]
+    for other, distance in ways:
+        times = ", ".join(f"{a.name} {lasts(distance * a.mobile)}" for a in scenario.agents if a.mobile is not None)
+        lines.append(f"- to {other}: distance {distance}" + (f" ({times})" if times else ""))
+    lines = [*lines[:2], *_listed(lines[2:])]
+    if not ways:
+        lines.append("- no way leads here")
+    lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
+    here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
+    lines += _if_any("happens here", here)
+    if poi.pose is not None:
+        lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
+    return lines
+
+
+def _event(scenario: Scenario, event: Event) -> List[str]:
+    where = f"at {event.location.name}" if event.location else "wherever the agent is"
+    lines = [f"**{event.name}**: an event", "", f"- happens {where}"]
+    lines.append(f"- takes {lasts(event.duration)}" if event.duration is not None else "- takes no time")
+    lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
+    if event.collaborative:
+        partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
+        lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
+    for rule in scenario.rules:
+        turns = predecessors(rule)
+        if event.name in turns:
+            after = " or ".join(sorted(turns[event.name]))
+            turn = f"its turn comes after {after}" if after else "its turn comes first in each round"
+            lines.append(f"- rule {rule.name}: {turn}")
+    for dependency in scenario.dependencies:
+        if dependency.event.name == event.name:
+            lines.append(f"- only while {dependency.state.name} is {str(dependency.value).lower()}")
+    for state in scenario.states:
+        for value, refs in (("true", state.true_if), ("false", state.false_if)):
+            if _in(event.name, refs):
+                lines.append(f"- makes {state.name} {value}")
+    return lines + _wanted(scenario, event)
+
+
+def _wanted(scenario: Scenario, event: Event) -> List[str]:
+    lines = []
+    safety, reach = scenario.safety, scenario.reach
+    if isinstance(safety, Respond) and safety.trigger.name == event.name:
+        lines.append(f"- must be answered by {safety.response.name} within {units(safety.deadline)} of time")
+    if isinstance(safety, Respond) and safety.response.name == event.name:
+        lines.append(f"- is the answer to {safety.trigger.name}, within {units(safety.deadline)} of time")
+    if isinstance(safety, Avoid) and safety.event.name == event.name:
+        lines.append("- must never happen")
+    if reach is not None and reach.event.name == event.name:
+        after = f", later than {units(reach.after)} of time after the start" if reach.after else ""
+        lines.append(f"- is to be achieved once{after}")
+    return lines
+
+
+def _rule(scenario: Scenario, rule: Rule) -> List[str]:
+    lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
+    names = _all(ref.name for ref in refs_of(rule.body))
+    return [*lines, f"- {names} can happen only when it is their turn"]
+
+
+def _in_words(body: RuleBody) -> str:
+    if isinstance(body, Ref):
+        return body.name
+    if isinstance(body, Choice):
+        return " or ".join(_bracketed(side) for side in (body.first, body.second))
+    return ", then ".join(_bracketed(side) for side in _steps(body))
+
+
+def _steps(body: RuleBody) -> List[RuleBody]:
+    """What follows one another in a sequence, however it is bracketed."""
+    return _steps(body.first) + _steps(body.second) if isinstance(body, Sequence) else [body]
+
+
+def _bracketed(body: RuleBody) -> str:
+    return body.name if isinstance(body, Ref) else f"({_in_words(body)})"
+
+
+def _state(scenario: Scenario, state: State) -> List[str]:
+    lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
+    lines.append("- made true by " + (_all(ref.name for ref in state.true_if) or "nothing"))
+    lines.append("- made false by " + (_all(ref.name for ref in state.false_if) or "nothing"))
+    for dependency in scenario.dependencies:
+        if dependency.state.name == state.name:
+            lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
+    return lines
+
+
+def _agent(scenario: Scenario, agent: Agent) -> List[str]:
+    what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
+    if agent.human and agent.controllable:
+        what = "a person who follows instructions"
+    lines = [f"**{agent.name}**: {what}", "", f"- starts at {agent.location.name}"]
+    if agent.mobile is None:
+        lines.append("- stays there")
+    else:
+        lines.append(f"- needs {units(agent.mobile)} of time for a unit of distance")
+        ways = [f"- {w.a} to {w.b}: {lasts(w.distance * agent.mobile)}" for w in scenario.connections]
+        lines += _listed(ways)
+    lines += _if_any("can do", [ref.name for ref in agent.can_do])
+    lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
+    safety = scenario.safety
+    if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
+        other = safety.second.name if safety.first.name == agent.name else safety.first.name
+        lines.append(f"- must never be where {other} is")
+    return lines
+
+
+def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str:
+    """What the number at an offset of a statement means."""
+    words = [t.type for t in part.tokens if (t.start_pos or 0) < start and t.type in KEYWORDS]
+    word = words[-1] if words else ""
+    movers = [agent for agent in scenario.agents if agent.mobile is not None]
+    if word == "DISTANCE":
+        lines = [f"A way of {units(number)} of distance.", ""]
+        return "\n".join(lines + _listed([f"- {a.name} needs {lasts(number * (a.mobile or 0))}" for a in movers]))
+    if word == "DURATION":
+        return f"It takes {lasts(number)}."
+    if word == "MOBILE":
+        lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
+        ways = [f"- {w.a} to {w.b}: {lasts(w.distance * number)}" for w in scenario.connections]
+        return "\n".join(lines + _listed(ways))
+    if word == "WITHIN":
+        return f"The answer must have come {units(number)} of time later at most."
+    if word == "AFTER":
+        later = f"later than {units(number)} of time after the start" if number else "at any time"
+        return f"It counts when it happens {later}."
+    return ""
+
+
+def _in(name: str, refs: Tuple[Ref, ...]) -> bool:
+    return any(ref.name == name for ref in refs)
+
+
+def _all(names: Iterable[str]) -> str:
+    return ", ".join(names)
+
+
+def _if_any(words: str, names: List[str]) -> List[str]:
+    return [f"- {words}: {', '.join(names)}"] if names else []

@@ -1,0 +1,149 @@
+"""A text as words, comments and statements, whether or not they are right; and what each name in them is used for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Tuple
+
+from lark import Token, UnexpectedToken
+
+from pursue_gen.language.messages import KEYWORDS, STATEMENTS
+from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
+
+COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"})
+
+DECLARED: Dict[str, str] = {"POI": "POI", "EVENT": "event", "RULE": "rule", "STATE": "state", "AGENT": "agent"}
+"""The kind of thing that a statement declares, by the token that begins the statement."""
+
+_USED: Dict[Tuple[str, str], str] = {
+    ("CONNECT", "CONNECT"): "POI",
+    ("CONNECT", "AND"): "POI",
+    ("EVENT", "LOCATION"): "POI",
+    ("RULE", "RULE"): "event",
+    ("RULE", "BEFORE"): "event",
+    ("RULE", "OR"): "event",
+    ("STATE", "TRUE_IF"): "event",
+    ("STATE", "FALSE_IF"): "event",
+    ("STATEDEPENDENCY", "STATEDEPENDENCY"): "event",
+    ("STATEDEPENDENCY", "ONLY_IF"): "state",
+    ("AGENT", "LOCATION"): "POI",
+    ("AGENT", "CAN_DO"): "event",
+    ("AGENT", "REACTS_TO"): "event",
+    ("OBJECTIVE", "OBJECTIVE"): "agent",
+    ("OBJECTIVE", "NEVER_WITH"): "agent",
+    ("OBJECTIVE", "IF"): "event",
+    ("OBJECTIVE", "THEN"): "event",
+    ("OBJECTIVE", "AVOID"): "event",
+    ("REACH_OBJECTIVE", "DO"): "event",
+}
+"""The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
+
+_NOT_ASKED = frozenset({"HUMAN", "TRUE", "FALSE"})  # no name stands behind these
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A name where it stands, without quotes: text[start:end]. `declares`: this is where it is declared."""
+
+    name: str
+    kind: str
+    start: int
+    end: int
+    declares: bool
+    statement: int
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement, right or wrong: its tokens (no comments but poses) and its stretch of the text."""
+
+    tokens: Tuple[Token, ...]
+
+    @property
+    def kind(self) -> str:
+        """The token that begins it; anything where no statement begins like this."""
+        return str(self.tokens[0].type)
+
+    @property
+    def start(self) -> int:
+        """Offset of its first character."""
+        return self.tokens[0].start_pos or 0
+
+    @property
+    def end(self) -> int:
+        """Offset behind its last character."""
+        return end_of(self.tokens[-1])
+
+    @property
+    def name(self) -> Optional[Token]:
+        """The quoted name that it declares, as far as there is one."""
+        named = self.kind in DECLARED and len(self.tokens) > 1 and self.tokens[1].type == "NAME"
+        return self.tokens[1] if named else None
+
+    def has(self, kind: str) -> bool:
+        """Does a token of this kind stand in it?"""
+        return any(token.type == kind for token in self.tokens)
+
+
+def end_of(token: Token) -> int:
+    """The offset behind a token."""
+    return (token.start_pos or 0) + len(token)
+
+
+def all_tokens(text: str) -> Tuple[Token, ...]:
+    """Every word, sign and comment of a text; nothing of one that is too large to be a scenario."""
+    if len(text) > MOST_LETTERS:
+        return ()
+    # a comment or a blank stands between most words
+    found = tuple(islice(grammar().lex(text, dont_ignore=True), 3 * MOST_WORDS))
+    return tuple(token for token in found if token.type != "BLANK") if len(found) < 3 * MOST_WORDS else ()
+
+
+def statements(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
+    """The statements that tokens make, comments left out."""
+    kept = significant(token for token in tokens if token.type not in COMMENTS or token.type == "UNCLOSED_COMMENT")
+    return tuple(Statement(tuple(chunk)) for chunk in chunks(kept))
+
+
+def kind_behind(tokens: Sequence[Token]) -> Optional[str]:
+    """What a name stands for that is used behind these tokens of one statement; None: no name is used there."""
+    if not tokens:
+        return None
+    asked = [token.type for token in tokens if token.type in KEYWORDS and token.type not in _NOT_ASKED]
+    return _USED.get((tokens[0].type, asked[-1])) if asked else None
+
+
+def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
+    """The kinds of tokens that may follow these of one statement, "$END" among them; none after a wrong one."""
+    if not tokens:
+        return STATEMENTS - {"TAIL"}
+    if tokens[0].type not in STATEMENTS:
+        return frozenset()
+    parser: Any = grammar().parse_interactive(start="statement")
+    try:
+        for token in tokens:
+            parser.feed_token(token)
+    except UnexpectedToken:
+        return frozenset()
+    return frozenset(parser.accepts())
+
+
+def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
+    """Every name in the statements that stands where one may stand, in the order of the text."""
+    return tuple(found for number, part in enumerate(parts) for found in _occurrences(part, number))
+
+
+def _occurrences(part: Statement, number: int) -> List[Occurrence]:
+    found = []
+    kind: Optional[str] = None
+    for index, token in enumerate(part.tokens):
+        start = token.start_pos or 0
+        if index == 1 and token.type == "NAME" and part.kind in DECLARED:
+            name = str(token)[1:-1]
+            found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
+        elif token.type in KEYWORDS and token.type not in _NOT_ASKED:
+            kind = _USED.get((part.kind, token.type))
+        elif kind is not None and token.type in ("WORD", "HUMAN") and (index > 1 or part.kind not in DECLARED):
+            found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
+    return found

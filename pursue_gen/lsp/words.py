@@ -1,0 +1,84 @@
+"""What the words of the language mean, in a sentence each, and statements to fill in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Tuple
+
+MEANINGS: Dict[str, str] = {
+    "POI": "A place where something can happen, or where ways meet.",
+    "CONNECT": "A way between two places, in both directions. Write it once.",
+    "EVENT": "Something that can happen: what an agent does, alone or with a partner.",
+    "RULE": "An order of events, round after round: each may happen only when it is its turn.",
+    "STATE": "Something that is true or false, and that events change.",
+    "STATEDEPENDENCY": "An event that is allowed only while a state has a value.",
+    "AGENT": "Somebody who does something: a robot, a person, a thing with a will of its own.",
+    "OBJECTIVE": "What must always hold: an answer in time, an event that never happens, two agents who never meet.",
+    "REACH_OBJECTIVE": "What is to be achieved once.",
+    "AND": "The other end of the way.",
+    "DISTANCE": "How long the way is, in the unit of distance that you chose.",
+    "LOCATION": "Where it happens (events), or where it starts (agents).",
+    "DURATION": "How long it takes, in the unit of time that you chose. Without it, it takes no time.",
+    "COLLABORATIVE": "It takes two at one place: one who can do it, and one who reacts to it.",
+    "BEFORE": "First this, then that, and then the first again.",
+    "OR": "Either of the two, round after round.",
+    "INITIALLY": "The value at the start, true or false.",
+    "TRUE": "It holds.",
+    "FALSE": "It does not hold.",
+    "TRUE_IF": "The events that make the state true.",
+    "FALSE_IF": "The events that make the state false.",
+    "ONLY_IF": "The state that the event waits for.",
+    "IS_TRUE": "The event may happen while the state is true.",
+    "IS_FALSE": "The event may happen while the state is false.",
+    "HUMAN": "An ally who follows instructions, but has no robot: the user interface tells the person what to do.",
+    "CONTROLLABLE": "The program decides what this agent does. Without it, the agent does as it likes, also the worst.",
+    "MOBILE": "It moves, and needs so many units of time for a unit of distance. A larger number is slower.",
+    "CAN_DO": "The events that it does.",
+    "REACTS_TO": "The collaborative events in which it is the partner.",
+    "IF": "After this event there has to be an answer.",
+    "THEN": "The event that has to follow.",
+    "WITHIN": "How many units of time later the answer must have come.",
+    "AVOID": "This event must never happen.",
+    "NEVER_WITH": "These two agents must never be at one place, nor meet on a way.",
+    "DO": "The event that is wanted.",
+    "AFTER": "It counts when it happens later than so many units of time after the start.",
+}
+"""What each word means, by token."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A way to write a statement. `words`: the statement with holes; a hole is {kind of thing} or {=an example}."""
+
+    title: str
+    words: str
+
+
+FORMS: Dict[str, Tuple[Form, ...]] = {
+    "POI": (Form("a place", 'poi "{=room}"'),),
+    "CONNECT": (Form("a way between two places", "connect {POI} and {POI} distance {=1}"),),
+    "EVENT": (
+        Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
+        Form("something that two do together", 'event "{=handOver}" collaborative'),
+    ),
+    "RULE": (
+        Form("events in turn", 'rule "{=order}": {event} before {event}'),
+        Form("either of two events", 'rule "{=choice}": {event} or {event}'),
+    ),
+    "STATE": (
+        Form("true or false, changed by events", 'state "{=open}": initially false, true_if {event} false_if {event}'),
+    ),
+    "STATEDEPENDENCY": (Form("an event that waits for a state", "stateDependency: {event} only_if {state} is_true"),),
+    "AGENT": (
+        Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
+        Form("somebody who does as they like", 'agent "{=visitor}" mobile {=1} location {POI} can_do {event}'),
+        Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
+    ),
+    "OBJECTIVE": (
+        Form("an answer in time", "objective: if {event} then {event} within {=20}"),
+        Form("never", "objective: avoid {event}"),
+        Form("two who never meet", "objective: {agent} never_with {agent}"),
+    ),
+    "REACH_OBJECTIVE": (Form("achieve something once", "reach_objective: do {event}"),),
+}
+"""What statements look like, by the token that begins them."""

@@ -1,0 +1,177 @@
+"""What is offered while a scenario is written."""
+
+from __future__ import annotations
+
+import re
+from typing import List
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.parser import read
+from pursue_gen.lsp.completion import complete, fill_in
+from pursue_gen.lsp.document import Document, Edit, applied
+from pursue_gen.lsp.tokens import COMMENTS, accepts
+from pursue_gen.lsp.words import FORMS, MEANINGS
+
+from .scenarios import SCENARIOS, SMALL, marked
+
+
+def labels(text: str, kind: str = "") -> List[str]:
+    plain, at = marked(text)
+    return [item.label for item in complete(Document.of(plain, "x.pur"), at) if not kind or item.kind == kind]
+
+
+WHOLE = SMALL + "{}"
+
+
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("connect |", ["a", "b"]),
+        ("connect a and |", ["b"]),
+        ('event "new" location |', ["a", "b"]),
+        ('rule "new": |', ["work", "hand", "rest"]),
+        ('rule "new": (work before |', ["hand", "rest"]),
+        ('state "new": initially true, true_if |', ["work", "hand", "rest"]),
+        ("stateDependency: |", ["work", "hand", "rest"]),
+        ("stateDependency: work only_if |", ["tired"]),
+        ('agent "new" location |', ["a", "b"]),
+        ('agent "new" location a can_do |', ["work", "hand", "rest"]),
+        ('agent "new" location a can_do work, |', ["hand", "rest"]),
+        ('agent "new" location a can_do work, re|', ["hand", "rest"]),
+        ('agent "new" location a can_do work reacts_to |', ["hand"]),  # the only collaborative one
+        ("objective: |", ["bot", "man"]),
+        ("objective: bot never_with |", ["man"]),
+        ("objective: if work then |", ["hand", "rest"]),
+        ("objective: avoid |", ["work", "hand", "rest"]),
+        ("reach_objective: do |", ["work", "hand", "rest"]),
+        ("connect a and b distance |", []),
+        ("event |", []),
+    ],
+)
+def test_names_that_fit(line: str, names: List[str]) -> None:
+    assert labels(WHOLE.format(line), "name") == names
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("connect a |", ["and"]),
+        ('event "new" |', ["location", "duration", "collaborative"]),
+        ('event "new" collaborative loc|', ["location", "duration"]),
+        ('agent "new" |', ["location", "human", "controllable", "mobile"]),
+        ('agent "new" location a |', ["can_do", "reacts_to"]),
+        ('state "new": initially |', ["true", "false"]),
+        ("objective: |", ["if", "avoid"]),
+        ('rule "new": work |', ["before", "or"]),
+        ("stateDependency: work only_if tired |", ["is_true", "is_false"]),
+        ("reach_objective: do work |", ["after"]),
+        ("nonsense here |", []),
+    ],
+)
+def test_words_that_may_come_next(line: str, words: List[str]) -> None:
+    assert labels(WHOLE.format(line), "word") == words
+
+
+def test_signs_and_values() -> None:
+    assert labels('rule "r" |', "sign") == [":"]
+    assert labels('rule "r": |', "sign") == ["("]
+    assert labels("poi |", "value") == ['"a"']
+    assert labels('poi "a" |', "value") == ["//[0, 0, 0, 0, 0, 0, 1]"]
+    assert labels('poi "a"\n|', "value") == []  # a pose stands on the line of its place
+
+
+def test_statements_begin_at_the_beginning_and_behind_a_complete_one() -> None:
+    for text in ("|", "po|", 'poi "a"\n|', 'poi "a" |', "connect a and\n|"):
+        assert len(labels(text, "statement")) == sum(len(forms) for forms in FORMS.values())
+    assert labels("connect a and |", "statement") == []
+
+
+def test_between_the_quotes_of_a_declaration_stand_names_that_are_used_only() -> None:
+    uses = 'event "w" location there\nagent "x" location there can_do e\n'
+    for text in (uses + 'poi "|', uses + 'poi "|"', uses + 'poi "th|"'):
+        plain, at = marked(text)
+        (item,) = complete(Document.of(plain, "x.pur"), at)
+        assert applied(plain, (Edit(item.start, item.end, item.insert),)).endswith('poi "there"')
+    assert labels(uses + 'event "|') == ["e"]
+
+
+@pytest.mark.parametrize("text", ["// po|", "/* p| */", 'poi "a" //[1, |', "/* never closed |"])
+def test_nothing_is_offered_in_comments(text: str) -> None:
+    assert labels(text) == []
+
+
+def test_an_agent_may_be_called_human() -> None:
+    assert labels('agent "human" location a\nobjective: |', "name") == ["human"]
+    assert "human" not in labels('agent "human" location a\nobjective: |', "word")
+
+
+def test_a_name_in_the_middle_of_a_word_replaces_all_of_it() -> None:
+    plain, at = marked(SMALL.replace("then hand", "then ha|nx"))
+    item = next(item for item in complete(Document.of(plain, "x.pur"), at) if item.label == "hand")
+    assert "if work then hand within" in applied(plain, (Edit(item.start, item.end, item.insert),))
+
+
+@settings(deadline=None, max_examples=150)
+@given(st.sampled_from(sorted(SCENARIOS)), st.data())
+def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, data: st.DataObject) -> None:
+    document = Document.of(SCENARIOS[name], name + ".pur")
+    part = data.draw(st.sampled_from(document.statements))
+    index = data.draw(st.integers(0, len(part.tokens) - 1))
+    token = part.tokens[index]
+    at = token.start_pos or 0
+    typed = data.draw(st.integers(0, len(token) - 1)) if token.type == "WORD" or token.type in KEYWORDS else 0
+    before = document.text[:at]
+    if before and not before[-1].isspace():
+        before += " "  # a word that one is still writing is completed, else
+    text = before + str(token)[:typed]
+    at = len(before)
+    if data.draw(st.booleans()) and not typed:
+        text += document.text[at:]  # what follows is there already
+    declarations = "\n".join(document.text[p.start : p.end] for p in document.statements if p.name is not None)
+    offered = complete(Document.of(text + "\n" + declarations, name + ".pur"), at + typed)
+    if token.type == "TAIL":
+        return  # understood, but nobody should write it
+    assert token.type in accepts(part.tokens[:index])
+    same = [item for item in offered if item.token == token.type]
+    assert same, f"{token!r} behind {text[max(0, at - 40) : at]!r}"
+    if token.type == "WORD":
+        assert str(token) in [item.label for item in same]
+
+
+@settings(deadline=None, max_examples=100)
+@given(st.sampled_from(sorted(SCENARIOS)), st.data())
+def test_whatever_is_offered_is_accepted(name: str, data: st.DataObject) -> None:
+    document = Document.of(SCENARIOS[name], name + ".pur")
+    part = data.draw(st.sampled_from(document.statements))
+    index = data.draw(st.integers(1, len(part.tokens)))
+    at = (part.tokens[index - 1].start_pos or 0) + len(part.tokens[index - 1])
+    before = document.text[:at] + " "
+    for item in complete(Document.of(before, name + ".pur"), at + 1):
+        assert item.token in accepts(part.tokens[:index]) or "$END" in accepts(part.tokens[:index])
+
+
+def expanded(snippet: str) -> str:
+    """A snippet as it stands when one accepts every hole's default."""
+    return re.sub(r"\$\{\d+\|([^,|]*)[^}]*\}", r"\1", re.sub(r"\$\{\d+:([^}]*)\}", r"\1", snippet))
+
+
+def test_statements_to_fill_in_are_well_formed() -> None:
+    names = {kind: list(names) for kind, names in Document.of(SMALL, "x.pur").declared.items()}
+    for token, forms in FORMS.items():
+        for form in forms:
+            for text in (fill_in(form.words, {}, plain=True), expanded(fill_in(form.words, names))):
+                assert read(text, "x.pur").diagnostics == (), text
+                assert text.startswith(KEYWORDS[token])
+
+
+def test_a_form_that_asks_twice_offers_two_names() -> None:
+    assert expanded(fill_in("connect {POI} and {POI}", {"POI": ["a", "b"]})) == "connect a and b"
+
+
+def test_every_word_has_a_meaning() -> None:
+    assert set(MEANINGS) == set(KEYWORDS)
+    assert not COMMENTS & set(KEYWORDS)

@@ -1,0 +1,176 @@
+"""Quick fixes: each mends the finding it is for."""
+
+from __future__ import annotations
+
+import re
+from typing import List
+
+import pytest
+
+from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.lsp.document import Document, applied
+from pursue_gen.lsp.fixes import _PROPOSERS, Fix, fixes
+from pursue_gen.lsp.tokens import COMMENTS
+
+from .scenarios import ROOT, SMALL
+
+
+def found(text: str) -> List[Fix]:
+    return list(fixes(Document.of(text, "x.pur"), 0, len(text)))
+
+
+def findings(text: str) -> List[Diagnostic]:
+    return list(Document.of(text, "x.pur").findings)
+
+
+def changed(old: str, new: str) -> str:
+    assert old in SMALL
+    return SMALL.replace(old, new, 1)
+
+
+MISTAKES = {
+    "PML010 quotes": changed('event "rest"', "event rest"),
+    "PML010 curly quotes": changed('event "rest"', "event “rest”"),
+    "PML010 no quotes": changed("location b can_do rest", 'location "b" can_do rest'),
+    "PML010 colon": changed('rule "order": work', 'rule "order" work'),
+    "PML010 colon behind objective": changed("objective: if", "objective if"),
+    "PML010 comma": changed("can_do work, hand", "can_do work hand"),
+    "PML010 comma in a state": changed("false, true_if", "false true_if"),
+    "PML010 misspelt word": changed("controllable", "controlable"),
+    "PML010 bracket": changed("work before hand", "(work before hand"),
+    "PML010 bracket too many": changed("work before hand", "work before hand)"),
+    "PML010 three in a row": changed("work before hand", "work before rest before hand"),
+    "PML010 objective: do": changed("reach_objective: do hand after 4", "objective: do hand"),
+    "PML011": changed('poi "b"', 'pio "b"'),
+    "PML012": changed('event "rest"', 'event "rest'),
+    "PML012 with more behind": changed('event "work" location', 'event "work location'),
+    "PML013": SMALL + "/* the end",
+    "PML015": changed('poi "a"', 'poi\u200b "a"'),
+    "PML017": changed('poi "b"', 'poi "b"\ncontrol: A<> x'),
+    "PML101": changed('poi "b"', 'poi "my b"').replace("location b", "location b"),
+    "PML103": SMALL + 'poi "a"\n',
+    "PML110": changed("do hand", "do hnd"),
+    "PML110 undeclared place": SMALL.replace('poi "b"\n', ""),
+    "PML110 undeclared event": SMALL.replace('event "rest"\n', ""),
+    "PML110 undeclared state": SMALL.replace(SMALL.split("\n")[7] + "\n", ""),
+    "PML110 in a way": changed("connect a and b", "connect a and bb"),
+    "PML130": re.sub("agent .*\n", "", SMALL),
+    "PML131": SMALL.replace("controllable ", ""),
+    "PML132": "reach_objective: do e\n",
+    "PML140": changed("distance 3", "distance 0"),
+    "PML141": changed("duration 3", "duration 0"),
+    "PML142": changed("mobile 2", "mobile 0"),
+    "PML143": changed("within 20", "within 0"),
+    "PML145": changed("distance 3\n", "distance 3\nconnect a and a distance 2\n"),
+    "PML146": changed("distance 3\n", "distance 3\nconnect b and a distance 2\n"),
+    "PML147": changed('poi "b"\n', 'poi "b"\npoi "attic"\n'),
+    "PML150": changed("can_do work, hand", "can_do hand"),
+    "PML150 nothing done yet": changed(" can_do rest reacts_to", " reacts_to"),
+    "PML151": changed(" reacts_to hand", ""),
+    "PML152": changed("can_do rest reacts_to hand", "can_do rest reacts_to hand, work"),
+    "PML153 not mobile": changed(" mobile 2", ""),
+    "PML153 no way": changed("connect a and b distance 3\n", ""),
+    "PML155": changed("can_do work, hand", "can_do work, hand reacts_to hand"),
+    "PML156": changed("can_do work, hand", "can_do work, hand, work"),
+    "PML156 in front": changed("can_do work, hand", "can_do hand, hand, work"),
+    "PML170": SMALL + "reach_objective: do work\n",
+    "PML171": re.sub("(reach_)?objective.*\n", "", SMALL),
+    "PML180": changed('agent "man"', 'agent "man" human'),
+    "PML190": 'agent "early" location a // it waits\n' + SMALL,
+}
+
+
+@pytest.mark.parametrize("case", MISTAKES)
+def test_each_proposal_mends_its_finding(case: str) -> None:
+    text, code = MISTAKES[case], case.split(" ")[0]
+    before = [f for f in findings(text) if f.code == code]
+    assert before, [f.message for f in findings(text)]
+    proposals = [fix for fix in found(text) if fix.finding.code == code]
+    assert proposals
+    for fix in proposals:
+        after = findings(applied(text, fix.edits))
+        assert fix.finding.message not in [f.message for f in after if f.code == code], fix.title
+        syntax = [f.message for f in after if f.code < "PML1"]
+        assert len(syntax) <= len([f for f in findings(text) if f.code < "PML1"]), (fix.title, syntax)
+
+
+NEED_MORE = ("PML130", "PML132", "PML110 undeclared state")  # who moves, what happens: only a person can say
+
+
+@pytest.mark.parametrize("case", [case for case in MISTAKES if case not in NEED_MORE])
+def test_the_preferred_proposals_one_after_the_other_make_it_sound(case: str) -> None:
+    text = MISTAKES[case]
+    for _ in range(6):
+        preferred = [fix for fix in found(text) if fix.preferred]
+        if not preferred:
+            break
+        text = applied(text, preferred[0].edits)
+    assert [f.message for f in findings(text)] == []
+
+
+def test_every_mistake_that_has_a_fix_is_tried() -> None:
+    assert {case.split(" ")[0] for case in MISTAKES} == set(_PROPOSERS)
+
+
+def test_every_code_with_a_fix_exists() -> None:
+    used = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "pursue_gen" / "language").glob("*.py"))
+    assert all(f'"{code}"' in used for code in _PROPOSERS)
+
+
+def test_only_findings_in_the_selection_are_mended() -> None:
+    text = changed("distance 3", "distance 0").replace("duration 3", "duration 0")
+    document = Document.of(text, "x.pur")
+    at = text.index("duration 0")
+    assert {fix.finding.code for fix in fixes(document, at, at)} == {"PML141"}
+
+
+def test_did_you_mean_comes_first() -> None:
+    titles = [fix.title for fix in found(MISTAKES["PML110"])]
+    assert titles[0] == "Write hand" and titles[-1] == 'Declare it: event "hnd"'
+
+
+def test_sorting_keeps_every_statement_and_every_comment() -> None:
+    text = """\
+// A floor, drawn on a Monday.
+
+agent "bot" controllable location a can_do e // the robot
+// what happens
+// and where
+event "e" location a /* long
+comment */
+reach_objective: do e
+control : A<>reachObj.win
+poi "a" //[0, 0, 0, 0, 0, 0, 1]
+"""
+    (fix,) = [fix for fix in found(text) if fix.finding.code == "PML190"]
+    after = applied(text, fix.edits)
+    assert (
+        after
+        == """\
+// A floor, drawn on a Monday.
+
+poi "a" //[0, 0, 0, 0, 0, 0, 1]
+
+// what happens
+// and where
+event "e" location a /* long
+comment */
+
+agent "bot" controllable location a can_do e // the robot
+
+reach_objective: do e
+control : A<>reachObj.win
+"""
+    )
+    assert not findings(after)
+
+    def told(text: str) -> List[str]:
+        return sorted(str(t) for t in Document.of(text, "x.pur").tokens if t.type in COMMENTS)
+
+    assert told(after) == told(text)
+
+
+def test_new_statements_stand_with_their_kind() -> None:
+    (fix,) = [fix for fix in found(MISTAKES["PML147"]) if fix.finding.code == "PML147"]
+    lines = applied(MISTAKES["PML147"], fix.edits).split("\n")
+    assert lines[3:5] == ["connect a and b distance 3", "connect a and attic distance 1"]

@@ -1,0 +1,69 @@
+"""What is told about what one points at."""
+
+from __future__ import annotations
+
+import pytest
+
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.hover import hover
+
+from .scenarios import SMALL, marked
+
+SMALL_WITH_MORE = SMALL.replace('"man" location', '"man" mobile 5 location')
+
+
+def told(before: str, text: str = SMALL) -> str:
+    found = hover(Document.of(text, "x.pur"), text.index(before) + len(before))
+    return "" if found is None else found.markdown
+
+
+@pytest.mark.parametrize(
+    ("before", "words"),
+    [
+        ('poi "', ["to b: distance 3", "bot 6 to 7 units of time", "starts here: bot"]),
+        ("location ", ["happens here: work", "starts here: man"]),
+        ('event "wo', ["at b", "takes 3 to 4 units of time", "done by bot", "its turn comes first in each round"]),
+        ('event "wo', ["makes tired true", "must be answered by hand within 20 units of time"]),
+        ('event "ha', ["wherever", "takes no time", "takes two", "partner is man", "its turn comes after work"]),
+        ('event "ha', ["only while tired is true", "to be achieved once, later than 4 units"]),
+        ('rule "', ["work, then hand", "only when it is their turn"]),
+        ('state "', ["false at the start", "made true by work", "made false by rest", "hand can happen only while"]),
+        ('agent "b', ["a robot", "starts at a", "2 units of time for a unit of distance", "a to b: 6 to 7 units"]),
+        ('agent "m', ["nobody controls it", "stays there", "reacts to: hand"]),
+        ("distance ", ["3 units of distance", "bot needs 6 to 7"]),
+        ("duration ", ["3 to 4 units"]),
+        ("mobile ", ["2 units of time for a unit of distance", "a to b: 6 to 7"]),
+        ("within ", ["20 units of time later at most"]),
+        ("do hand after ", ["later than 4 units"]),
+        ("colla", ["takes two at one place", "reacts to it"]),
+        ("conn", ["A way between two places", "connect a and b distance 3"]),
+    ],
+)
+def test_plain_words(before: str, words: "list[str]") -> None:
+    for word in words:
+        assert word in told(before)
+
+
+def test_everybody_who_moves_is_named_at_a_distance() -> None:
+    assert told("distance ", SMALL_WITH_MORE).endswith(
+        "- bot needs 6 to 7 units of time\n- man needs 15 to 16 units of time"
+    )
+
+
+def test_a_nested_rule_reads_from_left_to_right() -> None:
+    text = 'rule "r": ((a before b) before (c or d)) before e'
+    assert "- a, then b, then (c or d), then e" in told('rule "', text)
+
+
+def test_an_unknown_name_is_told_as_that() -> None:
+    assert told("do ", 'poi "a"\nreach_objective: do nothing') == "There is no event `nothing`."
+
+
+def test_broken_statements_do_not_hide_the_others() -> None:
+    assert "starts here: bot" in told('poi "', SMALL + "agent agent agent\n")
+
+
+@pytest.mark.parametrize("text", ["// po|i", 'poi "a"\n\n|\n\npoi "b"', "|", 'rule "r"|: a before b'])
+def test_where_there_is_nothing_to_tell(text: str) -> None:
+    plain, at = marked(text)
+    assert hover(Document.of(plain, "x.pur"), at) is None
