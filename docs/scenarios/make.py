@@ -1,0 +1,267 @@
+"""Makes what pages on scenarios tell: verdicts, times, pictures, and what happens if something is changed.
+
+    python docs/scenarios/make.py [NAME ...]
+
+People write the pages, docs/scenarios/<name>.md; between two marks stands what is made here:
+
+    <!-- made: verdict -->      can it be won, how fast, how many states and commands
+    <!-- made: map -->          the picture of the map
+    <!-- made: mission 3 -->    a picture of the simulated mission number 3
+    <!-- end -->
+
+and so does the last column of tables whose middle column holds statements in code spans: each takes the place of the
+scenario's statement on the same thing, or is added where there is none; behind "without" it is taken away.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, Dict, List, Mapping, Optional, Tuple
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from pursue_gen.diagnostics import PursueError  # noqa: E402
+from pursue_gen.files import write_texts  # noqa: E402
+from pursue_gen.language import load, parse  # noqa: E402
+from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario  # noqa: E402
+from pursue_gen.pipeline import Rules, Solution, guaranteed, played, prove  # noqa: E402
+from pursue_gen.report import map_svg, timeline  # noqa: E402
+from pursue_gen.report.recording import ending_words, simulated  # noqa: E402
+from pursue_gen.simulation.mission import Settings  # noqa: E402
+from pursue_gen.simulation.runs import Case, case_of  # noqa: E402
+from pursue_gen.synthesis.optimize import Guarantee  # noqa: E402
+from pursue_gen.synthesis.solve import Verdict, solve  # noqa: E402
+from pursue_gen.tga import scenario_objective, translate  # noqa: E402
+from pursue_gen.tga.network import Kind  # noqa: E402
+from pursue_gen.workspace import Options  # noqa: E402
+from pursue_gen.workspace.layout import poses  # noqa: E402
+
+SCENARIOS, DOCS = ROOT / "scenarios", ROOT / "docs"
+PAGES, INDEX = DOCS / "scenarios", DOCS / "scenarios.md"
+
+UNTIL = 120.0
+"""So long, in time units, a mission is simulated that has no goal."""
+
+_LARGE = 50_000
+"""In so many symbolic states of the checker the worst time is looked for."""
+
+_PART = re.compile(r"(<!-- made: (\w+)(?: (\d+))? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+_WHAT_IF = re.compile(r"^(\| [^|\n]+ \| ([^|\n]*`[^|\n]*) \|)([^|\n]*)\|$", re.MULTILINE)
+_STATEMENT = re.compile(r"(without )?`([^`]+)`")
+_SAME = {"connect": 4, "objective:": 1, "reach_objective:": 1}
+"""So many words of a statement tell what it is on; of all others two."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What was found out about a scenario in the default game; `won` is None where it is lost."""
+
+    name: str
+    scenario: Scenario
+    states: int
+    won: Optional[Solution]
+    guarantee: Optional[Guarantee]
+
+
+def scenario_files() -> Dict[str, Path]:
+    """All scenarios of the project by the names of their pages, in the order of their folders."""
+    return {path.stem: path for path in sorted(SCENARIOS.rglob("*.pur"))}
+
+
+def facts(path: Path) -> Facts:
+    """Solves a scenario and proves the strategy."""
+    scenario = load(path)
+    network, objective, rules = translate(scenario), scenario_objective(scenario), Rules()
+    verdict = _verdict(scenario)
+    assert verdict.stats is not None
+    states = verdict.stats.discrete_states
+    if verdict.strategy is None:
+        return Facts(path.stem, scenario, states, None, None)
+    game = played(network, rules)
+    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks)
+    won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
+    time = None if objective.kind is Kind.SAFETY else guaranteed(won, _LARGE)
+    return Facts(path.stem, scenario, states, won, time)
+
+
+def _verdict(scenario: Scenario) -> Verdict:
+    """Whether the default game is won; that takes less time than a proof."""
+    rules = Rules()
+    return solve(played(translate(scenario), rules), scenario_objective(scenario), rules.reaction)
+
+
+def case(found: Facts) -> Case:
+    """What is simulated: the workspace as `pursue-gen ws` writes it, against all kinds of opponents."""
+    assert found.won is not None, f"{found.name} is lost"
+    goal = found.won.objective.kind is not Kind.SAFETY
+    return case_of(found.scenario, found.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
+
+
+# Pages ----------------------------------------------------------------------------------------------------------------
+
+
+def page(text: str, found: Facts) -> Tuple[str, Dict[str, str]]:
+    """The page with all that is made here made anew, and its pictures by the names of their files."""
+    pictures: Dict[str, str] = {}
+
+    def part(match: "re.Match[str]") -> str:
+        made = _PARTS[match.group(2)](found, int(match.group(3) or 0), pictures)
+        return f"{match.group(1)}\n{made}\n\n{match.group(5)}"
+
+    def row(match: "re.Match[str]") -> str:
+        return f"{match.group(1)} {_if(found.scenario.text, match.group(2))} |"
+
+    return _WHAT_IF.sub(row, _PART.sub(part, text)), pictures
+
+
+def _told_verdict(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+    file = f"scenarios/{_name(found)}.pur"
+    looked = f"The solver looked at {found.states:,} states"
+    command = f"    pursue-gen solve {file}"
+    if found.won is None:
+        return f"**It cannot be done**: the others can always prevent it. {looked}.\n\n{command}"
+    count = sum(len(block.commands) for block in found.won.strategy.blocks)
+    has = f"{looked}; the strategy has {count} commands, and a second program has proven it."
+    if found.guarantee is None:
+        told = "**It can be done**, whatever the others do, and for as long as one likes."
+    else:
+        told = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
+    see = f"    pursue-gen sim {file}\n    ./run mission {file} web:=true"
+    return f"{told} {has}\n\n{command}\n{see}"
+
+
+def _told_map(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+    where, computed = poses(found.scenario)
+    pictures[f"{found.name}_map.svg"] = map_svg.draw(found.scenario, where, computed)
+    return f"![Map of {found.name}]({found.name}_map.svg)"
+
+
+def _told_mission(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+    recording = simulated(case(found), number)
+    pictures[f"{found.name}_mission.svg"] = timeline.draw(recording)
+    how = f"`pursue-gen sim scenarios/{_name(found)}.pur --runs 1 --seed {number} --timeline mission.html`"
+    if found.guarantee is None:
+        how = how[:-1] + f" --until {UNTIL:g}`"
+    picture = f"![A mission of {found.name}]({found.name}_mission.svg)"
+    end = ending_words(recording)
+    return f"{picture}\n\nSimulated mission {number}, {end} ({how} draws it and moves it on the map)."
+
+
+_PARTS: Mapping[str, Callable[[Facts, int, Dict[str, str]], str]] = {
+    "verdict": _told_verdict,
+    "map": _told_map,
+    "mission": _told_mission,
+}
+
+
+def _name(found: Facts) -> str:
+    return scenario_files()[found.name].relative_to(SCENARIOS).with_suffix("").as_posix()
+
+
+def _time(found: Facts) -> str:
+    """The guaranteed time, for people; rounded up, so that it holds."""
+    if found.guarantee is None:
+        return "-"
+    worst = found.guarantee.worst
+    return "not found out" if worst is None else f"{math.ceil(worst * 10) / 10:.1f}"
+
+
+# What happens if ------------------------------------------------------------------------------------------------------
+
+
+def _if(text: str, changes: str) -> str:
+    """The verdict on a scenario with these statements changed."""
+    changed = edited(text, changes)
+    if changed == text:
+        raise ValueError(f"this changes nothing: {changes}")
+    return "cannot be done" if _verdict(parse(changed, "changed.pur", "changed")).strategy is None else "can be done"
+
+
+def edited(text: str, changes: str) -> str:
+    """The scenario's text with the statements in the code spans of `changes`."""
+    parts = re.split(r"\n(?!\s)", text)  # what is indented goes on with the statement above it
+    for away, statement in _STATEMENT.findall(changes):
+        found = [k for k, part in enumerate(parts) if _same(part, statement)]
+        if away and not found:
+            raise ValueError(f"there is no such statement: {statement}")
+        for k in found:
+            parts[k] = "" if away else statement
+        if not found:
+            parts.append(statement)
+    return "\n".join(parts)
+
+
+def _same(part: str, statement: str) -> bool:
+    """True if both state something on the same thing."""
+    words = statement.split()
+    count = _SAME.get(words[0], 2)
+    return part.split()[:count] == words[:count]
+
+
+# The index ------------------------------------------------------------------------------------------------------------
+
+
+HEAD = "| scenario | agents | places | what is wanted | verdict | guaranteed time | states |\n|" + " --- |" * 4 + \
+    " --- | ---: | ---: |"
+
+
+def row(found: Facts) -> str:
+    """The scenario's line in the index."""
+    agents, count = found.scenario.agents, len(found.scenario.pois)
+    told = ", ".join(agent.name if agent.controllable else f"*{agent.name}*" for agent in agents)
+    verdict = "can be done" if found.won else "**cannot**"
+    wanted = "; ".join(f"`{text}`" for text in _wanted(found.scenario))
+    link = f"[{_name(found)}](scenarios/{found.name}.md)"
+    return f"| {link} | {told} | {count} | {wanted} | {verdict} | {_time(found)} | {found.states:,} |"
+
+
+def _wanted(scenario: Scenario) -> List[str]:
+    """The objectives, as the scenario has them."""
+    found = []
+    safety = scenario.safety
+    if isinstance(safety, Respond):
+        found.append(f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}")
+    elif isinstance(safety, Avoid):
+        found.append(f"avoid {safety.event.name}")
+    elif isinstance(safety, NeverWith):
+        found.append(f"{safety.first.name} never_with {safety.second.name}")
+    if scenario.reach is not None:
+        found.append(f"do {scenario.reach.event.name}")
+    return found
+
+
+def index(text: str, rows: Mapping[str, str]) -> str:
+    """The index with these lines, by name, in place of those that it has; all in the order of the folders."""
+    part = re.search(r"(<!-- made: table -->\n).*?(<!-- end -->)", text, re.DOTALL)
+    assert part is not None, "the index has a place for its table"
+    known = {name: line for line in part.group(0).split("\n") for name in re.findall(r"\(scenarios/(\w+)\.md\)", line)}
+    known.update(rows)
+    table = "\n".join([HEAD, *(known[name] for name in scenario_files() if name in known)])
+    return f"{text[:part.start()]}{part.group(1)}\n{table}\n\n{part.group(2)}{text[part.end():]}"
+
+
+def main(names: List[str]) -> int:
+    """Makes these pages, or all, and the index."""
+    files, rows = scenario_files(), {}
+    for name in names or list(files):
+        try:
+            found = facts(files[name])
+        except PursueError as problem:
+            print(f"{name}: {problem}", file=sys.stderr)
+            return problem.exit_status
+        rows[name] = row(found)
+        target = PAGES / f"{name}.md"
+        made, pictures = page(target.read_text(encoding="utf-8"), found)
+        write_texts({target: made, **{PAGES / file: svg for file, svg in pictures.items()}})
+        print(target.relative_to(ROOT))
+    write_texts({INDEX: index(INDEX.read_text(encoding="utf-8"), rows)})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
