@@ -1,0 +1,1 @@
+"""Design time → robots (thesis: Rest2Ros): missions as signed bundles of data, and what sends them."""

@@ -1,0 +1,65 @@
+"""How robots stand once they were asked or sent something, and what is wrong where that is not as it was wanted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import List, Optional, Sequence, Tuple
+
+from pursue_gen.console import count, quoted
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.transport.client import Status
+from pursue_gen.transport.send_checks import DIFFERENT, UNCHANGED
+from pursue_gen.transport.sender import Row, Sent
+from pursue_gen.workspace.mission_manifest import mission_id
+
+_ONCE_MORE = (
+    "see the table; pursue-gen explain TRN034 tells for each reason what to do. Once that is mended, say the same again"
+)
+
+
+def all_reached(rows: Sequence[Row], hint: str = _ONCE_MORE) -> List[Status]:
+    """What all robots say of themselves. Raises PursueError (exit status 7) where one is out of reach."""
+    lost = [row.robot.name for row in rows if row.after is None]
+    if lost:
+        raise PursueError([error("TRN034", f"cannot reach {', '.join(lost)}", hint=hint)], UNCHANGED)
+    return [row.after for row in rows if row.after is not None]
+
+
+def check_alike(rows: Sequence[Row]) -> None:
+    """Raises PursueError where robots are out of reach (exit status 7), or differ in their missions (8)."""
+    statuses = all_reached(rows, "is it on, and its address right? pursue-gen explain TRN034 tells more")
+    if len({status.standing for status in statuses}) > 1:
+        hint = "send one mission to all of them, or go back: --back"
+        raise PursueError([error("TRN035", "the robots do not have the same mission", hint=hint)], DIFFERENT)
+
+
+def after_waiting(sent: Sent, rows: Sequence[Row]) -> Tuple[Row, ...]:
+    """The rows as they are after the wait, with what was there before."""
+    found = []
+    for old, new in zip(sent.rows, rows):
+        after = new.after or old.after
+        there = after is not None and after.current == sent.mission and after.next is None
+        changed = "changed" if not old.same else old.outcome
+        found.append(replace(old, after=after, outcome=changed if there else old.outcome))
+    return tuple(found)
+
+
+def success(sent: Sent, rows: Sequence[Row], waited: Optional[float], to: Path) -> str:
+    """The last words on what was sent. `waited`: seconds; `to`: the file of the robots.
+
+    Raises PursueError where it was not done (exit status 7, 8), or has not taken effect after the wait (5).
+    """
+    if not sent.done and sent.unchanged:
+        raise PursueError([error("TRN034", f"nothing has changed. {sent.trouble}", hint=_ONCE_MORE)], UNCHANGED)
+    if not sent.done:
+        hint = f"look again: pursue-gen send --status --to {quoted(to)}; then send the mission once more"
+        raise PursueError([error("TRN035", f"the robots differ. {sent.trouble}", hint=hint)], DIFFERENT)
+    name = mission_id(sent.mission)
+    late = [row.robot.name for row in rows if row.after is None or row.after.current != sent.mission]
+    if late and waited is not None:
+        message = f"after {waited:g} s a mission is still under way: {', '.join(late)}"
+        hint = f"{name} takes effect when it has ended, or is stopped"
+        raise PursueError([error("TRN036", message, hint=hint)], exit_status=5)
+    who = f"{count(len(rows), 'machine')} of {to} {'has' if len(rows) == 1 else 'have'}"
+    return f"{who} the mission {name}{'; it takes effect when the one under way has ended' if late else ''}."
