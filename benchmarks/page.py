@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict, Mapping, Optional
 
 from benchmarks import tables
 
@@ -12,18 +12,25 @@ Results = Dict[str, Any]
 _PART = re.compile(r"(<!-- measured: ([a-z ]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
-def filled(page: Optional[str], results: Results) -> str:
-    """The page with its measured parts made anew; where there is none yet, one of measured parts alone.
+def filled(
+    page: Optional[str],
+    results: Results,
+    parts: Optional[Mapping[str, Callable[[Results], str]]] = None,
+    title: str = "Benchmarks",
+) -> str:
+    """The page with its measured parts made anew (PARTS, unless others are given); where there is none yet, one of
+    measured parts alone.
 
     Raises ValueError for a mark that names no part.
     """
+    known = PARTS if parts is None else parts
     if page is None:
-        page = "# Benchmarks\n\n" + "\n".join(f"<!-- measured: {part} -->\n<!-- end -->\n" for part in PARTS)
+        page = f"# {title}\n\n" + "\n".join(f"<!-- measured: {part} -->\n<!-- end -->\n" for part in known)
 
     def part(match: "re.Match[str]") -> str:
-        if match.group(2) not in PARTS:
-            raise ValueError(f"the page asks for '{match.group(2)}'; there is {', '.join(PARTS)}")
-        return f"{match.group(1)}\n{PARTS[match.group(2)](results)}\n{match.group(4)}"
+        if match.group(2) not in known:
+            raise ValueError(f"the page asks for '{match.group(2)}'; there is {', '.join(known)}")
+        return f"{match.group(1)}\n{known[match.group(2)](results)}\n{match.group(4)}"
 
     return _PART.sub(part, page)
 

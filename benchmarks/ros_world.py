@@ -1,0 +1,129 @@
+"""ROS for benchmarks: a master of their own, generated workspaces run from where they stand, processes measured."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Dict, Iterator, List, Mapping, Optional
+
+from pursue_gen.language import parse
+from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.workspace import Options, write_workspace
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class World:
+    """A roscore on a free port, and the processes that were started there; `home` holds ROS's files and the logs."""
+
+    def __init__(self, home: Path) -> None:
+        if not shutil.which("roscore"):
+            raise SystemExit("this benchmark needs ROS 1: roscore is not on PATH")
+        self.home = home
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.variables = {
+            "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+            "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(home),
+            "ROS_LOG_DIR": str(home / "log"),
+        }
+        self._environment = {**os.environ, **self.variables}
+        self.running: Dict[str, "subprocess.Popen[bytes]"] = {}
+        self.start("roscore", ["roscore", "-p", str(port)])
+        deadline = time.monotonic() + 30
+        while self.run(["rosparam", "get", "/run_id"]).returncode:
+            if time.monotonic() > deadline:
+                raise SystemExit(f"roscore does not come up; see {home}/roscore.txt")
+
+    def start(self, name: str, command: List[str], **more: str) -> "subprocess.Popen[bytes]":
+        """Starts a process; what it says goes to <home>/<name>.txt."""
+        with open(self.home / f"{name}.txt", "wb") as log:
+            process = subprocess.Popen(
+                command,
+                cwd=str(ROOT),
+                env={**self._environment, **more},
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        self.running[name] = process
+        return process
+
+    def run(self, command: List[str]) -> "subprocess.CompletedProcess[str]":
+        """Runs a command to its end."""
+        return subprocess.run(command, env=self._environment, capture_output=True, text=True, timeout=60, check=False)
+
+    def node(self, workspace: Path, package: str, script: str = "", *arguments: str) -> None:
+        """Starts a node of a generated workspace, which needs no build for that."""
+        script = script or package
+        program = workspace / "src" / package / "scripts" / script
+        self.start(script, [sys.executable, str(program), *arguments])
+
+    def stop(self, *names: str) -> None:
+        """Ends these processes, politely at first; all of them where none is named."""
+        chosen = [name for name in reversed(list(self.running)) if not names or name in names]
+        for sign, patience in ((signal.SIGINT, 5.0), (signal.SIGKILL, 5.0)):
+            alive = [self.running[name] for name in chosen if self.running[name].poll() is None]
+            for process in alive:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, sign)
+            deadline = time.monotonic() + patience
+            for process in alive:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(max(0.1, deadline - time.monotonic()))
+        for name in chosen:
+            del self.running[name]
+
+    def log(self, name: str) -> str:
+        """What a process has said."""
+        return (self.home / f"{name}.txt").read_text(errors="replace")
+
+
+@contextlib.contextmanager
+def world(home: Path) -> Iterator[World]:
+    """A world whose processes end with it."""
+    there = World(home)
+    try:
+        yield there
+    finally:
+        there.stop()
+
+
+def generated(text: str, name: str, folder: Path, rules: Optional[Rules] = None) -> Path:
+    """The workspace of a scenario's text, as `pursue-gen ws` writes it."""
+    scenario = parse(text, f"{name}.pur", name)
+    rules = rules or Rules()
+    won = solve_scenario(scenario, rules)
+    return write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
+
+
+def cpu_seconds(process: "subprocess.Popen[bytes]") -> float:
+    """The processor time that the process has used so far."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def resident_kib(process: "subprocess.Popen[bytes]") -> int:
+    """The memory of the process that is in RAM, in KiB."""
+    status = Path(f"/proc/{process.pid}/status").read_text()
+    return int(status.split("VmRSS:")[1].split()[0])
+
+
+def idle_load(there: World, seconds: float) -> Mapping[str, float]:
+    """The share of a core that each process uses over so many seconds."""
+    before = {name: cpu_seconds(process) for name, process in there.running.items()}
+    start = time.monotonic()
+    time.sleep(seconds)
+    passed = time.monotonic() - start
+    return {name: (cpu_seconds(there.running[name]) - used) / passed for name, used in before.items()}
