@@ -12,6 +12,8 @@ from setuptools.command.build_ext import build_ext
 from setuptools.command.build_py import build_py
 
 TEMPLATES = "templates/catkin"
+PAGES = "docs/diagnostics"
+EXAMPLES = "scenarios"
 
 
 def native_modules() -> List[Any]:
@@ -62,16 +64,22 @@ class OptionalBuild(build_ext):
 
 
 class WithTemplates(build_py):
-    """Puts the templates of catkin packages beside the modules; an editable installation finds them in the checkout."""
+    """Puts the templates of catkin packages, the pages on messages and the scenarios beside the modules.
+
+    An editable installation finds them in the checkout.
+    """
 
     def run(self) -> None:
-        """Copies what pursue_gen.workspace.templates_dir looks for."""
+        """Copies what pursue_gen.workspace.templates_dir, .cli_explain and .authoring.examples look for."""
         super().run()
         if getattr(self, "editable_mode", False):
             return
-        target = Path(self.build_lib) / "pursue_gen" / "_templates"
-        shutil.rmtree(target, ignore_errors=True)  # nothing of an earlier build stays
-        shutil.copytree(TEMPLATES, str(target), ignore=shutil.ignore_patterns("__pycache__", ".*"))
+        stories = ("*.md", "*.png", "*.svg")  # of the scenarios themselves only
+        parts = ((TEMPLATES, "_templates", ()), (PAGES, "_diagnostics", ()), (EXAMPLES, "_scenarios", stories))
+        for folder, name, left_out in parts:
+            target = Path(self.build_lib) / "pursue_gen" / name
+            shutil.rmtree(target, ignore_errors=True)  # nothing of an earlier build stays
+            shutil.copytree(folder, str(target), ignore=shutil.ignore_patterns("__pycache__", ".*", *left_out))
 
 
 setup(ext_modules=native_modules(), cmdclass={"build_ext": OptionalBuild, "build_py": WithTemplates})

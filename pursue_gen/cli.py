@@ -3,43 +3,48 @@
 from __future__ import annotations
 
 import json
-import shlex
 import sys
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
+from typing import List, Optional
 
 import typer
 
 from pursue_gen import __version__
+from pursue_gen.cli_bundle import bundle
+from pursue_gen.cli_examples import examples
+from pursue_gen.cli_explain import explain as explain_code
+from pursue_gen.cli_fmt import fmt
+from pursue_gen.cli_keys import keys
+from pursue_gen.cli_lsp import lsp
+from pursue_gen.cli_new import new
 from pursue_gen.cli_options import (
     ENDS,
     EXPLAIN,
     GAME,
-    JSON,
     LIMIT,
     MARGIN,
     MEMORY,
     OPTIMIZE,
-    REACH_OBJ,
     REACTION,
     SCENARIO,
     SLACK,
     SOLVER,
     VERIFYTGA,
-    Controllers,
     Ends,
     Engine,
     Optimize,
     Solver,
+    value,
 )
-from pursue_gen.console import count, guarded, show, suggest, tell, usage
-from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, in_order
-
-if TYPE_CHECKING:
-    from pursue_gen.language.scenario import Scenario
-    from pursue_gen.tga.network import Network, Objective
-
+from pursue_gen.cli_play import play
+from pursue_gen.cli_replan import replan
+from pursue_gen.cli_replay import replay
+from pursue_gen.cli_report import report
+from pursue_gen.cli_send import send
+from pursue_gen.cli_sim import sim
+from pursue_gen.cli_ws import ws
+from pursue_gen.console import count, guarded, quoted, show, suggest, tell, usage
+from pursue_gen.diagnostics import PursueError, Severity, as_json
 
 app = typer.Typer(
     name="pursue-gen",
@@ -50,7 +55,8 @@ app = typer.Typer(
     help="From a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot.",
     epilog="Data goes to stdout, everything else to stderr. Exit status: 0 well; 2 the command line or a file is "
     "wrong; 3 the scenario has errors; 4 the objective cannot be met, or a plan does not win; 5 a limit was hit; 6 "
-    "something that is needed is missing; 130 interrupted.",
+    "something that is needed is missing; 7 robots could not be reached or refused, and nothing has changed; 8 the "
+    "robots differ; 130 interrupted.",
 )
 
 
@@ -90,7 +96,9 @@ def check(
 
     Findings go to stdout; the exit status is 3 where there are errors.
     """
-    findings = [finding for file in files for finding in _findings(file)]
+    from pursue_gen.reading import findings_in
+
+    findings = [finding for file in files for finding in findings_in(file)]
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
     else:
@@ -98,8 +106,9 @@ def check(
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
     tell(f"{count(len(files), 'file')}: {count(errors, 'error')}, {count(len(findings) - errors, 'warning')}")
     if errors:
+        suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(3)
-    suggest(f"pursue-gen ws {_quoted(files[0])}")
+    suggest(f"pursue-gen ws {quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
@@ -116,14 +125,15 @@ def tga(
     from pursue_gen.files import write_texts
     from pursue_gen.game_options import asked_rules
     from pursue_gen.pipeline import played
+    from pursue_gen.reading import game_of, scenario_in
     from pursue_gen.tga.uppaal import write_network, write_query
 
-    network, objective = _game_of(_scenario(scenario))
+    network, objective = game_of(scenario_in(scenario))
     network = played(network, asked_rules(network, ends.value, "0", slack))
     model, query = folder / "TGA.xml", folder / "TCTL.q"
     write_texts({model: write_network(network, objective), query: write_query(objective)})
     print(model, query, sep="\n")
-    suggest(f"pursue-gen solve {_quoted(model)} {_quoted(query)}")
+    suggest(f"pursue-gen solve {quoted(model)} {quoted(query)}")
 
 
 @app.command(
@@ -160,14 +170,15 @@ def solve(
     from pursue_gen.files import write_texts
     from pursue_gen.game_options import asked_limits, asked_rules, margins_told, verdict_json, verdict_text
     from pursue_gen.progress import progress_line
+    from pursue_gen.reading import game_in
     from pursue_gen.solvers import keep_counter, margins, solved
     from pursue_gen.synthesis.plan import write_plan
 
-    network, objective = _game(files)
-    rules, limits = asked_rules(network, _value(ends), reaction, slack), asked_limits(limit, memory)
+    network, objective = game_in(files)
+    rules, limits = asked_rules(network, value(ends), reaction, slack), asked_limits(limit, memory)
     try:
         with progress_line(as_json_) as progress:
-            asked = (_value(solver), verifytga, limits, _value(engine), progress, _value(optimize))
+            asked = (value(solver), verifytga, limits, value(engine), progress, value(optimize))
             won = solved(network, objective, rules, *asked)
     except PursueError as problem:
         keep_counter(problem, network, objective, output)
@@ -188,7 +199,7 @@ def solve(
     tell(verdict_text(rules, won))
     tell(margins_told(won, *found))
     if len(files) == 1:
-        suggest(f"pursue-gen ws {_quoted(files[0])}")
+        suggest(f"pursue-gen ws {quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
@@ -208,11 +219,12 @@ def verify(
     """
     from pursue_gen.game_options import asked_limits, games_to_try, in_words
     from pursue_gen.plans import exit_status, try_plan
+    from pursue_gen.reading import game_in
 
     if len(files) < 2:
         raise usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
-    network, objective = _game(files[:-1])
-    games = games_to_try(network, _value(ends), reaction, slack)
+    network, objective = game_in(files[:-1])
+    games = games_to_try(network, value(ends), reaction, slack)
     tried = try_plan(files[-1], network, objective, games, asked_limits(limit, memory))
     for trial in tried:
         print(f"{in_words(trial.rules)}: {trial.outcome}")
@@ -221,176 +233,20 @@ def verify(
         raise typer.Exit(exit_status(tried))
 
 
-@app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur")
-@guarded
-def report(
-    scenario: Path = SCENARIO,
-    reach_obj: Optional[str] = typer.Option(
-        None,
-        metavar="dedicated|all|ROBOT",
-        help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
-    ),
-    optimize: Optional[Optimize] = OPTIMIZE,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
-    as_json_: bool = JSON,
-) -> None:
-    """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios."""
-    from pursue_gen.game_options import asked_limits
-    from pursue_gen.pipeline import IDEAL, Rules
-    from pursue_gen.progress import progress_line
-    from pursue_gen.report import commands
-    from pursue_gen.solvers import margins, solved
-    from pursue_gen.synthesis.margin import as_json as margin_json
-    from pursue_gen.synthesis.margin import told
-
-    read = _scenario(scenario)
-    network, objective = _game_of(read)
-    limits = asked_limits(limit, memory)
-    with progress_line(as_json_) as progress:
-        asked = (None, None, limits, None, progress, _value(optimize))
-        both = [solved(network, objective, rules, *asked) for rules in (Rules(), IDEAL)]
-        found = [margins(won, False, limits)[0] for won in both]
-    game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
-    table = commands.commands_table(read.name, read.agents, game, ideal, reach_obj)
-    if as_json_:
-        of_games = {name: margin_json(margin) for name, margin in zip(("default", "ideal"), found)}
-        times = {name: won.guarantee.as_json() for name, won in zip(("default", "ideal"), both) if won.guarantee}
-        extra = {"margins": of_games, **({"times": times} if times else {})}
-        print(json.dumps({**commands.as_json(table), **extra}, indent=1))
-        return
-    print(commands.render_table(table))
-    for name, won, margin in zip(("default", "ideal"), both, found):
-        print(f"{name} game: {told(margin, won.strategy)}")
-        if won.guarantee:
-            print(f"{name} game: {won.guarantee.in_words()}")
-
-
-@app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")
-@guarded
-def ws(
-    scenario: Path = SCENARIO,
-    folder: Optional[Path] = typer.Option(
-        None, "-o", "--output", metavar="DIR", help="Where the workspace goes; workspace_out/<scenario> by default."
-    ),
-    controllers: Controllers = typer.Option(
-        Controllers.DISTRIBUTED,
-        help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
-    ),
-    reach_obj: str = REACH_OBJ,
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    plan: Optional[Path] = typer.Option(
-        None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving."
-    ),
-    solver: Optional[Solver] = SOLVER,
-    verifytga: Optional[Path] = VERIFYTGA,
-    optimize: Optional[Optimize] = OPTIMIZE,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
-    explain: bool = EXPLAIN,
-    force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
-) -> None:
-    """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
-
-    The folder is printed on stdout.
-    """
-    from pursue_gen.explanation.told import why
-    from pursue_gen.game_options import asked_limits, asked_rules, games_to_try, verdict_text
-    from pursue_gen.plans import take_plan
-    from pursue_gen.progress import progress_line
-    from pursue_gen.solvers import solved
-    from pursue_gen.synthesis.margin import QUICK, strategy_margin, told
-    from pursue_gen.workspace import Options, write_workspace
-
-    read = _scenario(scenario)
-    network, objective = _game_of(read)
-    if controllers is Controllers.GENERAL and ends is None:
-        ends = Ends.CONTROLLABLE
-        tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    limits = asked_limits(limit, memory)
-    if plan is None:
-        rules = asked_rules(network, _value(ends), reaction, slack)
-        try:
-            with progress_line() as progress:
-                asked = (_value(solver), verifytga, limits, None, progress, _value(optimize))
-                won = solved(network, objective, rules, *asked)
-        except PursueError as problem:
-            if why(problem, (scenario,), rules, explain, limits):
-                raise typer.Exit(problem.exit_status) from None
-            raise
-        tell(verdict_text(rules, won))
-    elif solver is not None or verifytga is not None:
-        raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")
-    else:
-        won = take_plan(plan, network, objective, games_to_try(network, _value(ends), reaction, slack), limits)
-    late = told(strategy_margin(won.network, objective, won.strategy, won.reaction, QUICK, limits), won.strategy)
-    tell(late)
-    options = Options(controllers=controllers.value, reach_obj=reach_obj, reaction=won.reaction, margin=late)
-    place = write_workspace(read, won.network, objective, won.strategy, options, folder, force)
-    print(place)
-    tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
-    launch = f"roslaunch {read.name}_bringup mission.launch"
-    suggest(f"cd {_quoted(place)} && catkin_make", "source devel/setup.bash", launch)
-
-
-# What the commands share ----------------------------------------------------------------------------------------------
-
-
-def _findings(file: Path) -> Tuple[Diagnostic, ...]:
-    """Everything there is to say about a scenario file."""
-    from pursue_gen.language.checks import check_reading
-    from pursue_gen.language.parser import read, read_text
-    from pursue_gen.tga import translation_notes
-
-    try:
-        reading = read(read_text(str(file)), str(file))
-    except PursueError as problem:
-        return problem.diagnostics
-    findings = check_reading(reading)
-    if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
-        return findings
-    return in_order((*findings, *translation_notes(reading.scenario)))
-
-
-def _scenario(file: Path) -> Scenario:
-    """The scenario in a file; its warnings are told."""
-    from pursue_gen.language import load
-
-    if file.suffix == ".xml":
-        raise usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
-    scenario = load(file)
-    show(_findings(file))
-    return scenario
-
-
-def _game_of(scenario: Scenario) -> Tuple[Network, Objective]:
-    from pursue_gen.tga import scenario_objective, translate
-
-    return translate(scenario), scenario_objective(scenario)
-
-
-def _game(files: Sequence[Path]) -> Tuple[Network, Objective]:
-    """The ideal game of a scenario, or of UPPAAL's two files."""
-    from pursue_gen.files import read_text
-    from pursue_gen.tga.uppaal import read_network, read_query
-
-    if len(files) == 1 and files[0].suffix != ".xml":
-        return _game_of(_scenario(files[0]))
-    if len(files) != 2:
-        raise usage("expected one scenario, or a network and its query", f"pursue-gen solve {GAME}")
-    model, query = files
-    network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
-    return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))
-
-
-def _quoted(path: Path) -> str:
-    return shlex.quote(str(path))
-
-
-def _value(choice: Optional[Enum]) -> Optional[str]:
-    return None if choice is None else str(choice.value)
+app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")(ws)
+app.command("explain", epilog="For example: pursue-gen explain PML110")(explain_code)
+app.command(epilog="For example: pursue-gen play scenarios/thesis/catch_the_thief.pur")(play)
+app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur --html")(report)
+app.command(epilog="For example: pursue-gen replay mission.bag")(replay)
+app.command(epilog="For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4")(sim)
+app.command(epilog="For example: pursue-gen fmt my_floor.pur")(fmt)
+app.command(epilog="For example: pursue-gen new my_floor --kind reach --robots 2")(new)
+app.command(epilog="For example: pursue-gen examples thesis/scenario_1")(examples)
+app.command(epilog="For example: pursue-gen replan < request.json")(replan)
+app.command(epilog="For example, in an editor's settings: pursue-gen lsp")(lsp)
+app.add_typer(keys, name="keys")
+app.command(epilog="For example: pursue-gen bundle my_floor.pur --poses lab.yaml --key lab")(bundle)
+app.command(epilog="For example: pursue-gen send my_floor.pur --to robots.yaml --poses lab.yaml")(send)
 
 
 if __name__ == "__main__":

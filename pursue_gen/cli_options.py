@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import Optional
 
 import typer
+
+
+def value(choice: Optional[Enum]) -> Optional[str]:
+    """The word that was chosen, if any."""
+    return None if choice is None else str(choice.value)
 
 
 class Ends(str, Enum):
@@ -86,3 +92,17 @@ MARGIN = typer.Option(
     help="Find the margin however long it takes, and the game's: the largest reaction for which it can be won at all.",
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
+PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
+CONTROLLERS = typer.Option(Controllers.DISTRIBUTED, help="As for ws.")
+KEY = typer.Option(
+    None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
+)
+POSES = typer.Option(
+    None, metavar="FILE", help="Where the points are on the robots' map: a file like config/poses.yaml of a workspace."
+)
+COMPUTED_POSES = typer.Option(
+    False, "--computed-poses", help="Points without a pose get a computed one: for simulated robots only."
+)
+KEYS = typer.Option(
+    None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."
+)

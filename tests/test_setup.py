@@ -71,12 +71,37 @@ def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+def test_the_wheel_carries_the_pages_on_messages(unpacked: Path, tmp_path: Path) -> None:
+    assert tree(unpacked / "pursue_gen" / "_diagnostics") == tree(ROOT / "docs" / "diagnostics")
+    installed = {**os.environ, "PYTHONPATH": str(unpacked)}
+    done = called([sys.executable, "-m", "pursue_gen", "explain", "PML110"], tmp_path, installed)
+    assert (done.returncode, done.stdout) == (0, (ROOT / "docs" / "diagnostics" / "PML110.md").read_text("utf-8"))
+
+
 def test_the_wheel_carries_all_templates_and_the_grammar(unpacked: Path) -> None:
     def files(folder: Path) -> Dict[str, bytes]:
         return {path: content for path, content in tree(folder).items() if "cache" not in path}
 
     assert files(unpacked / "pursue_gen" / "_templates") == files(ROOT / "templates" / "catkin")
     assert (unpacked / "pursue_gen" / "language" / "grammar.lark").is_file()
+
+
+def test_the_wheel_carries_the_scenarios(unpacked: Path, tmp_path: Path) -> None:
+    def scenarios(folder: Path) -> Dict[str, bytes]:
+        return {path: content for path, content in tree(folder).items() if path.endswith(".pur")}
+
+    assert scenarios(unpacked / "pursue_gen" / "_scenarios") == scenarios(ROOT / "scenarios") != {}
+    installed = {**os.environ, "PYTHONPATH": str(unpacked)}
+    done = called([sys.executable, "-m", "pursue_gen", "examples", "scenario_1"], tmp_path, installed)
+    assert done.returncode == 0, done.stdout
+    assert (tmp_path / SCENARIO.name).read_bytes() == SCENARIO.read_bytes()
+
+
+def test_the_wheel_carries_what_pages_are_made_of(unpacked: Path) -> None:
+    def parts(folder: Path) -> Dict[str, bytes]:
+        return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix in (".css", ".js")}
+
+    assert parts(unpacked / "pursue_gen" / "report") == parts(ROOT / "pursue_gen" / "report") != {}
 
 
 def test_installed_without_a_compiler_it_writes_the_same_workspace(unpacked: Path, tmp_path: Path) -> None:

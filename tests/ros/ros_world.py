@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import http.client
 import os
 import signal
 import socket
@@ -10,8 +11,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import xmlrpc.client
 from pathlib import Path
-from typing import Dict, Iterator, List
+from typing import Any, Dict, Iterator, List, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.pipeline import IDEAL, Rules, solve_scenario
@@ -74,18 +76,45 @@ class Ros:
     @contextlib.contextmanager
     def master(self) -> Iterator[Dict[str, str]]:
         """A roscore on a free port; the variables that lead to it."""
+        uri, core = self._roscore(tries=3)
+        try:
+            yield {"ROS_MASTER_URI": uri}
+        finally:
+            end(core)
+
+    def _roscore(self, tries: int) -> "Tuple[str, subprocess.Popen[bytes]]":
+        """Its address and its process. A port that was free a moment ago may be somebody's now: then on another one."""
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
-        there = {"ROS_MASTER_URI": f"http://127.0.0.1:{port}"}
-        core = self.start(f"exec roscore -p {port}", self.home, self.home / f"roscore-{port}.log", **there)
-        try:
-            deadline = time.monotonic() + 30
-            while self.run("rosparam get /run_id", self.home, 30, **there).returncode:
-                assert time.monotonic() < deadline, "roscore does not come up"
-            yield there
-        finally:
-            end(core)
+        uri, log = f"http://127.0.0.1:{port}", self.home / f"roscore-{port}.log"
+        core = self.start(f"exec roscore -p {port}", self.home, log, ROS_MASTER_URI=uri)
+        deadline = time.monotonic() + 30
+        while time.monotonic() < deadline and core.poll() is None:
+            if _has_run_id(uri):
+                return uri, core
+            time.sleep(0.05)
+        end(core)
+        assert tries > 1, f"roscore does not come up: {log.read_text(errors='replace')}"
+        return self._roscore(tries - 1)
+
+
+class _Hasty(xmlrpc.client.Transport):
+    """Does not wait for ever for an answer: behind the port there may be anybody."""
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        made = super().make_connection(host)
+        made.timeout = 5
+        return made
+
+
+def _has_run_id(uri: str) -> bool:
+    """True as soon as the master at this address is one that launched nodes can register with."""
+    try:
+        code, _, found = xmlrpc.client.ServerProxy(uri, transport=_Hasty()).hasParam("/test", "/run_id")
+    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+        return False
+    return bool(code == 1 and found)
 
 
 def end(process: "subprocess.Popen[bytes]") -> None:

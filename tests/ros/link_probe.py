@@ -1,0 +1,41 @@
+"""Two nodes that show what a link loses: `link_probe.py <scripts of a package> talker|listener`.
+
+The talker counts on pursue/events, ten times a second; on SIGUSR1 it drops its connections. The listener prints the
+numbers, one a line. Both watch their links as the nodes of a mission do.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+
+sys.path.insert(0, sys.argv[1])
+
+import rospy
+from pursue_links import Links
+from pursue_node import OK, Diagnostics, Report
+from std_msgs.msg import String
+
+
+def main(role: str) -> None:
+    rospy.init_node(role)
+    pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
+    Diagnostics(lambda: Report(True, OK, "fine", {}), Links(pulses))
+    if role == "listener":
+        rospy.Subscriber("pursue/events", String, lambda message: print(message.data, flush=True))
+        rospy.spin()
+        return
+    words = rospy.Publisher("pursue/events", String, queue_size=10000)
+    signal.signal(signal.SIGUSR1, lambda *_: [connection.close() for connection in list(words.impl.connections)])
+    while words.get_num_connections() == 0:
+        time.sleep(0.1)
+    number = 0
+    while not rospy.is_shutdown():
+        number += 1
+        words.publish(str(number))
+        time.sleep(0.1)
+
+
+if __name__ == "__main__":
+    main(sys.argv[2])

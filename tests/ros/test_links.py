@@ -1,0 +1,230 @@
+"""Links that break and come back, and masters that are lost: on real sockets, and between machines that are network
+namespaces, as in the thesis's experiment with containers.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+from typing import Callable, Dict, Iterator, List, Optional
+
+import pytest
+from ros_world import Ros, end
+
+from tests.namespaces import Lab, lab, why_not
+
+Build = Callable[..., Path]
+
+pytestmark = pytest.mark.ros
+
+PROBE = Path(__file__).resolve().parent / "link_probe.py"
+LONG = pytest.param(200, marks=pytest.mark.skipif(os.environ.get("PURSUE_LONG_TESTS") != "1",
+                                                  reason="takes minutes; PURSUE_LONG_TESTS=1 runs it"))
+needs_namespaces = pytest.mark.skipif(bool(why_not()), reason=why_not())
+
+
+def until(done: Callable[[], object], seconds: float, told: Callable[[], str]) -> None:
+    """Waits until it is so; the test fails after so many seconds, with what was told until then."""
+    deadline = time.monotonic() + seconds
+    while not done():
+        assert time.monotonic() < deadline, f"not so after {seconds} s:\n{told()}"
+        time.sleep(0.1)
+
+
+class Nodes:
+    """Processes by name, each with a log; started on a machine of the lab, or on this one."""
+
+    def __init__(self, ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab]) -> None:
+        self._ros, self._workspace, self._logs, self._rooms = ros, workspace, logs, rooms
+        self.port = free_port() if rooms is None else 11311
+        self.running: Dict[str, "subprocess.Popen[bytes]"] = {}
+
+    def start(self, name: str, command: str, machine: str = "") -> None:
+        """Starts a shell command under this name."""
+        there = {"ROS_MASTER_URI": f"http://127.0.0.1:{self.port}", "PYTHONUNBUFFERED": "1"}
+        if self._rooms is not None:
+            there.update(self._rooms.variables(machine, "master"))
+            command = self._rooms.at(machine, command)
+        self.running[name] = self._ros.start(command, self._workspace, self._logs / name, **there)
+
+    def log(self, name: str) -> str:
+        """What it has printed."""
+        return (self._logs / name).read_text(errors="replace")
+
+    def logs(self) -> str:
+        """What everybody has printed."""
+        return "\n".join(f"--- {name}\n{self.log(name)[-3000:]}" for name in self.running)
+
+    def kill(self, name: str, sign: signal.Signals) -> None:
+        """Sends the signal to it and its children."""
+        os.killpg(self.running[name].pid, sign)
+
+    def statuses(self, *names: str, seconds: float = 120.0) -> Dict[str, int]:
+        """Waits for their ends."""
+        waited = [self.running[name] for name in names]
+        until(lambda: all(process.poll() is not None for process in waited), seconds, self.logs)
+        return {name: self.running[name].returncode for name in names}
+
+
+@contextlib.contextmanager
+def nodes(ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab] = None) -> Iterator[Nodes]:
+    """A roscore (on the machine `master`, where there are rooms), and what else is started; all of it ends here."""
+    made = Nodes(ros, workspace, logs, rooms)
+    try:
+        made.start("roscore", f"exec roscore -p {made.port}", "master")
+        until(lambda: "started core service" in made.log("roscore"), 30, made.logs)
+        yield made
+    finally:
+        for name, process in made.running.items():
+            if name != "roscore" and process.poll() is None:  # all at once: each takes seconds
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGINT)
+        for _, process in sorted(made.running.items(), key=lambda running: running[0] == "roscore"):
+            end(process)
+
+
+def free_port() -> int:
+    """A port that is free now, and that no connection gets by chance."""
+    while True:
+        port = random.randrange(20000, 32000)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+
+
+# Links of single topics ----------------------------------------------------------------------------------------------
+
+
+def talk(made: Nodes, workspace: Path) -> None:
+    """Starts talker and listener, and waits until they are connected."""
+    for role in ("listener", "talker"):
+        made.start(role, f"exec /usr/bin/python3 {PROBE} {workspace}/src/UI/scripts {role}", role)
+    until(lambda: len(heard(made)) > 20, 30, made.logs)
+
+
+def heard(made: Nodes) -> List[int]:
+    """The numbers that the listener has heard, in order."""
+    return [int(line) for line in made.log("listener").splitlines() if line.isdigit()]
+
+
+def more(made: Nodes, numbers: int = 30) -> None:
+    """Waits until the listener has heard so many more."""
+    before = max(heard(made))
+    until(lambda: max(heard(made)) > before + numbers, 60, made.logs)
+
+
+def once(made: Nodes) -> bool:
+    """True if every number was heard, and none twice."""
+    numbers = sorted(heard(made))
+    return numbers == list(range(numbers[0], numbers[-1] + 1))
+
+
+def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp_path: Path) -> None:
+    """rospy takes it that the publisher is gone, and never asks again."""
+    workspace = built("thesis/scenario_1")
+    with nodes(ros, workspace, tmp_path) as made:
+        talk(made, workspace)
+        made.kill("talker", signal.SIGUSR1)
+        more(made)
+
+
+def test_a_node_that_stood_still_is_heard_again_whole(ros: Ros, built: Build, tmp_path: Path) -> None:
+    workspace = built("thesis/scenario_1")
+    with nodes(ros, workspace, tmp_path) as made:
+        talk(made, workspace)
+        made.kill("talker", signal.SIGSTOP)
+        time.sleep(5)
+        made.kill("talker", signal.SIGCONT)
+        until(lambda: "/talker was silent for a while" in made.log("listener"), 30, made.logs)
+        more(made)
+        until(lambda: once(made), 30, made.logs)
+
+
+@needs_namespaces
+@pytest.mark.parametrize("seconds", [8, LONG])
+def test_a_cut_link_comes_back_by_itself(ros: Ros, built: Build, tmp_path: Path, seconds: int) -> None:
+    workspace = built("thesis/scenario_1")
+    with lab("master", "talker", "listener") as rooms, nodes(ros, workspace, tmp_path, rooms) as made:
+        talk(made, workspace)
+        rooms.cut("talker")
+        time.sleep(seconds)
+        rooms.mend("talker")
+        more(made)
+        if seconds < 100:  # after that the talker's machine gives up what it could not send
+            until(lambda: once(made), 60, made.logs)
+
+
+# Missions -------------------------------------------------------------------------------------------------------------
+
+MACHINES = {"observer": "room0", "controller_bot1": "room1", "controller_bot2": "room2", "controllerObj": "room3",
+            "simulator": "desk", "UI": "desk"}
+
+
+def play(made: Nodes, unit: float, options: str = "") -> None:
+    """Starts the nodes of scenario 1, in real time (what is cut off would have no /clock); it takes some 20 units."""
+    for node, room in MACHINES.items():
+        package = "UI" if node == "simulator" else node
+        more = {"observer": f"_time_unit:={unit} _journal:=off {options}", "UI": "--autostart"}.get(node, "")
+        made.start(node, f"source devel/setup.bash; exec rosrun {package} {node} {more}", room)
+
+
+@needs_namespaces
+@pytest.mark.parametrize("seconds", [3, 15, LONG])
+def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
+    ros: Ros, built: Build, tmp_path: Path, seconds: int
+) -> None:
+    rooms_of = ("master", *sorted(set(MACHINES.values())))
+    with lab(*rooms_of) as rooms, nodes(ros, built("thesis/scenario_1"), tmp_path, rooms) as made:
+        play(made, 0.5, "_silence:=5")
+        until(lambda: "bot1_c2b by bot1" in made.log("observer"), 60, made.logs)
+        rooms.cut("room1")
+        time.sleep(seconds)
+        assert "The goal is reached" not in made.log("UI"), "the mission needs its robot"
+        rooms.mend("room1")
+        assert made.statuses(*MACHINES) == dict.fromkeys(MACHINES, 0), made.logs()
+        assert "The goal is reached" in made.log("UI")
+        assert ("controller_bot1 is silent" in made.log("observer")) is (seconds > 5)
+
+
+@pytest.mark.parametrize("anew", [False, True])
+def test_nodes_say_that_the_master_is_lost_and_stop(ros: Ros, built: Build, tmp_path: Path, anew: bool) -> None:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+        play(made, 3.0)
+        until(lambda: "bot1_c2b by bot1" in made.log("observer"), 60, made.logs)
+        end(made.running["roscore"])
+        if anew:
+            made.start("another", f"exec roscore -p {made.port}", "master")
+        statuses = made.statuses(*MACHINES)
+        assert all(statuses.values()), made.logs()
+        said = "was started anew" if anew else "the ROS master is gone"
+        assert all(said in made.log(node) for node in MACHINES), made.logs()
+        assert "Traceback" not in made.logs()
+
+
+def test_simulated_time_goes_on_where_a_killed_clock_was(ros: Ros, built: Build, tmp_path: Path) -> None:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+        lives = [a_clocks_life(made, name) for name in ("first", "second")]
+    times = [moment for life in lives for moment in life]
+    assert times == sorted(times)
+    assert lives[0][0] < 5 and 0 <= lives[1][0] - lives[0][-1] < 5, "seconds; neither anew nor far ahead"
+
+
+def a_clocks_life(made: Nodes, name: str) -> List[float]:
+    """Starts a clock, and kills it; the times that somebody has heard of it (seconds)."""
+    made.start(f"{name}_ears", "exec rostopic echo -p /clock")
+    made.start(name, "source devel/setup.bash; exec rosrun UI sim_clock _speed:=20")
+
+    def told() -> List[float]:
+        rows = [line.split(",") for line in made.log(f"{name}_ears").splitlines()]
+        return [int(row[1]) / 1e9 for row in rows if len(row) == 2 and row[1].isdigit()]
+
+    until(lambda: len(told()) > 40, 30, made.logs)
+    made.kill(name, signal.SIGKILL)
+    end(made.running[f"{name}_ears"])
+    return told()

@@ -1,0 +1,170 @@
+"""The node pursue_reader: what it makes of messages on local_mission, and that it goes on where it was killed."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import xmlrpc.client
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterator, List
+
+import pytest
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+from ros_world import Ros, end
+
+from pursue_gen.transport.mission_bundle import (
+    COMMIT,
+    PREPARE,
+    Order,
+    make_manifest,
+    pack,
+    write_order,
+    write_public_key,
+)
+from pursue_gen.workspace.generate import mission_of
+from tests.workspace.worlds import files
+
+Build = Callable[..., Path]
+
+pytestmark = pytest.mark.ros
+
+CRIER = Path(__file__).resolve().parent / "town_crier.py"
+DESK, STRANGER = (Ed25519PrivateKey.from_private_bytes(bytes([number]) * 32) for number in (1, 2))
+STATE = "seq={} stamp={}.0 unit=1.0 status={}\nbot1=a\n\n"
+
+
+class Town:
+    """A reader under roslaunch in namespace bot1, and a node that speaks and listens."""
+
+    def __init__(self, folder: Path, uri: str, crier: "subprocess.Popen[bytes]") -> None:
+        self.folder, self._uri, self._crier = folder, uri, crier
+
+    def say(self, topic: str, *texts: str) -> None:
+        """Publishes these."""
+        assert self._crier.stdin is not None
+        for text in texts:
+            self._crier.stdin.write(json.dumps({"topic": topic, "data": text}).encode() + b"\n")
+        self._crier.stdin.flush()
+
+    def statuses(self) -> List[Dict[str, Any]]:
+        """What the reader has said so far."""
+        text = (self.folder / "heard").read_bytes()
+        lines = text[: text.rfind(b"\n") + 1].splitlines()
+        return [json.loads(json.loads(line)["data"]) for line in lines if line.startswith(b"{")]
+
+    def until(self, good: Callable[[Dict[str, Any]], bool]) -> Dict[str, Any]:
+        """Waits until the last status is so."""
+        deadline = time.monotonic() + 30
+        while time.monotonic() < deadline:
+            said = self.statuses()
+            if said and good(said[-1]):
+                return said[-1]
+            time.sleep(0.05)
+        log = (self.folder / "launch.log").read_text(errors="replace")
+        raise AssertionError(f"not so after 30 s: {self.statuses()[-1:]}\n{log[-4000:]}")
+
+    def order(self, action: str, digest: str, bundle: bytes = b"", **wrong: Any) -> str:
+        """What the desk's order is as a message."""
+        given = {"robot": "bot1", "ticket": self.statuses()[-1]["ticket"], **wrong}
+        key = given.pop("key", DESK)
+        size, seal = len(bundle), hashlib.sha256(bundle).hexdigest() if bundle else ""
+        text = write_order(Order(action, digest, size=size, bundle=seal, **given), key)
+        return json.dumps({"order": text, **({"bundle": base64.b64encode(bundle).decode()} if bundle else {})})
+
+    def kill(self) -> None:
+        """kill -9."""
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            _, _, node = master.lookupNode("/test", "/bot1/pursue_reader")  # type: ignore[misc]
+        with xmlrpc.client.ServerProxy(str(node)) as slave:
+            os.kill(int(slave.getPid("/test")[2]), signal.SIGKILL)  # type: ignore[index]
+
+    def stored(self) -> List[str]:
+        """The files of the store."""
+        store = self.folder / "home" / "pursue" / "missions"
+        return sorted(path.relative_to(store).as_posix() for path in store.rglob("*") if path.is_file())
+
+
+@contextlib.contextmanager
+def town(ros: Ros, workspace: Path, folder: Path) -> Iterator[Town]:
+    keys = folder / "home" / "pursue" / "keys"
+    keys.mkdir(parents=True)
+    (keys / "desk.pub").write_text(write_public_key(DESK.public_key(), "desk"))
+    with ros.master() as there:
+        there = {**there, "ROS_HOME": str(folder / "home"), "ROS_LOG_DIR": str(folder / "log")}
+        command = "source devel/setup.bash; exec roslaunch --skip-log-check pursue_reader pursue_reader.launch"
+        command += " nodes:='observer, UI controller_bot1 controller_bot2'"
+        launch = ros.start(command, workspace, folder / "launch.log", ROS_NAMESPACE="bot1", **there)
+        crier = subprocess.Popen(
+            ["python3", str(CRIER), "/bot1/mission_status"],
+            env={**ros.environment, **there},
+            stdin=subprocess.PIPE,
+            stdout=open(folder / "heard", "wb"),  # noqa: SIM115 (the child keeps it)
+            stderr=sys.stderr,
+            start_new_session=True,
+        )
+        try:
+            yield Town(folder, there["ROS_MASTER_URI"], crier)
+        finally:
+            if crier.stdin is not None:
+                crier.stdin.close()
+            for process in (launch, crier):
+                end(process)
+
+
+def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, built: Build, tmp_path: Path) -> None:
+    _, data = mission_of("scenario_1", files("thesis/scenario_1"))
+    data["UI/ui.yaml"] += b"# not the workspace's own\n"
+    manifest = make_manifest("scenario_1", "0", ("controller_bot1", "controller_bot2"), data)
+    digest, bundle = manifest.digest, pack(manifest, data, DESK)
+    workspace = built("thesis/scenario_1")
+    with town(ros, workspace, tmp_path) as there:
+        first = there.until(lambda status: True)
+        assert first["current"] == "" and first["answer"] is None and first["robot"] == "bot1"
+        assert first["packages"] == ["UI", "controller_bot1", "controller_bot2", "observer"]
+
+        strange = pack(manifest, data, STRANGER)
+        there.say("/bot1/local_mission", *(f"junk {number}" for number in range(200)))
+        there.say("/bot1/local_mission", there.order(PREPARE, digest, bundle, key=STRANGER))
+        there.say("/bot1/local_mission", there.order(PREPARE, digest, bundle, robot="bot2"))
+        there.say("/bot1/local_mission", there.order(PREPARE, digest, strange))
+        refused = there.until(lambda status: status["answer"] is not None)
+        assert refused["answer"]["code"] == "unknown_key" and refused["answer"]["ticket"] == first["ticket"]
+        assert len(there.statuses()) == 2 and there.stored() == []
+
+        prepare = there.order(PREPARE, digest, bundle)
+        there.say("/bot1/local_mission", prepare, prepare)
+        prepared = there.until(lambda status: status["prepared"] == digest)
+        assert prepared["answer"]["ok"] and prepared["answer"]["ticket"] == refused["ticket"]
+        there.say("/pursue/system_state", STATE.format(1, 1, "running"))
+        there.until(lambda status: bool(status["mission_runs"]))
+        commit = there.order(COMMIT, digest)
+        there.say("/bot1/local_mission", commit)
+        waiting = there.until(lambda status: status["next"] == digest)
+        assert waiting["answer"]["code"] == "waiting" and waiting["current"] == ""
+
+        there.kill()
+        again = there.until(lambda status: status["answer"] is None and status["mission_runs"])
+        assert (again["current"], again["next"], again["kept"]) == ("", digest, [digest])
+        there.say("/bot1/local_mission", prepare, commit)
+        there.say("/pursue/system_state", STATE.format(2, 9, "won"))
+        over = there.until(lambda status: status["current"] == digest)
+        assert over["ticket"] == again["ticket"] and over["next"] is None and over["history"] == [""]
+
+        parts = {f"{path.split('/')[0]}/mission.yaml" for path in data}
+        assert there.stored() == sorted(
+            [*(f"{digest}/{name}" for name in (*data, *parts, "manifest.json", "signature.json")), "state.json"]
+        )
+        command = "source devel/setup.bash; rosrun pursue_reader missions"
+        listed = ros.run(command, workspace, 30, ROS_HOME=str(tmp_path / "home"))
+        assert listed.returncode == 0 and any(
+            line.split() == [digest[:12], "scenario_1", "current"] for line in listed.stdout.splitlines()
+        )
+    log = (tmp_path / "launch.log").read_text(errors="replace")
+    assert "Traceback" not in log and log.count("refused") < 10

@@ -1,0 +1,73 @@
+"""What docs/tutorial.md shows is what a reader gets."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import List, Tuple
+
+import pytest
+
+from tests.conftest import ROOT
+
+PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> List[str]:
+    """The blocks of this language, in order."""
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+
+
+def said(folder: Path, *words: str) -> Tuple[int, str]:
+    """What a command says to its reader, and its exit status."""
+    command = [sys.executable, "-m", "pursue_gen", *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.fixture
+def ward(tmp_path: Path) -> Path:
+    """A folder with the scenario as it is once the typing mistake is corrected."""
+    (scenario,) = blocks("pursue")
+    (tmp_path / "night_shift.pur").write_text(scenario.replace("fetsh", "fetch"), encoding="utf-8")
+    return tmp_path
+
+
+def test_the_mistake_is_told_as_the_page_has_it(ward: Path) -> None:
+    (ward / "night_shift.pur").write_text(blocks("pursue")[0], encoding="utf-8")
+    status, text = said(ward, "check", "night_shift.pur")
+    assert status == 3 and blocks("text")[0] in text
+
+
+def test_the_scenario_is_sound_and_laid_out_well(ward: Path) -> None:
+    assert said(ward, "check", "night_shift.pur")[0] == said(ward, "fmt", "--check", "night_shift.pur")[0] == 0
+
+
+def test_it_can_be_done_in_the_time_that_the_page_names(ward: Path) -> None:
+    status, text = said(ward, "solve", "night_shift.pur", "-o", "plan.txt")
+    assert status == 0
+    for line in blocks("text")[1].splitlines():
+        assert line in text
+
+
+def test_a_faster_nurse_gets_away_and_the_page_says_what_would_help(ward: Path) -> None:
+    scenario = ward / "night_shift.pur"
+    scenario.write_text(scenario.read_text(encoding="utf-8").replace("mobile 3", "mobile 1"), encoding="utf-8")
+    status, text = said(ward, "solve", "night_shift.pur")
+    assert status == 4
+    for line in blocks("text")[2].splitlines():
+        assert line in text
+
+
+def test_simulated_nights_end_well(ward: Path) -> None:
+    status, text = said(ward, "sim", "night_shift.pur", "--runs", "20", "--timeline", "x.svg")
+    assert status == 2 and "--runs 1" in text
+    status, text = said(ward, "sim", "night_shift.pur", "--runs", "20")
+    assert status == 0 and re.search(r"goal reached +20 +100\.0", text)
+
+
+def test_its_pictures_are_there() -> None:
+    for picture in re.findall(r"\((pictures/.*?)\)", PAGE):
+        assert (ROOT / "docs" / picture).is_file()
