@@ -26,10 +26,10 @@ def render(folder: Path, *kinds: str, package: str = NAMES["package"]) -> List[P
 
 
 def importable(*kinds: str, package: str = NAMES["package"]) -> Path:
-    """A folder with the scripts of these kinds and the desk's modules, on the path of modules until the tests end."""
+    """A folder with the common scripts, those of these kinds and the desk's; modules are found there from now on."""
     folder = Path(tempfile.mkdtemp(prefix="rendered_scripts_"))
     atexit.register(shutil.rmtree, str(folder), ignore_errors=True)
-    render(folder, *kinds, package=package)
+    render(folder, "common", *kinds, package=package)
     for name, content in desk_modules({**NAMES, "package": package}).items():
         (folder / name).write_bytes(content)
     sys.path.insert(0, str(folder))

@@ -5,6 +5,7 @@ The server is the generated one, and behind it is the real reader with its store
 
 from __future__ import annotations
 
+import errno
 import gc
 import io
 import json
@@ -28,6 +29,10 @@ REQUESTS = 10_000
 WARM = 1_000
 GROWTH = 20 << 20
 """Bytes of memory that the last nine thousand requests may cost."""
+UNHEARD = REQUESTS // 100
+"""So many answers may get lost: a server that closes on unread bytes resets the connection, and a busy machine may
+need longer for a head than the second that the server gives it."""
+CLOSED = (errno.ECONNRESET, errno.EPIPE, errno.ENOTCONN, errno.ECONNABORTED)
 STRANGER = Desk(2)
 
 
@@ -208,6 +213,7 @@ def zipped(files: Dict[str, bytes], kind: int = zipfile.ZIP_STORED) -> bytes:
 def attack(port: int, hostile: Hostile) -> int:
     """Sends it; the status of the answer, 0 for none. Connections end in all ways that there are."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as there:
+        answer = b""
         try:
             there.sendall(hostile.data)
             if not hostile.reads:
@@ -216,9 +222,13 @@ def attack(port: int, hostile: Hostile) -> int:
                 return 0
             if 0 in hostile.expected:  # it may be waited for what does not come
                 there.shutdown(socket.SHUT_WR)
-            answer = b"".join(iter(lambda: there.recv(65536), b""))
-        except ConnectionError:
-            return 0
+            while True:
+                more = there.recv(65536)
+                if not more:
+                    break
+                answer += more
+        except OSError as why:  # closed at the other end, in one of the ways that the system has for saying so
+            assert why.errno in CLOSED, why
     assert b"Traceback" not in answer and b"/usr/" not in answer and b"ornado" not in answer
     return int(answer.split()[1]) if answer.startswith(b"HTTP/1.1 ") else 0
 
@@ -244,10 +254,9 @@ class Drips:
                 start = b"POST"  # an upload under way keeps others out: not all the time
             held.append(socket.create_connection(("127.0.0.1", self.robot.port), timeout=20))
             self.opened += 1
-            held[-1].sendall(start)
             for there in held[-20:]:
                 try:
-                    there.send(b"X")
+                    there.sendall(start if there is held[-1] else b"X")
                 except OSError:
                     there.close()
             if len(held) > 20:
@@ -301,7 +310,7 @@ def test_ten_thousand_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
         place, kept, serving = robot.reader.folder, tree(robot.reader.folder), descriptors()
         state, outside = (place / "state.json").read_bytes(), tree(tmp_path)
 
-        drips, counts, memory = Drips(robot, desk), {}, 0  # type: ignore[var-annotated]
+        drips, counts, memory, unheard = Drips(robot, desk), {}, 0, 0  # type: ignore[var-annotated]
         try:
             for number, (kind, hostile) in enumerate(Attacker(1, robot, desk, heard, first.digest).requests(REQUESTS)):
                 if number == WARM:
@@ -310,12 +319,14 @@ def test_ten_thousand_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
                 counts.setdefault(kind, {}).setdefault(status, 0)
                 counts[kind][status] += 1
                 # 503: a drip keeps the only upload, or the reader's answer to one that was broken off is awaited
-                assert not hostile.reads or status in (*hostile.expected, 503), (kind, status, hostile.data[:500])
+                assert not hostile.reads or status in (*hostile.expected, 503, 0), (kind, status, hostile.data[:500])
+                unheard += hostile.reads and status == 0 and 0 not in hostile.expected
                 if number % 100 == 0:
                     assert tree(place) == kept, kind
         finally:
             opened = drips.end()
         growth = resident() - memory
+        assert unheard <= UNHEARD, (unheard, counts)
 
         assert (tree(place), tree(tmp_path)) == (kept, outside)
         current = json.loads(state)["current"]

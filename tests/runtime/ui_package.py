@@ -7,7 +7,7 @@ from typing import Any, Dict
 
 from rendered_scripts import importable
 
-SCRIPTS = importable("common", "UI", package="UI")
+SCRIPTS = importable("UI", package="UI")
 
 pursue_library: Any = importlib.import_module("pursue_library")
 pursue_model: Any = importlib.import_module("pursue_model")
