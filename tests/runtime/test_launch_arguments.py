@@ -70,12 +70,18 @@ def test_without_arguments_the_whole_mission_of_the_workspace_is_played_once(lau
 def test_a_machine_may_run_some_of_the_nodes(launch: Any) -> None:
     assert launch("mission.launch", "nodes:=controller_bot1").names == ["controller_bot1"]
     assert launch("mission.launch", "nodes:=observer, UI").names == ["UI", "observer"]
-    assert launch("mission.launch", "nodes:=controller_bot").names == []
     extra = ("use_sim_time:=true", "record:=true")
     assert launch("mission.launch", *extra).names == sorted([*MISSION, "sim_clock", "recorder"])
     assert launch("mission.launch", "nodes:=UI", *extra).names == ["UI"]
     assert launch("mission.launch", "nodes:=sim_clock recorder", *extra).names == ["recorder", "sim_clock"]
     assert launch("mission.launch", "nodes:=simulator", "simulate:=false").names == []
+
+
+@pytest.mark.parametrize("file", ["mission.launch", "robot.launch"])
+def test_a_node_that_is_not_there_is_an_error_that_lists_those_that_are(launch: Any, file: str) -> None:
+    named = ["name:=bot1"] if file == "robot.launch" else []
+    with pytest.raises(Exception, match="nodes:= has controller_bot; there are: all observer controller_bot1 "):
+        launch(file, *named, "nodes:=UI controller_bot")
 
 
 def test_a_robot_needs_the_packages_of_its_own_nodes_only(launch: Any, packages: Path, tmp_path: Path) -> None:
