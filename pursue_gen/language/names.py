@@ -125,8 +125,8 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
         return ((kind, ref.name, ref.span) for ref in refs if ref is not None)
 
     for way in scenario.connections:
-        yield "POI", way.a, way.span
-        yield "POI", way.b, way.span
+        yield "POI", way.a, way.ends[0]
+        yield "POI", way.b, way.ends[1]
     for rule in scenario.rules:
         yield from all_of("event", refs_of(rule.body))
     yield from all_of("POI", [event.location for event in scenario.events])
@@ -160,7 +160,6 @@ def _fitting(name: str) -> str:
 
 def _unfit(name: str, kind: str, span: Span) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
-    another = "choose another name"
     if not _FORM.fullmatch(name):
         example = _fitting(name[:_LONGEST])
         hint = f"use letters, digits and _, a letter first, for example {example}" if name else "give it a name"
@@ -168,6 +167,7 @@ def _unfit(name: str, kind: str, span: Span) -> Optional[Diagnostic]:
         return error("PML101", message, span, hint)
     if len(name) > _LONGEST:
         return error("PML101", f"this name is longer than {_LONGEST} letters", span, "choose a shorter name")
+    another = f"choose another name, for example {name}1"
     if name in GENERATED:
         return error("PML102", f"{name} is the name of a generated part of every mission", span, another)
     if name in KEYWORDS.values() and name != "human":
@@ -180,7 +180,7 @@ def _unfit(name: str, kind: str, span: Span) -> Optional[Diagnostic]:
         return error("PML102", f"{name} ends in DONE, as the words for the ends of actions do", span, another)
     if name.startswith(("going_", "doing_")):
         message = f"{name} begins as the words for movements (going_…) and actions (doing_…) do"
-        return error("PML102", message, span, another)
+        return error("PML102", message, span, "choose another name")
     return None
 
 

@@ -178,7 +178,8 @@ class _Builder:
         return pml.Poi(_bare(name), value, span_of(name, self.file))
 
     def _connection(self, a: Any, b: Any, distance: Token, span: Span) -> pml.Connection:
-        return pml.Connection(self._ref(a).name, self._ref(b).name, self._number(distance), span)
+        first, second = self._ref(a), self._ref(b)
+        return pml.Connection(first.name, second.name, self._number(distance), span, (first.span, second.span))
 
     def _event(self, name: Token, together: Optional[Token], location: Any, duration: Any, span: Span) -> pml.Event:
         return pml.Event(

@@ -32,12 +32,16 @@ class Poi:
 
 @dataclass(frozen=True)
 class Connection:
-    """A way between two POIs, both directions; `distance` is a natural number of distance units (at least 1)."""
+    """A way between two POIs, both directions; `distance` is a natural number of distance units (at least 1).
+
+    `ends` are the places in the text where it names them.
+    """
 
     a: str
     b: str
     distance: int
     span: Span
+    ends: Tuple[Span, Span]
 
 
 @dataclass(frozen=True)

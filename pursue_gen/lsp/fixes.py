@@ -24,6 +24,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML015": syntax.visible_blank,
     "PML017": syntax.delete_finding,
     "PML101": meaning.fitting_name,
+    "PML102": meaning.fitting_name,
     "PML103": meaning.delete_statement,
     "PML110": meaning.unknown_name,
     "PML130": meaning.add_agent,

@@ -46,6 +46,18 @@ def test_names_that_are_taken(name: str) -> None:
     assert name in found[0].message and found[0].hint
 
 
+def test_a_reserved_word_gets_a_proposal_that_is_free() -> None:
+    (finding,) = findings(text(rule=RULE.replace("order", "guard")))
+    assert "for example guard1" in finding.hint
+    assert findings(text(rule=RULE.replace("order", "guard1"))) == []
+
+
+def test_a_way_to_nowhere_is_told_where_it_names_that() -> None:
+    (finding,) = findings(text(connect="connect a and bb distance 3"))
+    span = finding.span
+    assert finding.code == "PML110" and span is not None and (span.column, span.end_column) == (15, 17)
+
+
 @pytest.mark.parametrize("name", ["human", "DONE_work", "Going_home", "base", "win", "A", "going", "waitDone"])
 def test_names_that_look_alike_are_free(name: str) -> None:
     assert findings(text(rule=RULE.replace("order", name))) == []

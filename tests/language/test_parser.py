@@ -29,7 +29,8 @@ def test_every_field_is_read() -> None:
     scenario = parse(text(), "folder/test.pur")
     assert (scenario.name, scenario.file, scenario.text) == ("test", "folder/test.pur", text())
     way = scenario.connections[0]
-    assert way == Connection("a", "b", 3, Span("folder/test.pur", 3, 1, 3, 27))
+    ends = (Span("folder/test.pur", 3, 9, 3, 10), Span("folder/test.pur", 3, 15, 3, 16))
+    assert way == Connection("a", "b", 3, Span("folder/test.pur", 3, 1, 3, 27), ends)
     work, hand, rest = scenario.events
     assert (work.location.name if work.location else None, work.duration, work.collaborative) == ("b", 3, False)
     assert (hand.location, hand.duration, hand.collaborative) == (None, None, True)

@@ -48,6 +48,7 @@ MISTAKES = {
     "PML015": changed('poi "a"', 'poi\u200b "a"'),
     "PML017": changed('poi "b"', 'poi "b"\ncontrol: A<> x'),
     "PML101": changed('poi "b"', 'poi "my b"').replace("location b", "location b"),
+    "PML102": re.sub(r"\btired\b", "exit", SMALL),
     "PML103": SMALL + 'poi "a"\n',
     "PML110": changed("do hand", "do hnd"),
     "PML110 undeclared place": SMALL.replace('poi "b"\n', ""),

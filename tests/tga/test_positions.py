@@ -16,7 +16,7 @@ def numbered(count: int, pairs: List[Tuple[int, int]]) -> Positions:
     """Positions for POIs p1 … p<count> with these connections, each on the line of its number."""
     pois = [Poi(f"p{i}", None, Span("test.pur", 1, 1, 1, 2)) for i in range(1, count + 1)]
     spans = [Span("test.pur", line, 1, line, 2) for line in range(1, len(pairs) + 1)]
-    return positions(pois, [Connection(f"p{a}", f"p{b}", 1, span) for (a, b), span in zip(pairs, spans)])
+    return positions(pois, [Connection(f"p{a}", f"p{b}", 1, span, (span, span)) for (a, b), span in zip(pairs, spans)])
 
 
 def test_digits_of_both_pois() -> None:
