@@ -329,8 +329,13 @@ def _to(node: Any, deliver: Act) -> Act:
 
 
 def _opponent(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
-    """The kind of opponent in this mission."""
-    return random.Random(f"{seed}/kind").choice([k for k in OPPONENTS if k != "mixed"]) if kind == "mixed" else kind
+    """The kind of opponent in this mission; of mixed ones, the worst as often as looking ahead may cost."""
+    if kind != "mixed":
+        return kind
+    draw = random.Random(f"{seed}/kind")
+    chosen = draw.choice([k for k in OPPONENTS if k != "mixed"])
+    rare = chosen == "worst" and remaining is not None and draw.random() >= remaining.ease
+    return "random" if rare else chosen
 
 
 def _told(state: Any) -> str:

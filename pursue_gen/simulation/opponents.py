@@ -17,7 +17,7 @@ OPPONENTS = {
     "random": "each does any of what it may do, or nothing, at any moment; the first and the last one often",
     "worst": "each does what leaves the strategy the longest way to the goal, as far as it guarantees any",
     "still": "they stand still",
-    "mixed": "one of these three in each mission",
+    "mixed": "one of these three in each mission; where looking ahead costs much, the worst is rare",
 }
 
 FIRST = 1e-3

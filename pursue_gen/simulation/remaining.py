@@ -27,6 +27,9 @@ STATES = 2_000
 KNOWN = 20_000
 """So many points are remembered."""
 
+CHEAP = 200
+"""A game of so many symbolic states, or fewer, can be looked ahead in all the time."""
+
 FOREVER = 1e9
 """Where the strategy does not know how to go on: time units."""
 
@@ -37,7 +40,10 @@ class Remaining:
     def __init__(self, won: Solution, states: int = STATES) -> None:
         self._loop: Optional[ClosedLoop] = None
         self._states = states
+        self.ease = 1.0
+        """How often to look ahead where many missions are to be played: less often in larger games."""
         self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
+        self._met = 0  # symbolic states that were looked at
         if won.objective.kind is Kind.SAFETY:
             return
         game = with_deadline(with_counter(won.network), won.objective, LONGEST)
@@ -50,6 +56,7 @@ class Remaining:
         self._count = self._loop.arena.clock[counting_clock(game) or ""]
         if self.at(self._loop.arena.initial, (0.0,) * (self._loop.arena.dim - self._added)) is None:
             self._loop = None
+        self.ease = min(1.0, CHEAP / max(1, self._met))
 
     @property
     def works(self) -> bool:
@@ -90,7 +97,7 @@ class Remaining:
 
     def _latest(self, loop: ClosedLoop, start: Entry) -> Optional[float]:
         """The largest value of the counting clock at the goal, breadth first."""
-        latest, met = 0, 0
+        latest, before = 0, self._met
         passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
         pending: Deque[Entry] = deque([start])
         while pending:
@@ -103,8 +110,8 @@ class Remaining:
                     return None
                 latest = max(latest, constant(bound))
                 continue
-            met += 1
-            if met > self._states:
+            self._met += 1
+            if self._met - before > self._states:
                 return None
             for _, (target, entered) in loop.followers((state, zone)):
                 after = loop.horizon.forget(entered, target)

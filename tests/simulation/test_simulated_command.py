@@ -22,7 +22,7 @@ THIEF = SCENARIOS / "thesis" / "catch_the_thief.pur"
 def called(*words: Any) -> "subprocess.CompletedProcess[str]":
     """The command in a process of its own."""
     command = [sys.executable, "-m", "pursue_gen", "sim", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert "Traceback" not in done.stderr, done.stderr
     return done
 
@@ -99,7 +99,7 @@ def test_ctrl_c_ends_all_processes() -> None:
             while process.poll() is None and len(children.read_text().split()) < 2:
                 time.sleep(0.05)
             os.killpg(process.pid, signal.SIGINT)
-            _, said = process.communicate(timeout=30)
+            _, said = process.communicate(timeout=300)
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)

@@ -103,6 +103,17 @@ def test_the_worst_opponent_takes_longer_than_others() -> None:
     assert bound is not None and times["worst"][-1] <= bound + 1e-3
 
 
+def test_where_looking_ahead_costs_much_the_worst_opponent_of_mixed_ones_is_rare() -> None:
+    on, (_, won) = stage("thesis/scenario_1"), solved("thesis/scenario_1")
+    times = Remaining(won)
+    assert times.ease == 1.0, "a small game"
+    for ease, some in ((1.0, True), (0.0, False)):
+        times.ease = ease
+        kinds = {play(on, Settings("mixed"), seed, times).opponent for seed in range(20)}
+        assert kinds == ({"random", "still", "worst"} if some else {"random", "still"})
+        assert play(on, Settings("worst"), 1, times).opponent == "worst"
+
+
 def test_the_bound_is_that_of_the_checker_and_a_quarter_of_the_reaction_for_each_command() -> None:
     _, won = solved("thesis/scenario_1")
     prompt = worst_case(won.network, won.objective, won.strategy, won.reaction)
