@@ -257,8 +257,7 @@ class _Player:
         after, at = _after(here, move, delay), self._now + delay
         if self._is_broken(after):
             return True
-        # Past the horizon the environment can still win ties, and would put off its work for ever.
-        return (self._horizon is None or at <= self._horizon) and self._oracle.lost(after, at, self._horizon)
+        return self._oracle.lost(after, at, self._horizon)
 
     def _is_broken(self, here: Position) -> bool:
         return is_bad(self._game, here.state) and not is_goal(self._game, here.state)

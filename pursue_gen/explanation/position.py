@@ -45,13 +45,15 @@ class Oracle:
         """True if the controller cannot win from here; with a horizon, not even if only so much time since the start
         counts, of which `elapsed` has passed. Raises PursueError with exit status 5 when the time is up.
         """
+        if horizon is not None and elapsed > horizon:
+            return False
         position = self.same(position)
         key = (position, elapsed if horizon is not None else Fraction(0), horizon)
         if key not in self._known:
             network, clocks = self._network, position.clocks
             if horizon is not None:
                 network = with_horizon(network, horizon)
-                clocks = (*clocks, min(elapsed, Fraction(horizon + 1)))
+                clocks = (*clocks, elapsed)
             scale = _lcm(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
             self._known[key] = not self._clock.verdict(begun, self._objective, self._reaction * scale).won
@@ -77,7 +79,7 @@ def scaled(network: Network, scale: int) -> Network:
 
 
 def with_horizon(network: Network, horizon: int) -> Network:
-    """The network with a last clock, never reset; once it is past the horizon the controller may end the game."""
+    """The network with a last clock, never reset; when it is at the horizon the game ends, and nobody can put that off."""
     over = Location(_OVER)
     automata = tuple(
         replace(
@@ -88,8 +90,10 @@ def with_horizon(network: Network, horizon: int) -> Network:
         )
         for automaton in network.automata
     )
-    end = Edge(_HORIZON, _OVER, Guard((ClockBound(_HORIZON, ">", horizon),)), Sync(_OVER, sends=True))
-    referee = Automaton(_HORIZON, (Location(_HORIZON), over), _HORIZON, (end,))
+    then = Guard((ClockBound(_HORIZON, ">=", horizon),))
+    end = Edge(_HORIZON, _OVER, then, Sync(_OVER, sends=True), controllable=False)
+    until = Location(_HORIZON, (ClockBound(_HORIZON, "<=", horizon),))
+    referee = Automaton(_HORIZON, (until, over), _HORIZON, (end,))
     return replace(
         network,
         clocks=(*network.clocks, _HORIZON),

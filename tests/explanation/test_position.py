@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Tuple
 
@@ -14,12 +15,12 @@ from pursue_gen.explanation.position import Oracle, Position, beginning_at
 from pursue_gen.synthesis.game import compile_game, initial_state
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
 from tests.synthesis.random_games import _automaton
 from tests.synthesis.region_game import RegionGame
 
 KINDS = tuple(Kind)
-PLENTY = 60.0
+PLENTY = 1200.0
 
 
 @st.composite
@@ -61,6 +62,25 @@ def test_what_is_lost_within_a_time_is_lost_within_more_and_without_a_limit(draw
     by_horizon = [oracle.lost(start, Fraction(0), horizon) for horizon in (1, 2, 4, 8, 64)]
     assert by_horizon == sorted(by_horizon)
     assert by_horizon[-1] is oracle.lost(start)
+
+
+def test_what_comes_after_the_horizon_does_not_count_however_slow_the_controller_is() -> None:
+    """The controller leaves A1.l0 within 1 of its entry, where commands take 1; what A0 could do takes longer."""
+    reset = Edge("l0", "l1", resets=("x",))
+    within = {name: (ClockBound("x", "<=", bound),) for name, bound in (("l0", 1), ("l1", 3))}
+    obliged = Automaton("A1", (Location("l0", within["l0"]), Location("l1")), "l0", (reset,))
+    other = Automaton(
+        "A0", (Location("l0"), Location("l1", within["l1"]), Location("l2")), "l0",
+        (Edge("l0", "l0", resets=("x",), controllable=False), Edge("l0", "l1", controllable=False), Edge("l1", "l0")),
+    )
+    network, objective = Network(("x",), (), (), (other, obliged)), Objective(Kind.SAFETY, bad=("A0", "l2"))
+    oracle, zero = Oracle(network, objective, Fraction(1), Clock(Limits(PLENTY))), (Fraction(0),)
+    begin = initial_state(compile_game(network, objective))
+    assert oracle.lost(Position(begin, zero), Fraction(0), 1)
+    left = Position(replace(begin, locations=(0, 1)), zero)
+    assert [oracle.lost(left, Fraction(1), horizon) for horizon in (2, 3)] == [False, False]
+    assert oracle.lost(left, Fraction(1), 4) and not oracle.lost(left, Fraction(5), 4)
+    assert counter_play(network, objective, Fraction(1), Limits(PLENTY)).end == "overdue"
 
 
 @given(networks(), st.sampled_from((0, 1)))
