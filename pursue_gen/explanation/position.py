@@ -79,7 +79,7 @@ def scaled(network: Network, scale: int) -> Network:
 
 
 def with_horizon(network: Network, horizon: int) -> Network:
-    """The network with a last clock, never reset; when it is at the horizon the game ends, and nobody can put that off."""
+    """The network with a last clock, never reset; at the horizon the game ends, and nobody can put that off."""
     over = Location(_OVER)
     automata = tuple(
         replace(
