@@ -16,6 +16,8 @@ from typing import Any, Dict, Iterator, List, Optional
 
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
+from tests.waiting import PATIENCE
+
 
 def program() -> Optional[str]:
     """Where Chromium is on this machine."""
@@ -104,7 +106,7 @@ class Browser:
         """What an element says."""
         return str(self.value(f"document.querySelector({json.dumps(selector)}).textContent"))
 
-    def wait(self, expression: str, patience: float = 20.0) -> Any:
+    def wait(self, expression: str, patience: float = PATIENCE) -> Any:
         """Waits until an expression is true; its value."""
         deadline = time.monotonic() + patience
         while True:
@@ -122,7 +124,7 @@ class Browser:
 
     # The protocol -----------------------------------------------------------------------------------------------------
 
-    def _run(self, work: Any, patience: float = 30.0) -> Any:
+    def _run(self, work: Any, patience: float = PATIENCE) -> Any:
         return self._loop.run_until_complete(asyncio.wait_for(work, patience))
 
     async def _connect(self, file: Path) -> WebSocketClientConnection:

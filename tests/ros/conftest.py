@@ -15,12 +15,12 @@ Build = Callable[..., Path]
 def ros(tmp_path_factory: pytest.TempPathFactory) -> Ros:
     """ROS 1 of this machine; the test is skipped where there is none."""
     found = Ros(tmp_path_factory.mktemp("ros_home"))
-    paths = found.run(f"type -p {' '.join(NEEDED)}", found.home, 30)
+    paths = found.run(f"type -p {' '.join(NEEDED)}", found.home)
     missing = [name for name in NEEDED if f"/{name}\n" not in paths.stdout]
     if missing:
         pytest.skip(f"ROS 1 is not here: no {', '.join(missing)} on PATH")
     wanted = "rospy, rostest, transitions, diagnostic_msgs.msg, geometry_msgs.msg"
-    modules = found.run(f"python3 -c 'import {wanted}'", found.home, 60)
+    modules = found.run(f"python3 -c 'import {wanted}'", found.home)
     if modules.returncode:
         pytest.skip(f"ROS 1 is not complete here: {modules.stdout.strip().splitlines()[-1]}")
     return found

@@ -13,11 +13,10 @@ for line in sys.stdin:
     if line.strip() == "listen":
         rospy.wait_for_message("pursue/system_state", String)
         states = rospy.Subscriber("pursue/system_state", String)
-        while not states.get_num_connections():
+        while not states.get_num_connections() and not rospy.is_shutdown():
             rospy.sleep(0.05)
-        rospy.sleep(0.2)
     else:
-        while not words.get_num_connections():
+        while not words.get_num_connections() and not rospy.is_shutdown():
             rospy.sleep(0.05)
         words.publish(line.strip())
     print(line.strip(), flush=True)

@@ -10,6 +10,7 @@ It says what it hears: `bot1 goal 1.00 2.00`, `bot1 cancel`, `bot1 action e`.
 from __future__ import annotations
 
 import math
+import os
 import threading
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -53,7 +54,7 @@ class FakeRobot:
         rospy.Timer(rospy.Duration(STEP), self.move)
 
     def say(self, what: str) -> None:
-        print(f"{self.name} {what}", flush=True)
+        os.write(1, f"{self.name} {what}\n".encode())  # in one piece: there are several threads
 
     def on_simple(self, message: PoseStamped) -> None:
         goal = MoveBaseActionGoal(header=message.header)

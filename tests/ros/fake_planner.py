@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""A planner of the tests: answers with the strategy that the workspace has, a second late.
+"""A planner of the tests: answers with the strategy that the workspace has, once it may.
 
-Usage: fake_planner.py FOLDER COPY (the workspace's packages; where the request is written to).
+Usage: fake_planner.py FOLDER COPY LEAVE (the workspace's packages; where the request is written to; a file: when it is
+there the answer is given).
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ import yaml
 
 
 def main() -> None:
-    packages, copy = Path(sys.argv[1]), Path(sys.argv[2])
+    packages, copy, leave = map(Path, sys.argv[1:])
     request = json.load(sys.stdin)
     copy.write_text(json.dumps(request))
-    time.sleep(1.0)
+    while not leave.exists():
+        time.sleep(0.05)
     found = sorted(packages.glob("*/config/strategy.yaml"))
     strategies = {path.parts[-3]: yaml.safe_load(path.read_text()) for path in found}
     cover = yaml.safe_load((packages / "observer" / "config" / "cover.yaml").read_text())

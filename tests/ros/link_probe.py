@@ -6,6 +6,7 @@ numbers, one a line. Both watch their links as the nodes of a mission do.
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import time
@@ -23,7 +24,8 @@ def main(role: str) -> None:
     pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
     Diagnostics(lambda: Report(True, OK, "fine", {}), Links(pulses))
     if role == "listener":
-        rospy.Subscriber("pursue/events", String, lambda message: print(message.data, flush=True))
+        # In one piece: an old and a new connection may speak at the same time, each in a thread of its own.
+        rospy.Subscriber("pursue/events", String, lambda message: os.write(1, f"{message.data}\n".encode()))
         rospy.spin()
         return
     words = rospy.Publisher("pursue/events", String, queue_size=10000)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import http.client
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -13,13 +14,15 @@ import tempfile
 import time
 import xmlrpc.client
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.pipeline import IDEAL, Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from tests.waiting import PATIENCE
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
+SAY = Path(__file__).resolve().parent / "say.py"
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
 
@@ -59,7 +62,9 @@ class Ros:
                 start_new_session=True,
             )
 
-    def run(self, command: str, folder: Path, timeout: float, **more: str) -> "subprocess.CompletedProcess[str]":
+    def run(
+        self, command: str, folder: Path, timeout: float = 2 * PATIENCE, **more: str
+    ) -> "subprocess.CompletedProcess[str]":
         """Runs a shell command to its end; at the timeout it is killed with all its children, and the test fails."""
         with tempfile.TemporaryDirectory() as place:
             log = Path(place) / "log"
@@ -76,20 +81,19 @@ class Ros:
     @contextlib.contextmanager
     def master(self) -> Iterator[Dict[str, str]]:
         """A roscore on a free port; the variables that lead to it."""
-        uri, core = self._roscore(tries=3)
+        uri, core = self._roscore(tries=6)
         try:
             yield {"ROS_MASTER_URI": uri}
         finally:
             end(core)
 
     def _roscore(self, tries: int) -> "Tuple[str, subprocess.Popen[bytes]]":
-        """Its address and its process. A port that was free a moment ago may be somebody's now: then on another one."""
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        """Its address and its process. It ends by itself where its port is somebody else's by now, and where its master
+        takes more than ten seconds, as on a busy machine: then there is another one, on another port."""
+        port = free_port()
         uri, log = f"http://127.0.0.1:{port}", self.home / f"roscore-{port}.log"
         core = self.start(f"exec roscore -p {port}", self.home, log, ROS_MASTER_URI=uri)
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE / 2
         while time.monotonic() < deadline and core.poll() is None:
             if _has_run_id(uri):
                 return uri, core
@@ -97,6 +101,16 @@ class Ros:
         end(core)
         assert tries > 1, f"roscore does not come up: {log.read_text(errors='replace')}"
         return self._roscore(tries - 1)
+
+
+def free_port() -> int:
+    """A port of this machine that is free now, and that no connection gets by chance: lower than those that the system
+    gives away, and not the one that another run would draw."""
+    while True:
+        port = random.SystemRandom().randrange(20000, 32000)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("", port))
+            return port
 
 
 class _Hasty(xmlrpc.client.Transport):
@@ -118,19 +132,23 @@ def _has_run_id(uri: str) -> bool:
 
 
 def end(process: "subprocess.Popen[bytes]") -> None:
-    """Ends a process and its children: politely, then not."""
-    for sign, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, 5)):
+    """Ends a process and its children: politely, then not. A roslaunch gives each of its nodes 17 s, and where it is
+    killed before that they stay behind."""
+    for sign, patience in ((signal.SIGINT, 60), (signal.SIGTERM, 20), (signal.SIGKILL, 20)):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, sign)
+            os.killpg(process.pid, signal.SIGCONT)  # who stands still hears nothing
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(patience)
             return
 
 
-def generated(name: str, folder: Path, controllers: str = "distributed") -> Path:
+def generated(
+    name: str, folder: Path, controllers: str = "distributed", slack: Optional[Mapping[str, int]] = None
+) -> Path:
     """Writes the workspace of scenarios/<name>.pur; a general controller plays the ideal game, as in the original."""
     scenario = load(str(SCENARIOS / f"{name}.pur"))
-    rules = IDEAL if controllers == "general" else Rules()
+    rules = IDEAL if controllers == "general" else Rules(slack=slack or {})
     won = solve_scenario(scenario, rules)
     options = Options(controllers=controllers, reaction=rules.reaction)
     return write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
@@ -138,14 +156,14 @@ def generated(name: str, folder: Path, controllers: str = "distributed") -> Path
 
 def make(ros: Ros, workspace: Path, *targets: str) -> Path:
     """Builds it with catkin_make."""
-    done = ros.run(f"catkin_make {' '.join(targets)}", workspace, 300)
+    done = ros.run(f"catkin_make {' '.join(targets)}", workspace, 900)
     assert done.returncode == 0, done.stdout
     return workspace
 
 
 def judged(ros: Ros, workspace: Path) -> List[str]:
     """Runs the workspace's own launch tests; the results that catkin_test_results found, all of them good."""
-    done = ros.run("catkin_make run_tests", workspace, 900)
-    verdict = ros.run("catkin_test_results --verbose --all build/test_results", workspace, 60)
+    done = ros.run("catkin_make run_tests", workspace, 1800)
+    verdict = ros.run("catkin_test_results --verbose --all build/test_results", workspace)
     assert verdict.returncode == 0, f"{verdict.stdout}\n{done.stdout[-20000:]}"
     return verdict.stdout.splitlines()

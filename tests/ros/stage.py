@@ -5,6 +5,7 @@ things while it runs.
 from __future__ import annotations
 
 import contextlib
+import http.client
 import json
 import os
 import re
@@ -17,8 +18,17 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Opt
 
 from ros_world import Ros, end
 
+from tests.waiting import PATIENCE
+
 WITNESS = Path(__file__).resolve().parent / "witness.py"
 EVENTS, STATE, GOAL, ACTION = "pursue/events", "pursue/system_state", "move_base_simple/goal", "pursue/actions"
+ENDED = ("won", "lost", "stopped")
+
+LAST_WORDS = 15.0
+"""Seconds after the end of a launch in which the witness may still write down what was said before it."""
+
+INTERRUPTED = ("KeyboardInterrupt", "rospy.exceptions.ROSInitException", "rospy.exceptions.ROSInterruptException")
+"""What a node dies of that is interrupted while it starts: as those do that were started again at the end."""
 
 Entry = Dict[str, Any]
 
@@ -50,6 +60,12 @@ def read_state(text: str) -> State:
     return state
 
 
+def ready(said: str, scenario: str) -> bool:
+    """True where the UI that was started last is one of this scenario, and has found everybody ready."""
+    starts = list(re.finditer(r"^(\w+): waiting for ", said, re.MULTILINE))
+    return bool(starts) and starts[-1].group(1) == scenario and "Everybody is ready" in said[starts[-1].end():]
+
+
 class Node(NamedTuple):
     """A node that was started by hand, and the file of what it says."""
 
@@ -62,7 +78,7 @@ class Node(NamedTuple):
 
     def wait(self) -> int:
         """Its exit status."""
-        return self.process.wait(30)
+        return self.process.wait(PATIENCE)
 
 
 class Stage:
@@ -76,6 +92,7 @@ class Stage:
         self.frozen: List[int] = []
         self._uri = uri
         self._read = 0
+        self._over = float("inf")
         self.witness: Optional["subprocess.Popen[bytes]"] = None
         self.launch: Optional["subprocess.Popen[bytes]"] = None
 
@@ -125,16 +142,17 @@ class Stage:
         reports = [status for entry in self.of("/diagnostics", node) for status in entry["data"]]
         return dict(reports[-1]["values"]) if reports else {}
 
-    def until(self, done: Callable[[], Any], seconds: float = 40.0) -> Any:
-        """Waits until it is so (what it returns then); the test fails after so many seconds."""
+    def until(self, done: Callable[[], Any], seconds: float = PATIENCE) -> Any:
+        """Waits until it is so (what it returns then); the test fails after so many seconds, or if the launch ends."""
         deadline = time.monotonic() + seconds
         while True:
             found = done()
             if found:
                 return found
-            over = self.launch is not None and self.launch.poll() is not None and not done()
-            if over or time.monotonic() > deadline:
-                when = "at the end" if over else f"after {seconds} s"
+            if self.launch is not None and self.launch.poll() is not None:
+                self._over = min(self._over, time.monotonic() + LAST_WORDS)
+            if time.monotonic() > min(deadline, self._over):
+                when = f"after {seconds} s" if self._over > deadline else "at the end"
                 raise AssertionError(f"not so {when}: {self.now()}\n{self.steps()}\n{self.output()[-6000:]}")
             time.sleep(0.05)
 
@@ -143,16 +161,18 @@ class Stage:
         self.until(lambda: event in self.steps())
         return next(state for state in self.states() if state.get("event") == event)
 
-    def until_over(self, seconds: float = 60.0) -> str:
-        """Waits for the end of the launch; the last status."""
+    def until_over(self, seconds: float = 2 * PATIENCE) -> str:
+        """Waits for the end of the mission and of the launch; the last status."""
         assert self.launch is not None
         launch = self.launch
         self.until(lambda: launch.poll() is not None, seconds)
+        self.until(lambda: self.now().status in ENDED)
         return self.now().status
 
     def output(self) -> str:
         """What roslaunch and the nodes have printed."""
-        return (self.folder / "launch.log").read_text(errors="replace")
+        log = self.folder / "launch.log"
+        return log.read_text(errors="replace") if log.exists() else ""
 
     def verdict(self) -> str:
         """What roslaunch says of the UI's end."""
@@ -162,13 +182,26 @@ class Stage:
     def crashes(self) -> List[str]:
         """The exceptions that nodes died of; a node that is interrupted while it starts has not crashed."""
         found = re.findall(r"^Traceback .*\n(?: .*\n)*([\w.]+)", self.output(), re.MULTILINE)
-        return [name for name in found if name != "KeyboardInterrupt"]
+        return [name for name in found if name not in INTERRUPTED]
 
     # What is done -----------------------------------------------------------------------------------------------------
 
     def say(self, *texts: str) -> None:
-        """The witness publishes words."""
+        """The witness publishes words, once the observer hears it."""
+        self.until(self.is_heard)
         self.tell({"say": texts})
+
+    def is_heard(self) -> bool:
+        """True where the observer is connected to the witness, or there is none: no word waits for who comes later."""
+        with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
+            with xmlrpc.client.ServerProxy(self._uri) as master:
+                nodes: Any = [master.lookupNode("/stage", f"/{node}") for node in ("observer", "witness")]
+            if all(code == 1 for code, _, _ in nodes):
+                observer, witness = (uri for _, _, uri in nodes)
+                with xmlrpc.client.ServerProxy(observer) as slave:
+                    links: Any = slave.getBusInfo("/stage")
+                return any((link[1], link[4]) == (witness, f"/{EVENTS}") for link in links[2])
+        return True
 
     def tell(self, order: Mapping[str, Any]) -> None:
         """An order for the witness (see there)."""
@@ -178,7 +211,7 @@ class Stage:
 
     def pid(self, node: str) -> int:
         """The process of a node, as it says itself; 0 where none answers."""
-        with contextlib.suppress(OSError, xmlrpc.client.Error):
+        with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 code, _, uri = master.lookupNode("/stage", f"/{node}")  # type: ignore[misc]
             if code == 1:
@@ -188,8 +221,7 @@ class Stage:
 
     def kill(self, node: str, sign: signal.Signals = signal.SIGKILL) -> int:
         """Sends a signal to a node; its process."""
-        process = self.pid(node)
-        assert process, f"{node} does not answer: {self.now()}"
+        process: int = self.until(lambda: self.pid(node))
         os.kill(process, sign)
         if sign == signal.SIGSTOP:
             self.frozen.append(process)
@@ -226,7 +258,7 @@ def staged(
     """A mission of the workspace with these launch arguments; whatever was started has ended afterwards."""
     folder.mkdir(parents=True, exist_ok=True)
     bringup = next((workspace / "src").glob("*_bringup")).name
-    given = " ".join(f"{name}:={json.dumps(value)}" for name, value in arguments.items())
+    given = " ".join(f"{name}:={json.dumps(value)}" for name, value in {"wait": PATIENCE, **arguments}.items())
     with ros.master() as there:
         there = {**there, "ROS_HOME": str(folder / "home"), "ROS_LOG_DIR": str(folder / "log")}
         stage = Stage(folder, there["ROS_MASTER_URI"], lambda command, log: ros.start(command, workspace, log, **there))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import subprocess
-import time
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from ros_world import Ros, end
+from ros_world import SAY, Ros, end
+
+from tests.waiting import until
 
 pytestmark = pytest.mark.ros
 DEAF = Path(__file__).resolve().parent / "deaf.py"
@@ -20,10 +21,14 @@ def test_words_of_a_controller_that_does_not_hear_the_observer_count_nothing(
     workspace, source = built("thesis/scenario_1"), "source devel/setup.bash; "
     with ros.master() as where:
         command = f"{source}exec rosrun observer observer _planner:=off _on_uncovered:=warn"
-        observer = ros.start(command, workspace, tmp_path / "observer", **where)
+        log = tmp_path / "observer"
+        observer = ros.start(command, workspace, log, PYTHONUNBUFFERED="1", **where)
+
+        def state() -> str:
+            return ros.run("rostopic echo -n 1 pursue/system_state", workspace, **where).stdout
 
         def goes() -> bool:
-            text = ros.run("rostopic echo -n 1 pursue/system_state", workspace, 20, **where).stdout
+            text = state()
             assert "status=" in text and "status=waiting" not in text, text
             return "bot1=going_c_to_b" in text
 
@@ -37,15 +42,18 @@ def test_words_of_a_controller_that_does_not_hear_the_observer_count_nothing(
             deaf.stdin.write(word + "\n")
             deaf.stdin.flush()
             assert deaf.stdout.readline().strip() == word
-            time.sleep(0.5)
 
         try:
-            ros.run("rostopic pub -1 pursue/events std_msgs/String _start_", workspace, 20, **where)
+            ros.run(f"python3 {SAY} _start_", workspace, **where)
+            until(lambda: "status=waiting" not in state(), "the mission runs")
             say("bot1:bot1_c2b")
-            assert not goes(), (tmp_path / "observer").read_text()
+            until(lambda: "does not hear the states" in log.read_text(), "the observer has heard the word")
+            assert not goes(), log.read_text()
             say("listen")
             say("bot1:bot1_c2b")
-            assert goes(), (tmp_path / "observer").read_text()
+            until(goes, "the word counts")
         finally:
+            assert deaf.stdin is not None
+            deaf.stdin.close()  # it reads on whatever else it is told
             end(deaf)
             end(observer)

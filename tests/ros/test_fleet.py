@@ -4,22 +4,27 @@ ROS_HOME): it is played, replaced by another one, rolled back; and nothing chang
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any, Dict, Iterator, List
 
 import pytest
-from ros_world import Ros, make
+from ros_world import SAY, Ros, make
+from stage import ready
 from test_links import Nodes, nodes, until
 
 from pursue_gen.language import load
 from pursue_gen.pipeline import Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 from tests.namespaces import Lab, lab, why_not
+from tests.waiting import PATIENCE
 
 pytestmark = [pytest.mark.ros, pytest.mark.skipif(bool(why_not()), reason=why_not())]
 
@@ -32,7 +37,7 @@ MACHINES = {
 UNIT = 0.5
 """Seconds per time unit."""
 
-READY = "ready"
+WAIT = f"--wait {PATIENCE}"
 UNCHANGED = 7
 
 FIRST = """
@@ -96,7 +101,7 @@ class Fleet:
         inside = ["ip", "netns", "exec", self.rooms.space("desk"), str(program), *shlex.split(command)]
         place = {**self._ros.environment, "XDG_CONFIG_HOME": str(self.folder / "desk")}
         return subprocess.run(
-            inside, cwd=self.folder, env=place, capture_output=True, text=True, timeout=120, check=False
+            inside, cwd=self.folder, env=place, capture_output=True, text=True, timeout=3 * PATIENCE, check=False
         )
 
     def serves(self) -> bool:
@@ -125,28 +130,41 @@ class Fleet:
         """How often the base's UI has said so."""
         return self.made.log("base").count(text)
 
-    def play(self) -> None:
-        """Starts the mission that is ready, and waits for its goal."""
+    def play(self, scenario: str) -> None:
+        """Starts the mission of this scenario, and waits for its goal."""
         won = self.said("The goal is reached")
-        self.start()
-        until(lambda: self.said("The goal is reached") > won, 90, self.made.logs)
+        self.start(scenario)
+        until(lambda: self.said("The goal is reached") > won, self.made.logs)
 
-    def start(self) -> None:
-        """Says _start_ once every node is ready."""
+    def start(self, scenario: str) -> None:
+        """Says _start_ once every node is ready for the mission of this scenario."""
         runs = self.said("the mission runs")
-        until(self.ready, 80, self.made.logs)
-        publish = "source devel/setup.bash; exec rostopic pub -1 pursue/events std_msgs/String _start_"
-        self.made.start("start", publish, "desk")
-        until(lambda: self.said("the mission runs") > runs, 30, self.made.logs)
+        until(lambda: ready(self.made.log("base"), scenario), self.made.logs)
+        self.made.start("start", f"exec python3 {SAY} _start_", "desk")
+        until(lambda: self.said("the mission runs") > runs, self.made.logs)
 
-    def ready(self) -> bool:
-        """True where the UI, started again after the last mission, has found all nodes ready."""
-        return self.made.log("base").rpartition("The goal is reached")[2].count(READY) > 0
+    @contextlib.contextmanager
+    def unfinished(self, robot: str) -> Iterator[None]:
+        """Meanwhile the robot's controller stands still, and no mission that needs it comes to its end."""
+        program, found = f"{self.folder}/ws/devel/lib/controller_{robot}/".encode(), []
+        for process in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):  # it has ended meanwhile
+                found += [int(process.name)] * (program in (process / "cmdline").read_bytes())
+        (controller,) = found
+        os.kill(controller, signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            os.kill(controller, signal.SIGCONT)
 
     def goals(self, robot: str) -> List[str]:
         """The goals that the robot got so far, as x/y in metres."""
         lines = [line.split(",") for line in self.made.log(f"{robot}_goals").splitlines() if line[:1].isdigit()]
         return [f"{float(line[4]):g}/{float(line[5]):g}" for line in lines]
+
+    def until_sent(self, robot: str, *goals: str) -> None:
+        """Waits until the robot has got these goals: who listens to them may be slower than the UI."""
+        until(lambda: self.goals(robot) == list(goals), lambda: f"{robot}: {self.goals(robot)}")
 
 
 @pytest.fixture(scope="module")
@@ -164,7 +182,7 @@ def fleet(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fleet]
         fleet = Fleet(ros, made, rooms, folder)
         fleet.desk("keys new desk")
         robots = "".join(f"  {name}: {{host: {name}}}\n" for name in MACHINES)
-        (folder / "robots.yaml").write_text(f"format: 1\nrobots:\n{robots}timeout: 2\n", encoding="utf-8")
+        (folder / "robots.yaml").write_text(f"format: 1\nrobots:\n{robots}", encoding="utf-8")
         for machine, runs in MACHINES.items():
             keys = fleet.home(machine) / "pursue" / "keys"
             keys.mkdir(parents=True)
@@ -175,29 +193,30 @@ def fleet(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fleet]
             made.start(machine, f'{command} nodes:="{runs}"', machine)
         for robot in ("bot1", "bot3"):
             made.start(f"{robot}_goals", f"exec rostopic echo -p {robot}/move_base_simple/goal", "desk")
+        until(fleet.serves, made.logs)
         yield fleet
 
 
 def test_missions_are_sent_played_replaced_and_rolled_back(fleet: Fleet) -> None:
     """A mission that comes while another one is played waits for its end, then all robots play the new one."""
     digests = {name: fleet.desk(f"bundle {name}.pur -o {name}.pursue").split()[-1] for name in ("first", "second")}
-    until(fleet.serves, 60, fleet.made.logs)
-    fleet.desk("send first.pursue --to robots.yaml --wait 20")
+    fleet.desk(f"send first.pursue --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["first"])
-    fleet.start()
-    fleet.desk("send second.pursue --to robots.yaml")
-    assert fleet.current() == dict.fromkeys(MACHINES, digests["first"]), "a mission was swapped while it ran"
-    until(lambda: fleet.said("The goal is reached"), 60, fleet.made.logs)
-    fleet.desk("send second.pursue --to robots.yaml --wait 20")
+    fleet.start("first")
+    with fleet.unfinished("bot3"):
+        fleet.desk("send second.pursue --to robots.yaml")
+        assert fleet.current() == dict.fromkeys(MACHINES, digests["first"]), "a mission was swapped while it ran"
+    until(lambda: fleet.said("The goal is reached"), fleet.made.logs)
+    fleet.desk(f"send second.pursue --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["second"])
-    assert fleet.goals("bot3") == ["-1/0"]
-    fleet.play()
-    assert fleet.goals("bot3") == ["-1/0", "7/5"]
-    assert fleet.goals("bot1") == ["1/0", "5/5"]
-    fleet.desk("send --back --to robots.yaml --wait 20")
+    fleet.until_sent("bot3", "-1/0")
+    fleet.play("second")
+    fleet.until_sent("bot3", "-1/0", "7/5")
+    fleet.until_sent("bot1", "1/0", "5/5")
+    fleet.desk(f"send --back --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["first"])
-    fleet.play()
-    assert fleet.goals("bot3") == ["-1/0", "7/5", "-1/0"]
+    fleet.play("first")
+    fleet.until_sent("bot3", "-1/0", "7/5", "-1/0")
 
 
 def test_while_one_robot_cannot_be_reached_nothing_changes_anywhere(fleet: Fleet) -> None:
@@ -208,5 +227,6 @@ def test_while_one_robot_cannot_be_reached_nothing_changes_anywhere(fleet: Fleet
     fleet.rooms.mend("bot2")
     assert "bot2" in table
     assert fleet.files() == before
-    fleet.desk("send third.pur --to robots.yaml --wait 20")
-    fleet.play()
+    until(fleet.serves, fleet.made.logs)
+    fleet.desk(f"send third.pur --to robots.yaml {WAIT}")
+    fleet.play("third")

@@ -14,6 +14,7 @@ from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.pipeline import Rules, solve_scenario
 from pursue_gen.report.ros_graph import topics
+from tests.waiting import PATIENCE
 
 Build = Callable[..., Path]
 Graph = Tuple[Dict[str, Set[str]], Dict[str, Set[str]]]
@@ -43,7 +44,7 @@ def test_the_master_knows_the_nodes_and_topics_of_the_report(ros: Ros, built: Bu
     with ros.master() as there:
         mission = ros.start(LAUNCH, built("thesis/scenario_1"), tmp_path / "log", **there)
         try:
-            deadline = time.monotonic() + 60
+            deadline = time.monotonic() + PATIENCE
             while seen(there["ROS_MASTER_URI"]) != expected and time.monotonic() < deadline:
                 time.sleep(0.3)
             assert seen(there["ROS_MASTER_URI"]) == expected

@@ -16,7 +16,7 @@ from typing import Any, Callable, Dict, Iterator, Tuple
 
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-from ros_world import Ros, end
+from ros_world import Ros, end, free_port
 
 from pursue_gen.transport.mission_bundle import (
     COMMIT,
@@ -29,6 +29,7 @@ from pursue_gen.transport.mission_bundle import (
     write_public_key,
 )
 from pursue_gen.workspace.generate import mission_of
+from tests.waiting import PATIENCE
 from tests.workspace.worlds import files
 
 Build = Callable[..., Path]
@@ -54,25 +55,25 @@ class Machine:
 
     def ask(self, method: str, path: str, body: bytes = b"", **headers: str) -> Tuple[int, Dict[str, Any]]:
         """The answer of the server; status 0 where there is none."""
-        there = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        there = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
         try:
             there.request(method, path, body or None, {key.replace("_", "-"): text for key, text in headers.items()})
             answer = there.getresponse()
             return answer.status, json.loads(answer.read())
-        except (ConnectionError, http.client.HTTPException):
+        except (OSError, http.client.HTTPException):
             return 0, {}
         finally:
             there.close()
 
     def until(self, status: int, good: Callable[[Dict[str, Any]], bool] = lambda _: True) -> Dict[str, Any]:
         """Waits until /health says so."""
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             found, facts = self.ask("GET", "/health")
             if found == status and good(facts):
                 return facts
             time.sleep(0.05)
-        raise AssertionError(f"not {status} after 30 s: {found}, {facts}\n{self.log.read_text()[-4000:]}")
+        raise AssertionError(f"not {status} after {PATIENCE} s: {found}, {facts}\n{self.log.read_text()[-4000:]}")
 
     def order(self, action: str, digest: str, body: bytes = b"") -> Tuple[int, Dict[str, Any]]:
         """A right order."""
@@ -89,19 +90,12 @@ class Machine:
             os.kill(int(slave.getPid("/test")[2]), signal.SIGKILL)  # type: ignore[index]
 
 
-def free_ports() -> Tuple[int, int]:
-    with socket.socket() as first, socket.socket() as second:
-        for each in (first, second):
-            each.bind(("127.0.0.1", 0))
-        return int(first.getsockname()[1]), int(second.getsockname()[1])
-
-
 @contextlib.contextmanager
 def machine(ros: Ros, workspace: Path, folder: Path) -> Iterator[Machine]:
     keys = folder / "home" / "pursue" / "keys"
     keys.mkdir(parents=True)
     (keys / "desk.pub").write_text(write_public_key(DESK.public_key(), "desk"))
-    port, pubsubport = free_ports()
+    port, pubsubport = free_port(), free_port()
     (folder / "both.launch").write_text(LAUNCH.format(port=port, pubsubport=pubsubport))
     with ros.master() as there:
         there = {**there, "ROS_HOME": str(folder / "home"), "ROS_LOG_DIR": str(folder / "log")}
@@ -127,13 +121,14 @@ def test_missions_come_over_http_whoever_is_killed(ros: Ros, built: Build, tmp_p
         status, told = there.order(PREPARE, digest, bundle)
         assert (status, told["ok"], told["status"]["prepared"]) == (200, True, digest), told
 
-        listener = socket.create_connection(("127.0.0.1", there.pubsubport), timeout=20)
+        listener = socket.create_connection(("127.0.0.1", there.pubsubport), timeout=PATIENCE)
         with listener, listener.makefile("rb") as lines:
-            heard = json.loads(lines.readline())
-            assert heard["topic"] == "mission_status" and json.loads(heard["data"])["prepared"] == digest
+            heard = map(json.loads, lines)  # the status of before may come first
+            statuses = (json.loads(said["data"]) for said in heard if said["topic"] == "mission_status")
+            assert any(status["prepared"] == digest for status in statuses)
 
             there.kill("communication_manager")
-            assert lines.readline() == b""
+            assert list(heard) == [], "nothing but the end of the connection"
         again = there.until(200)
         assert again["prepared"] == digest, "on the same ports, and the robot stands as it stood"
         status, told = there.order(COMMIT, digest)
@@ -149,9 +144,9 @@ def test_missions_come_over_http_whoever_is_killed(ros: Ros, built: Build, tmp_p
         assert (status, told["ok"]) == (200, True), told
 
         command = f"source devel/setup.bash; rosrun communication_manager communication_manager _port:={there.port}"
-        second = ros.run(command, workspace, 60, ROS_HOME=str(tmp_path), ROS_MASTER_URI=there.uri)
+        second = ros.run(command, workspace, ROS_HOME=str(tmp_path), ROS_MASTER_URI=there.uri)
         assert second.returncode == 3 and "choose another ~port" in second.stdout
         assert "Traceback" not in second.stdout
     log = (tmp_path / "launch.log").read_text(errors="replace")
     assert "Traceback" not in log, log
-    assert "prepare, mission own" in log and log.count("refused") <= 2
+    assert "prepare, mission own" in log and log.count("refused: ") + log.count("refused (") <= 2

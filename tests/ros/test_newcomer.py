@@ -27,15 +27,15 @@ def test_the_checkout_is_a_catkin_package(ros: Ros, tmp_path: Path) -> None:
         shutil.copytree(str(ROOT / name), str(place / name), ignore=ignored)
     for name in ("package.xml", "CMakeLists.txt"):
         shutil.copy(str(ROOT / name), str(place / name))
-    done = ros.run("catkin_make install -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON", tmp_path, 300)
+    done = ros.run("catkin_make install -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON", tmp_path, 900)
     assert done.returncode == 0, done.stdout
     for space in ("devel", "install"):
         program = f"source {space}/setup.bash && rosrun pursue_gen pursue-gen"
-        assert ros.run(f"{program} --version", tmp_path, 60).stdout == f"pursue-gen {__version__}\n"
-        told = ros.run(f"{program} ws {SCENARIO} -o from_{space}", tmp_path, 60)
+        assert ros.run(f"{program} --version", tmp_path).stdout == f"pursue-gen {__version__}\n"
+        told = ros.run(f"{program} ws {SCENARIO} -o from_{space}", tmp_path)
         assert told.returncode == 0, told.stdout
         shutil.rmtree(str(place), ignore_errors=True)  # the installed one has to do without the source
-    same = ros.run("diff -r from_devel from_install", tmp_path, 60)
+    same = ros.run("diff -r from_devel from_install", tmp_path)
     assert same.returncode == 0, same.stdout
 
 
@@ -48,7 +48,7 @@ def run_mission(*words: object, **environment: str) -> "subprocess.CompletedProc
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        timeout=300,
+        timeout=900,
         check=False,
     )
 

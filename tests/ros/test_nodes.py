@@ -10,6 +10,8 @@ from typing import Callable, Dict, List, Tuple
 import pytest
 from ros_world import Ros, end, generated, make
 
+from tests.waiting import PATIENCE
+
 Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
@@ -42,12 +44,12 @@ def test_nodes_started_by_hand_reach_the_goal_and_end_with_status_0(
 ) -> None:
     workspace, source = sourced
     with ros.master() as there:
-        ros.run("rosparam set /use_sim_time true", workspace, 30, **there)
+        ros.run("rosparam set /use_sim_time true", workspace, **there)
         clock = ros.start(f"{source}exec rosrun UI sim_clock _speed:=10", workspace, tmp_path / "clock", **there)
         try:
             commands = {node: f"rosrun {node} {node}" for node in NODES}
             commands["simulator"] = "rosrun UI simulator"
-            commands["UI"] = "rosrun UI UI --autostart"
+            commands["UI"] = f"rosrun UI UI --autostart --wait {PATIENCE}"
             assert ended(ros, workspace, source, commands, tmp_path, there) == dict.fromkeys(commands, 0)
         finally:
             end(clock)
@@ -62,7 +64,7 @@ def ended(
         name: ros.start(f"{source}exec {command}", workspace, logs / name, **there)
         for name, command in commands.items()
     }
-    deadline = time.monotonic() + 120
+    deadline = time.monotonic() + 2 * PATIENCE
     try:
         while any(node.poll() is None for node in nodes.values()) and time.monotonic() < deadline:
             time.sleep(0.1)
@@ -77,7 +79,7 @@ def test_the_launch_file_plays_the_mission_and_ends(ros: Ros, sourced: Tuple[Pat
     workspace, source = sourced
     with ros.master() as there:
         command = f"{source}roslaunch scenario_1_bringup mission.launch use_sim_time:=true speed:=10"
-        done = ros.run(command, workspace, 120, **there)
+        done = ros.run(command, workspace, **there)
     assert "The goal is reached" in done.stdout, done.stdout
     assert "Traceback" not in done.stdout, done.stdout
 
@@ -97,7 +99,7 @@ def test_a_mission_that_does_not_reach_its_goal_fails_its_test(ros: Ros, built: 
     kept = part.read_text()
     part.write_text(kept[: kept.index("strategy:")] + "strategy: []\n")
     try:
-        done = ros.run("source devel/setup.bash; rostest scenario_1_bringup mission.test patience:=5", workspace, 120)
+        done = ros.run("source devel/setup.bash; rostest scenario_1_bringup mission.test patience:=5", workspace)
     finally:
         part.write_text(kept)
     assert done.returncode != 0

@@ -7,11 +7,11 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import List, Mapping, Tuple
+from typing import Dict, List, Mapping, Tuple
 
 import pytest
 from ros_world import Ros, make
-from stage import GOAL, Stage, staged
+from stage import GOAL, Stage, ready, staged
 
 from pursue_gen.language import load
 from pursue_gen.pipeline import Rules, solve_scenario
@@ -100,21 +100,21 @@ class Day:
         state = self.stage.now()
         return str(state.get("mission", "")), state.status
 
-    def until(self, mission: str, status: str, seconds: float = 30.0) -> None:
+    def until(self, mission: str, status: str) -> None:
         """Waits until such a state is the last one."""
-        self.stage.until(lambda: self.last() == (mission, status), seconds)
+        self.stage.until(lambda: self.last() == (mission, status))
 
-    def until_won(self, mission: str) -> None:
-        """Waits until the mission was won: that is soon followed by the next one."""
-        won = (mission, "won")
-        self.stage.until(lambda: won in [(state.get("mission"), state.status) for state in self.stage.states()])
+    def until_was(self, mission: str, status: str) -> None:
+        """Waits until there was such a state: another one may soon follow."""
+        wanted = (mission, status)
+        self.stage.until(lambda: wanted in [(state.get("mission"), state.status) for state in self.stage.states()])
 
-    def begin(self, mission: str, asked: int) -> None:
-        """Starts the mission once everybody is ready (the UI has said so `asked` times before)."""
+    def begin(self, mission: str, scenario: str) -> None:
+        """Starts the mission of this scenario once everybody is ready for it."""
         self.until(mission, "waiting")
-        self.stage.until(lambda: self.stage.output().count("Everybody is ready") > asked, 30.0)
+        self.stage.until(lambda: ready(self.stage.output(), scenario))
         self.stage.say("_start_")
-        self.until(mission, "running")
+        self.until_was(mission, "running")
 
     def events(self, mission: str) -> List[str]:
         """What led to the mission's states, in order."""
@@ -134,22 +134,23 @@ def test_what_the_desk_sends_is_played_after_the_mission_before_and_by_everybody
     store = Store(tmp_path / "stage" / "home")
     second = store.put("second", workspace_of("second", SECOND, tmp_path))
     one, two = mission_id(first), mission_id(second)
-    lab = {"again": True, "received": True, "use_sim_time": True, "planner": "off"}
+    lab: Dict[str, object] = {"again": True, "received": True, "use_sim_time": True, "planner": "off"}
+    lab.update({"speed": 3, "lost_after": 1000})  # an observer that is started again may take its time
     with staged(ros, workspace, tmp_path / "stage", **lab) as stage:
         day = Day(stage)
-        day.begin(one, 0)
-        day.until_won(one)
+        day.begin(one, "first")
+        day.until_was(one, "won")
         assert sorted(day.goals()) == [("bot1", (1.0, 0.0)), ("bot2", (0.0, 1.0))]
         day.until(one, "waiting")  # nobody has to start anything
 
         store.switch(second)
-        day.begin(two, stage.output().count("Everybody is ready"))
+        day.begin(two, "second")
         stage.until(lambda: ("bot2", (7.0, 5.0)) in day.goals())
         store.switch("")  # the next one; this one goes on with what it has
         observer, controller = stage.kill("observer"), stage.kill("controller_bot1")
         stage.until_back("observer", observer)
         stage.until_back("controller_bot1", controller)
-        day.until_won(two)
+        day.until_was(two, "won")
         assert day.events(two)[-1].startswith("seeX") and "seeZ" in day.events(two)
         assert dict(day.goals()[2:]) == {"bot2": (7.0, 5.0), "bot1": (5.0, 5.0)}
         day.until(one, "waiting")  # by now

@@ -6,14 +6,15 @@ import contextlib
 import json
 import re
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 import yaml
-from ros_world import Ros, end
+from ros_world import Ros, end, generated, make
 
-Build = Callable[..., Path]
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.ros
 
@@ -21,16 +22,20 @@ FAKE = Path(__file__).resolve().parent / "fake_move_base.py"
 UNIT = 0.2
 """Seconds per time unit: a movement takes 1.8 to 2 s, bot1_inb 0.6 to 0.8 s, bot2_ina 1.2 to 1.4 s."""
 
+SLACK = 100
+"""Time units by which the robots may be late in their model: they move in real time, and a machine may stand still."""
+
 LAUNCH = f"exec roslaunch scenario_1_bringup mission.launch simulate:=false time_unit:={UNIT} tolerance:=0.5"
 
 
 @pytest.fixture(scope="module")
-def workspace(ros: Ros, built: Build) -> Path:
+def workspace(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
-    found = ros.run(f"python3 -c 'import {wanted}'", ros.home, 60)
+    found = ros.run(f"python3 -c 'import {wanted}'", ros.home)
     if found.returncode:
         pytest.skip(f"no messages of move_base here: {found.stdout.strip().splitlines()[-1]}")
-    return built("thesis/scenario_1")
+    slack = {"bot1": SLACK, "bot2": SLACK}
+    return make(ros, generated("thesis/scenario_1", tmp_path_factory.mktemp("robots") / "ws", slack=slack))
 
 
 class Robots:
@@ -46,7 +51,7 @@ class Robots:
         self.log = logs / "robots"
         self.goals = {f"{x:.2f} {y:.2f}": poi for poi, (x, y, *_) in poses.items()}
         (logs / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
-        ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, 30, **there)
+        ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, **there)
         self.process = ros.start(f"exec python3 {FAKE}", workspace, self.log, **there)
 
     def heard(self, robot: str) -> List[str]:
@@ -57,12 +62,12 @@ class Robots:
 
 @contextlib.contextmanager
 def playing(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dict[str, Any]) -> Iterator[Any]:
-    """A mission with fake robots: (robots, what roslaunch says, its process, where the master is)."""
+    """A mission with fake robots: (robots, what roslaunch says, its process)."""
     with ros.master() as there:
         fakes = Robots(ros, workspace, logs, there, **robots)
         mission = ros.start(f"source devel/setup.bash; {LAUNCH} {arguments}", workspace, logs / "launch", **there)
         try:
-            yield fakes, logs / "launch", mission, there
+            yield fakes, logs / "launch", mission
         finally:
             end(mission)
             end(fakes.process)
@@ -70,24 +75,27 @@ def playing(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dic
 
 def played(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dict[str, Any]) -> Any:
     """Plays it to its end: (robots, what was said)."""
-    with playing(ros, workspace, logs, arguments, **robots) as (fakes, log, mission, _):
-        deadline = time.monotonic() + 60
+    with playing(ros, workspace, logs, arguments, **robots) as (fakes, log, mission):
+        deadline = time.monotonic() + 2 * PATIENCE
         while mission.poll() is None and time.monotonic() < deadline:
             time.sleep(0.1)
     return fakes, log.read_text()
 
 
 def wait_for(condition: Callable[[], bool], log: Path, what: str) -> None:
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline, f"{what}; it was said:\n{log.read_text()[-8000:]}"
         time.sleep(0.05)
 
 
 def well(said: str) -> None:
-    """The goal was reached, each end was told once, and none at a time or place where it cannot be."""
+    """The goal was reached, each end counted once, and none was told where it cannot be; but one that is not answered
+    for half a second, on a busy machine, is told again."""
     assert "The goal is reached" in said, said[-8000:]
-    assert not re.search(r'File ".*/controller_\w+/scripts/', said) and "cannot happen" not in said, said[-8000:]
+    assert not re.search(r'File ".*/controller_\w+/scripts/', said), said[-8000:]
+    again = {word for word, times in Counter(re.findall(r"reports (\w+)", said)).items() if times > 1}
+    assert set(re.findall(r"(\S+): it cannot happen", said)) <= again, said[-8000:]
     for word in ("bot1_going_c_to_b2b", "bot2_going_c_to_a2a"):
         assert len(re.findall(rf"state \d+: {word}", said)) == 1, said[-8000:]
 
@@ -106,7 +114,7 @@ def test_action_goals_a_failure_on_the_way_and_results_that_come_twice(
 
 def test_simple_goals_an_early_end_and_a_result_of_long_ago(ros: Ros, workspace: Path, tmp_path: Path) -> None:
     arguments = "ends:=result on_uncovered:=warn"
-    robots, said = played(ros, workspace, tmp_path, arguments, bot1={"travel": 0.5}, bot2={"plays": ["stale"]})
+    robots, said = played(ros, workspace, tmp_path, arguments, bot1={"travel": 0.05}, bot2={"plays": ["stale"]})
     well(said)
     early = "bot1_going_c_to_b2b comes at a time that the model does not know"
     assert early in said and "bot2_going_c_to_a2a comes at" not in said, said[-8000:]
@@ -125,13 +133,12 @@ def test_ends_are_seen_by_pose_and_by_tf(ros: Ros, workspace: Path, tmp_path: Pa
 def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_mission_stops(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
-    (tmp_path / "own.yaml").write_text("retries: 1\nretry_delay: 0.1\n")
+    (tmp_path / "own.yaml").write_text("retries: 1\nretry_delay: 4\n")  # until then bot2, too, is on its way
     arguments = f"ends:=result on_stop:=cancel planner:=off robots:={tmp_path}/own.yaml"
     bot1, bot2 = {"plays": ["abort"]}, {"plays": ["never"]}
-    with playing(ros, workspace, tmp_path, arguments, bot1=bot1, bot2=bot2) as (robots, log, mission, there):
+    with playing(ros, workspace, tmp_path, arguments, bot1=bot1, bot2=bot2) as (robots, log, mission):
         failed = "reports bot1:_failed_"
         wait_for(lambda: failed in log.read_text() and "goal a" in robots.heard("bot2"), log, "bot1 has not failed")
-        ros.run("rostopic pub --once pursue/events std_msgs/String _stop_", workspace, 60, **there)
         wait_for(lambda: "cancel" in robots.heard("bot2"), log, "bot2 is not called back")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
         assert robots.heard("bot1") == ["goal b", "goal b"]
@@ -156,7 +163,7 @@ def test_a_robot_that_connects_late_is_told_and_is_called_back_when_its_controll
         holding = start(told["holding"], tmp_path / "holding")
         robots = Robots(ros, workspace, tmp_path, there)
         cleanup.callback(end, robots.process)
-        wait_for(lambda: "bot1/amcl_pose" in ros.run("rostopic list", workspace, 30, **there).stdout, log, "no robots")
+        wait_for(lambda: "bot1/amcl_pose" in ros.run("rostopic list", workspace, **there).stdout, log, "no robots")
         assert "bot1 goes to b" not in log.read_text() and robots.heard("bot1") == [], "nobody sets out in a hold"
         end(holding)
         start(told["running"], tmp_path / "running")
@@ -179,5 +186,5 @@ def test_settings_that_cannot_be_end_the_controller_with_status_3(
         (tmp_path / f"{hidden}.py").write_text("raise ImportError('not here')\n")
     command = f"export PYTHONPATH={tmp_path}:$PYTHONPATH; exec rosrun controller_bot1 controller_bot1 {parameters}"
     with ros.master() as there:
-        done = ros.run(f"source devel/setup.bash; {command}", workspace, 60, **there)
+        done = ros.run(f"source devel/setup.bash; {command}", workspace, **there)
     assert (done.returncode, message in done.stdout, "Traceback" in done.stdout) == (3, True, False), done.stdout

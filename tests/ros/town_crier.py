@@ -32,7 +32,7 @@ def main() -> None:
         topic = word["topic"]
         if topic not in voices:
             voices[topic] = rospy.Publisher(topic, String, queue_size=1000, latch=True)
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 120
         while not voices[topic].get_num_connections() and time.monotonic() < deadline:
             time.sleep(0.02)
         voices[topic].publish(word["data"])
