@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import shutil
 import subprocess
+import uuid
 from pathlib import Path
 from typing import Dict, Iterator, Sequence
 
 HOSTS = Path("/etc/netns")
 
 
+def _mark() -> str:
+    """How names begin that neither a run beside this one has, nor one that was killed and has left its own behind."""
+    return f"pursue-{uuid.uuid4().hex[:12]}"
+
+
+@functools.lru_cache(maxsize=None)
 def why_not() -> str:
     """Why this machine cannot have network namespaces; empty if it can."""
     if not hasattr(os, "geteuid") or os.geteuid() != 0:
         return "network namespaces need root"
     if shutil.which("ip") is None:
         return "network namespaces need the command ip (package iproute2)"
-    probe = f"pursue-{os.getpid()}-probe"
+    probe = f"{_mark()}-probe"
     commands = (("netns", "add", probe), ("-n", probe, "link", "add", "bridge0", "type", "bridge"),
                 ("-n", probe, "link", "add", "end1", "type", "veth", "peer", "name", "end2"))
     try:
@@ -36,7 +44,7 @@ class Lab:
 
     def __init__(self, machines: Sequence[str]) -> None:
         self.addresses: Dict[str, str] = {name: f"10.77.0.{i + 1}" for i, name in enumerate(machines)}
-        self._mark = f"pursue-{os.getpid()}"
+        self._mark = _mark()
         self._ports = {name: f"port{i}" for i, name in enumerate(machines)}
 
     def space(self, machine: str) -> str:
@@ -67,9 +75,7 @@ class Lab:
         for name in (*self.addresses, "switch"):
             space = self.space(name)
             subprocess.run(["ip", "netns", "del", space], capture_output=True, check=False)
-            shutil.rmtree(HOSTS / space, ignore_errors=True)
-        with contextlib.suppress(OSError):
-            HOSTS.rmdir()  # fails, as it should, if somebody else uses it
+            shutil.rmtree(HOSTS / space, ignore_errors=True)  # HOSTS stays: another run may be about to write there
 
     def cut(self, machine: str) -> None:
         """From now on nothing gets to the machine or from it; neither end is told."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import importlib
 import json
-import socket
 import ssl
 import threading
 from pathlib import Path
@@ -16,6 +15,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from rendered_scripts import importable
 
 from pursue_gen.transport import mission_bundle
+from tests.waiting import PATIENCE, connected, may_close, rest
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 
@@ -77,8 +77,9 @@ class Reader:
         })
 
     def hear(self, text: str) -> None:
+        answers = self.answers  # as it was when the message came: nobody waits for this thread
         self.messages.append(json.loads(text))
-        if not self.answers:
+        if not answers:
             return
         keys, _ = mission_bundle.read_keys(str(self.keys))
         order = mission_bundle.read_order(self.messages[-1]["order"], keys)
@@ -90,7 +91,7 @@ class Reader:
 
 
 class Robot:
-    """A server with its reader, on a free port of this machine."""
+    """A server with its reader, on a free port of this machine. It is patient, unless `options` say otherwise."""
 
     def __init__(self, folder: Path, reader: Any = None, **options: Any) -> None:
         self.keys = folder / "keys"
@@ -103,7 +104,8 @@ class Robot:
         self.manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(self.keys)), there, limit, exposed)
         sockets = manager_loop.bind("127.0.0.1", 0, "~port")
         context = options.pop("context", None)
-        limits = manager_http.Limits(**{"patience": 5.0, **options})
+        patient = dict.fromkeys(("patience", "header", "window"), PATIENCE)
+        limits = manager_http.Limits(**{**patient, **options})
         self.server = manager_http.Server(self.manager, sockets, self.publish, self.record, limits, context)
         self.background = manager_loop.Background((self.server,), self.record.count)
         self.background.start()
@@ -133,22 +135,18 @@ class Told(NamedTuple):
 
 
 def exchange(port: int, data: bytes, more: bytes = b"", tls: Optional[ssl.SSLContext] = None) -> bytes:
-    """Sends bytes, and more, and reads until the server closes."""
-    there: socket.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
-    answer = b""
+    """Sends bytes, and more, and reads until the server closes, which may be before it has got all."""
+    there = connected(port)
     try:
         if tls is not None:
             there = tls.wrap_socket(there, server_hostname="127.0.0.1")
-        there.sendall(data)
-        if more:
-            there.sendall(more)
-        for part in iter(lambda: there.recv(65536), b""):
-            answer += part
-    except ConnectionError:
-        pass
+        with may_close():
+            there.sendall(data)
+            if more:
+                there.sendall(more)
+        return rest(there)
     finally:
         there.close()
-    return answer
 
 
 def parse(answer: bytes) -> Told:

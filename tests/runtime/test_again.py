@@ -7,12 +7,13 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import List
 
 import pytest
 from rendered_scripts import NAMES, TEMPLATES
+
+from tests.waiting import PATIENCE, until
 
 ONCE_KILLED = 'echo $$ >>"$0"; [[ $(wc -l <"$0") == 2 ]] && exit 5; kill -9 $$'
 
@@ -24,7 +25,7 @@ for sign in (signal.SIGINT, signal.SIGTERM):
 open(sys.argv[1], "w").close()
 while not heard:
     time.sleep(0.05)
-time.sleep(0.7)
+time.sleep(0.4)
 open(sys.argv[1], "w").write("".join(f"{number:d} " for number in heard))
 sys.exit(3)
 """
@@ -51,11 +52,8 @@ def lives(process: int) -> bool:
 
 
 def gone(process: int) -> bool:
-    """True as soon as it is no more; False after some seconds."""
-    deadline = time.monotonic() + 10
-    while lives(process) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return not lives(process)
+    """True as soon as it is no more."""
+    return bool(until(lambda: not lives(process), f"the end of process {process}"))
 
 
 def started(command: List[str], note: Path) -> "tuple[subprocess.Popen[bytes], int]":
@@ -63,9 +61,7 @@ def started(command: List[str], note: Path) -> "tuple[subprocess.Popen[bytes], i
     process = subprocess.Popen(
         [*command, "bash", "-c", 'echo $$ >"$0"; exec sleep 1000', str(note)], start_new_session=True
     )
-    deadline = time.monotonic() + 10
-    while not (note.exists() and note.read_text().endswith("\n")) and time.monotonic() < deadline:
-        time.sleep(0.02)
+    until(lambda: note.exists() and note.read_text().endswith("\n"), "the program's note")
     return process, int(note.read_text())
 
 
@@ -90,7 +86,7 @@ def test_the_program_reads_what_it_is_given(again: List[str]) -> None:
 def test_who_ends_it_ends_the_program(again: List[str], tmp_path: Path, sign: signal.Signals, whole: bool) -> None:
     process, child = started(again, tmp_path / "note")
     (os.killpg if whole else os.kill)(process.pid, sign)
-    assert process.wait(10) != 0
+    assert process.wait(PATIENCE) != 0
     assert gone(child)
 
 
@@ -98,11 +94,9 @@ def test_a_signal_for_the_whole_group_comes_once(again: List[str], tmp_path: Pat
     """rospy may wait for ever when a second one interrupts the first."""
     note = tmp_path / "note"
     process = subprocess.Popen([*again, sys.executable, "-c", COUNTS, str(note)], start_new_session=True)
-    deadline = time.monotonic() + 10
-    while not note.exists() and time.monotonic() < deadline:
-        time.sleep(0.02)
+    until(note.exists, "the program's note")
     os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(10) == 3
+    assert process.wait(PATIENCE) == 3
     assert note.read_text() == "2 "
 
 

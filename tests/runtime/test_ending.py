@@ -11,6 +11,8 @@ from typing import List
 import pytest
 from node_modules import SCRIPTS
 
+from tests.waiting import PATIENCE
+
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 PROGRAM = """
@@ -40,9 +42,8 @@ assert not ending.called
 
 
 def run(rest: str) -> List[str]:
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM + rest, str(SCRIPTS)], capture_output=True, text=True, timeout=60, check=False
-    )
+    command = [sys.executable, "-c", PROGRAM + rest, str(SCRIPTS)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
 
@@ -80,7 +81,7 @@ else:
             out.write("rospy.is_shutdown, rospy.signal_shutdown = lambda: False, lambda _: None\n" + program)
         environment = {name: value for name, value in os.environ.items() if name != "PURSUE_ANEW"}
         command = [sys.executable, file, str(SCRIPTS), file]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 0, done.stderr
     (first, *one), (again, *two) = (line.split() for line in done.stdout.splitlines())
     assert (first, again, two) == ("first", "again", [*one, "True"])

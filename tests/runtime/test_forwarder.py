@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import socket
-import time
 from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 from manager_stage import forwarder, manager_core, manager_loop
+
+from tests.waiting import PATIENCE, connected, until
 
 
 class Stage:
@@ -23,14 +24,11 @@ class Stage:
         self.held: List[socket.socket] = []
 
     def connect(self) -> socket.socket:
-        self.held.append(socket.create_connection(("127.0.0.1", self.forwarder.port), timeout=20))
+        self.held.append(connected(self.forwarder.port))
         return self.held[-1]
 
     def wait(self, subscribers: int) -> None:
-        deadline = time.monotonic() + 20
-        while self.forwarder.subscribers != subscribers:
-            assert time.monotonic() < deadline, self.forwarder.subscribers
-            time.sleep(0.01)
+        until(lambda: self.forwarder.subscribers == subscribers, f"{subscribers} subscribers")
 
     def send(self, topic: str, data: str, latched: bool = False) -> None:
         self.background.call(self.forwarder.send, topic, data, latched)
@@ -102,6 +100,7 @@ def test_who_does_not_read_is_given_up_and_others_hear_on(stage: Callable[..., S
     here = stage(behind=1 << 16)
     with socket.socket() as idle:
         idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        idle.settimeout(PATIENCE)
         idle.connect(("127.0.0.1", here.forwarder.port))
         reader = here.connect()
         here.wait(2)

@@ -5,7 +5,7 @@ The server is the generated one, and behind it is the real reader with its store
 
 from __future__ import annotations
 
-import errno
+import contextlib
 import gc
 import io
 import json
@@ -17,22 +17,23 @@ import threading
 import time
 import zipfile
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Tuple
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Set, Tuple
 
 import pytest
 from manager_stage import ROBOT, Desk, Robot, Sent, ask, head, send
 from reader_stage import POSES, STRATEGY, mission_store, pursue_guard, reader_core
 
 from pursue_gen.transport import mission_bundle
+from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 REQUESTS = 10_000
 WARM = 1_000
 GROWTH = 20 << 20
 """Bytes of memory that the last nine thousand requests may cost."""
 UNHEARD = REQUESTS // 100
-"""So many answers may get lost: a server that closes on unread bytes resets the connection, and a busy machine may
-need longer for a head than the second that the server gives it."""
-CLOSED = (errno.ECONNRESET, errno.EPIPE, errno.ENOTCONN, errno.ECONNABORTED)
+"""So many may get no answer: a busy machine may need longer for a head than the second that the server gives it."""
+LATER = (0, 408, 409, 503, 504)
+"""Answers after which a desk asks once more: none, too slow, another ticket is out, busy, no word of the reader."""
 STRANGER = Desk(2)
 
 
@@ -212,23 +213,16 @@ def zipped(files: Dict[str, bytes], kind: int = zipfile.ZIP_STORED) -> bytes:
 
 def attack(port: int, hostile: Hostile) -> int:
     """Sends it; the status of the answer, 0 for none. Connections end in all ways that there are."""
-    with socket.create_connection(("127.0.0.1", port), timeout=20) as there:
-        answer = b""
-        try:
+    with connected(port) as there:
+        with may_close():
             there.sendall(hostile.data)
-            if not hostile.reads:
-                if len(hostile.data) % 2:  # a reset instead of an end
-                    there.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-                return 0
-            if 0 in hostile.expected:  # it may be waited for what does not come
+            if hostile.reads and 0 in hostile.expected:  # it may be waited for what does not come
                 there.shutdown(socket.SHUT_WR)
-            while True:
-                more = there.recv(65536)
-                if not more:
-                    break
-                answer += more
-        except OSError as why:  # closed at the other end, in one of the ways that the system has for saying so
-            assert why.errno in CLOSED, why
+        if not hostile.reads:
+            if len(hostile.data) % 2:  # a reset instead of an end
+                there.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            return 0
+        answer = rest(there)
     assert b"Traceback" not in answer and b"/usr/" not in answer and b"ornado" not in answer
     return int(answer.split()[1]) if answer.startswith(b"HTTP/1.1 ") else 0
 
@@ -240,34 +234,55 @@ class Drips:
         self.robot, self.desk = robot, desk
         self.over = threading.Event()
         self.opened = 0
+        self.problem: Optional[BaseException] = None
         self.thread = threading.Thread(target=self.run)
         self.thread.start()
 
     def run(self) -> None:
-        turn = 0
         held: List[socket.socket] = []
-        while not self.over.wait(0.05):
-            turn += 1
-            order = self.desk.order(self.robot.reader.ticket, size=10**6, bundle="a" * 64, robot=ROBOT)
-            start = [b"", b"GET /health HTTP/1.1\r\n", head(Content_Length=10**6, Pursue_Order=order)][turn % 3]
-            if turn % 3 == 2 and turn % 30 != 2:
-                start = b"POST"  # an upload under way keeps others out: not all the time
-            held.append(socket.create_connection(("127.0.0.1", self.robot.port), timeout=20))
-            self.opened += 1
-            for there in held[-20:]:
-                try:
-                    there.sendall(start if there is held[-1] else b"X")
-                except OSError:
-                    there.close()
-            if len(held) > 20:
-                held.pop(0).close()
-        for there in held:
-            there.close()
+        try:
+            while not self.over.wait(0.05):
+                self.turn(held)
+        except BaseException as problem:  # for the thread of the test
+            self.problem = problem
+        finally:
+            for there in held:
+                there.close()
+
+    def turn(self, held: List[socket.socket]) -> None:
+        self.opened += 1
+        order = self.desk.order(self.robot.reader.ticket, size=10**6, bundle="a" * 64, robot=ROBOT)
+        start = [b"", b"GET /health HTTP/1.1\r\n", head(Content_Length=10**6, Pursue_Order=order)][self.opened % 3]
+        if self.opened % 3 == 2 and self.opened % 30 != 2:
+            start = b"POST"  # an upload under way keeps others out: not all the time
+        held.append(connected(self.robot.port))
+        for there in held[-20:]:
+            try:
+                there.sendall(start if there is held[-1] else b"X")
+            except OSError:
+                there.close()
+        if len(held) > 20:
+            held.pop(0).close()
 
     def end(self) -> int:
         self.over.set()
         self.thread.join()
+        assert self.problem is None, repr(self.problem)
         return self.opened
+
+
+def obeyed(robot: Robot, desk: Desk, action: str, mission: Sent) -> bytes:
+    """Has an order carried out, asking again as desks do; the request that was answered."""
+    body = mission.content if action == "prepare" else b""
+
+    def asked() -> bytes:
+        order = desk.order(robot.reader.ticket, action, mission.digest, body)
+        told = send(robot, order, body)
+        assert told.http in (200, *LATER), told
+        return head(Content_Length=len(body), Pursue_Order=order) + body if told.http == 200 else b""
+
+    request: bytes = until(asked, action)
+    return request
 
 
 def resident() -> int:
@@ -281,16 +296,21 @@ def tree(folder: Path) -> List[str]:
     return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
 
 
-def settled(what: Callable[[], Any], wanted: Any) -> Any:
-    """What it is, once it is as wanted; after a while whatever it is."""
-    deadline = time.monotonic() + 15
-    while what() != wanted and time.monotonic() < deadline:
+def descriptors() -> Set[Tuple[str, str]]:
+    """Whatever is open: its number, and what it is. Mere counts would fall where other tests' garbage is closed."""
+    found = set()
+    for number in os.listdir("/proc/self/fd"):
+        with contextlib.suppress(OSError):
+            found.add((number, os.readlink(f"/proc/self/fd/{number}")))
+    return found
+
+
+def gone(left: Callable[[], Set[Any]]) -> None:
+    """What is left goes, for connections and threads end in their own time."""
+    deadline = time.monotonic() + PATIENCE
+    while left() and time.monotonic() < deadline:
         time.sleep(0.05)
-    return what()
-
-
-def descriptors() -> int:
-    return len(os.listdir("/proc/self/fd"))
+    assert left() == set()
 
 
 @pytest.mark.slow
@@ -298,15 +318,11 @@ def descriptors() -> int:
 def test_ten_thousand_hostile_requests_leave_nothing_and_a_serving_robot(tmp_path: Path) -> None:
     desk = Desk()
     desk.trusted_by(tmp_path / "keys")
-    before = descriptors(), threading.active_count()
+    open_before, threads_before, begun = descriptors(), set(threading.enumerate()), time.monotonic()
     robot = Robot(tmp_path, RealReader, limit=1 << 20, header=1.0, window=0.5)
     try:
         first = good_mission(desk, "first")
-        heard = [head("/health", "GET")]
-        for action, body in (("prepare", first.content), ("commit", b"")):
-            order = desk.order(robot.reader.ticket, action, first.digest, body)
-            assert send(robot, order, body).facts["ok"], action
-            heard.append(head(Content_Length=len(body), Pursue_Order=order) + body)
+        heard = [head("/health", "GET"), *(obeyed(robot, desk, action, first) for action in ("prepare", "commit"))]
         place, kept, serving = robot.reader.folder, tree(robot.reader.folder), descriptors()
         state, outside = (place / "state.json").read_bytes(), tree(tmp_path)
 
@@ -318,8 +334,10 @@ def test_ten_thousand_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
                 status = attack(robot.port, hostile)
                 counts.setdefault(kind, {}).setdefault(status, 0)
                 counts[kind][status] += 1
-                # 503: a drip keeps the only upload, or the reader's answer to one that was broken off is awaited
-                assert not hostile.reads or status in (*hostile.expected, 503, 0), (kind, status, hostile.data[:500])
+                # 503: a drip keeps the only upload, or the reader's answer to one that was broken off is awaited;
+                # 408: a machine that stands still for half a second is too slow with a body
+                expected = (*hostile.expected, 503, 408, 0)
+                assert not hostile.reads or status in expected, (kind, status, hostile.data[:500])
                 unheard += hostile.reads and status == 0 and 0 not in hostile.expected
                 if number % 100 == 0:
                     assert tree(place) == kept, kind
@@ -331,20 +349,19 @@ def test_ten_thousand_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
         assert (tree(place), tree(tmp_path)) == (kept, outside)
         current = json.loads(state)["current"]
         assert json.loads((place / "state.json").read_bytes())["current"] == current == first.digest
-        assert settled(descriptors, serving) <= serving
+        gone(lambda: descriptors() - serving)
         assert growth < GROWTH, growth
-        assert ask(robot).http == 200
+        until(lambda: ask(robot).http == 200, "it says how the robot is")
         second = good_mission(desk, "second")
-        for action, body in (("prepare", second.content), ("commit", b"")):
-            told = send(robot, desk.order(robot.reader.ticket, action, second.digest, body), body)
-            assert told.facts["ok"], told
+        for action in ("prepare", "commit"):
+            obeyed(robot, desk, action, second)
         assert json.loads((place / "state.json").read_bytes())["current"] == second.digest
         assert "errors" not in robot.record.counts(), robot.lines
-        assert len(robot.lines) < 100, "strangers do not fill the log"
+        assert len(robot.lines) <= 2 + (time.monotonic() - begun) / 10, "strangers do not fill the log"
         print(f"\n{REQUESTS} requests and {opened} drips: {growth / 2**20:.1f} MiB more, log lines {len(robot.lines)}")
         print("\n".join(f"{kind}: {counts[kind]}" for kind in sorted(counts)))
         print(robot.record.counts())
     finally:
         robot.close()
         robot.reader.store.close()
-    assert settled(lambda: (descriptors(), threading.active_count()), before) == before
+    gone(lambda: (descriptors() - open_before) | (set(threading.enumerate()) - threads_before))

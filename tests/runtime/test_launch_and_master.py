@@ -8,6 +8,8 @@ import sys
 import pytest
 from node_modules import SCRIPTS
 
+from tests.waiting import PATIENCE
+
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 PROGRAM = """
@@ -30,7 +32,7 @@ MINE, OTHER = "79520a94-e607-11f1-81c8-3acae0bbc432", "1f6f86da-e604-11f1-a6c6-0
 def begun(run_id: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
     """A node with these arguments, at a master with this /run_id."""
     command = [sys.executable, "-c", PROGRAM, str(SCRIPTS), run_id, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
 
 
 def log(run_id: str) -> str:

@@ -47,6 +47,7 @@ def launch(packages: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def read(name: str, *arguments: str, only: Path = packages) -> Launched:
         monkeypatch.setenv("ROS_PACKAGE_PATH", str(only))
+        monkeypatch.setattr(roslaunch.substitution_args, "_rospack", None)  # it would remember packages of before
         config = roslaunch.config.ROSLaunchConfig()
         file = only / "scenario_1_bringup" / "launch" / name
         roslaunch.xmlloader.XmlLoader().load(str(file), config, argv=[str(file), *arguments])

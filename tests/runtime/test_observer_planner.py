@@ -8,13 +8,14 @@ import queue
 import shlex
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import Any, List, Tuple
 
 import pytest
 from node_modules import observer_core  # noqa: F401 (puts the modules on the path)
 from test_again import gone
+
+from tests.waiting import PATIENCE, until
 
 observer_planner: Any = importlib.import_module("observer_planner")
 observer_plans: Any = importlib.import_module("observer_plans")
@@ -29,14 +30,14 @@ def request(number: int = 1) -> Any:
 class Office:
     """A planner with a program of ours, and what it has answered."""
 
-    def __init__(self, program: str, limit: float = 5.0) -> None:
+    def __init__(self, program: str, limit: float = PATIENCE) -> None:
         self.answers: "queue.Queue[Any]" = queue.Queue()
         command = f"{shlex.quote(sys.executable)} -c {shlex.quote(program)}" if program.count(" ") else program
         self.planner = observer_planner.Planner(command, {"name": "chase"}, limit, self.answers.put)
 
     def ask(self, number: int = 1) -> Tuple[int, Any, str]:
         self.planner.want(request(number))
-        answer: Tuple[int, Any, str] = self.answers.get(timeout=20)
+        answer: Tuple[int, Any, str] = self.answers.get(timeout=2 * PATIENCE)
         return answer
 
 
@@ -51,9 +52,9 @@ def thrown(monkeypatch: pytest.MonkeyPatch) -> List[Any]:
 def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Path) -> None:
     copy = tmp_path / "request"
     program = f"import sys; open({str(copy)!r}, 'w').write(sys.stdin.read()); print({json.dumps(FOUND)!r})"
-    assert Office(program, limit=3.0).ask(7) == (7, FOUND, "")
+    assert Office(program, limit=300.0).ask(7) == (7, FOUND, "")
     assert json.loads(copy.read_text()) == {
-        "format": 1, "game": {"name": "chase"}, "limit": 3.0, "locations": {"bot": "a"}, "values": {"Pbot": 1},
+        "format": 1, "game": {"name": "chase"}, "limit": 300.0, "locations": {"bot": "a"}, "values": {"Pbot": 1},
         "clocks": {"Cbot": 2.5}, "ahead": 1.5, "excused": ["dog"],
     }
 
@@ -78,29 +79,29 @@ def test_without_a_plan_it_says_why(program: str, why: str, thrown: List[Any]) -
 def test_one_that_hangs_is_killed_with_its_children(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, thrown: List[Any]
 ) -> None:
-    monkeypatch.setattr(observer_planner, "EXTRA", 0.5)
     note = tmp_path / "note"
     program = (
         "import subprocess, time; "
         f"open({str(note)!r}, 'w').write(str(subprocess.Popen(['sleep', '1000']).pid)); time.sleep(1000)"
     )
-    number, plan, why = Office(program, limit=0.5).ask()
-    assert (number, plan, why) == (1, None, "none was found within 0.5 s")
+    for extra in (0.5, 5.0, PATIENCE):  # on a busy machine it may be killed before it has come to its note
+        monkeypatch.setattr(observer_planner, "EXTRA", extra)
+        assert Office(program, limit=0.5).ask() == (1, None, "none was found within 0.5 s")
+        if note.exists() and note.read_text():
+            break
     assert gone(int(note.read_text())) and not thrown
 
 
 def test_who_is_not_wanted_any_more_is_killed(tmp_path: Path, thrown: List[Any]) -> None:
     note = tmp_path / "note"
     program = f"import os, time; open({str(note)!r}, 'a').write(str(os.getpid()) + ' '); time.sleep(1000)"
-    office = Office(program, limit=100.0)
+    office = Office(program)
     for number in (1, 2):
         office.planner.want(request(number))
-        deadline = time.monotonic() + 10
-        while not (note.exists() and note.read_text().count(" ") == number) and time.monotonic() < deadline:
-            time.sleep(0.02)
+        until(lambda: note.exists() and note.read_text().count(" ") == number, f"note {number}")  # noqa: B023
     office.planner.want(None)
     first, second = (int(number) for number in note.read_text().split())
     assert gone(first) and gone(second)
-    answers = [office.answers.get(timeout=10) for _ in range(2)]
+    answers = [office.answers.get(timeout=PATIENCE) for _ in range(2)]
     assert sorted(number for number, _, _ in answers) == [1, 2] and all(plan is None for _, plan, _ in answers)
     assert not thrown, thrown

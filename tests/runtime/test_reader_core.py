@@ -25,6 +25,7 @@ from reader_stage import (
 )
 
 from pursue_gen.workspace.generate import mission_of
+from tests import waiting
 from tests.workspace.worlds import files as workspace_files
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")
@@ -248,13 +249,13 @@ def test_whoever_asks_while_keys_are_being_read_gets_them_too(robot: Robot, monk
 
     def slowly(path: str) -> Any:
         read.set()
-        go_on.wait(10)
+        go_on.wait(waiting.PATIENCE)
         return reads(path)
 
     monkeypatch.setattr(pursue_guard, "read_keys", slowly)
     one = threading.Thread(target=folder.keys)
     one.start()
-    assert read.wait(10)
+    assert read.wait(waiting.PATIENCE)
     threading.Timer(0.1, go_on.set).start()
     assert len(folder.keys()) == 1
     one.join()

@@ -20,6 +20,7 @@ from pursue_gen.transport.bundles import AskedMission, make_mission, sign
 from pursue_gen.transport.client import Robot
 from pursue_gen.transport.send_checks import fits, kept_by_all, previous
 from pursue_gen.transport.sender import Sent, look, send, wait
+from tests.waiting import PATIENCE
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
 MACHINES = {
@@ -45,10 +46,11 @@ class Machine:
         folder_of_keys = pursue_guard.KeyFolder(str(keys))
         long_ago = time.monotonic() - 100.0
         self.reader = reader_core.Reader(facts, self.store, folder_of_keys, long_ago, lambda *line: None, 5.0)
-        record = manager_core.Record(self.log.append, time.monotonic)
+        record = manager_core.Record(self.log.append, self.log.append)
         manager = manager_core.Manager(name, pursue_guard.KeyFolder(str(keys)), lambda: not self.silent)
         sockets = manager_loop.bind("127.0.0.1", 0, "~port")
-        self.server = manager_http.Server(manager, sockets, self.publish, record, manager_http.Limits(patience=5.0))
+        limits = manager_http.Limits(patience=PATIENCE, header=PATIENCE, window=PATIENCE)
+        self.server = manager_http.Server(manager, sockets, self.publish, record, limits)
         self.background = manager_loop.Background((self.server,), record.count)
         self.background.start()
         self.say()
@@ -85,7 +87,7 @@ def machines(tmp_path: Path) -> Iterator[Tuple[List[Machine], List[Robot]]]:
             stack.callback(made[-1].store.close)
             stack.callback(made[-1].background.close)
         ports = [machine.server.port for machine in made]
-        yield made, [Robot(name, "127.0.0.1", port) for name, port in zip(MACHINES, ports)]
+        yield made, [Robot(name, "127.0.0.1", port, timeout=PATIENCE) for name, port in zip(MACHINES, ports)]
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +132,7 @@ def test_a_mission_under_way_is_played_to_its_end(machines: Any, missions: Any) 
     assert [robot.current for robot in robots] == [mission_bundle.OWN] * 3
     for robot in robots:
         robot.state("won", 2)
-    assert all(row.after.current == missions[0][0] for row in wait(places, missions[0][0], 10.0, 0.01))
+    assert all(row.after.current == missions[0][0] for row in wait(places, missions[0][0], PATIENCE, 0.01))
 
 
 @pytest.mark.parametrize("runs", [False, True])

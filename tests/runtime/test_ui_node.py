@@ -9,7 +9,6 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Dict, Iterator
 
@@ -17,6 +16,11 @@ import pytest
 import yaml
 from rendered_scripts import TEMPLATES
 from ui_package import SCRIPTS, model_data, mover
+
+from tests.waiting import PATIENCE
+
+sys.path.append(str(Path(__file__).resolve().parent.parent / "ros"))
+from ros_world import Ros, end
 
 pytest.importorskip("rospy", reason="ROS is not installed")
 
@@ -37,32 +41,18 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dict[str, str]]:
-    """The environment of a roscore on a free port."""
+    """The environment of a roscore of our own."""
     if shutil.which("roscore") is None:
         pytest.skip("there is no roscore")
-    with socket.socket() as free:
-        free.bind(("localhost", 0))
-        port = free.getsockname()[1]
-    home = str(tmp_path_factory.mktemp("ros"))
-    clean = os.pathsep.join(["/usr/bin", "/bin", "/usr/sbin", "/sbin"])
-    environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
-                   "ROS_HOME": home, "ROS_LOG_DIR": home}
-    core = subprocess.Popen(["roscore", "-p", str(port)], env={**environment, "PATH": clean},
-                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        deadline = time.monotonic() + 30
-        while socket.socket().connect_ex(("localhost", port)) and time.monotonic() < deadline:
-            time.sleep(0.1)
-        yield environment
-    finally:
-        core.terminate()
-        core.wait(20)
+    home = tmp_path_factory.mktemp("ros")
+    with Ros(home).master() as where:
+        yield {**os.environ, **where, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(home), "ROS_LOG_DIR": str(home)}
 
 
 def run(package: Path, environment: Dict[str, str], *arguments: str) -> "subprocess.CompletedProcess[str]":
     command = [sys.executable, str(package / "scripts" / "UI"), *arguments]
     return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True, timeout=60)
+                          stderr=subprocess.PIPE, universal_newlines=True, timeout=2 * PATIENCE)
 
 
 @pytest.mark.parametrize("script", ["UI", "simulator", "sim_clock"])
@@ -142,14 +132,14 @@ class Stage:
 
     def __init__(self, environment: Dict[str, str]) -> None:
         code = (Path(__file__).parent / "ui_stage.py").read_text()
-        self.process = subprocess.Popen([sys.executable, "-c", code], env={**environment, "PYTHONPATH": str(SCRIPTS)})
+        environment = {**environment, "PYTHONPATH": str(SCRIPTS)}
+        self.process = subprocess.Popen([sys.executable, "-c", code], env=environment, start_new_session=True)
 
     def __enter__(self) -> "Stage":
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.process.terminate()
-        self.process.wait(20)
+        end(self.process)
 
 
 @pytest.mark.parametrize("status, code, says", [
@@ -160,9 +150,9 @@ def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
     package: Path, ros: Dict[str, str], tmp_path: Path, status: str, code: int, says: str
 ) -> None:
     trace = tmp_path / "trace.yaml"
-    trace.write_text("- {at: 2, do: thief_a2b}\n")
+    trace.write_text("- {at: 0.1, do: thief_a2b}\n")
     with Stage({**ros, "STAGE_STATUS": status}):
-        done = run(package, ros, "--trace", str(trace))
+        done = run(package, ros, "--trace", str(trace), "--wait", str(PATIENCE))
     assert done.returncode == code, done.stderr
     lines = [line.strip() for line in done.stdout.splitlines()]
     assert lines[0] == "example: waiting for observer, controller_bot"

@@ -12,12 +12,13 @@ import select
 import socket
 import subprocess
 import sys
-import time
 from typing import Any, Iterator, List, Tuple
 
 import pytest
 from rendered_scripts import TEMPLATES
 from ui_package import SCRIPTS
+
+from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 
@@ -45,25 +46,21 @@ def serving(files: int = 256, longest: float = 60.0) -> Iterator[Tuple[int, "sub
     with subprocess.Popen(words, cwd=str(SCRIPTS), stdin=pipe, stdout=pipe, stderr=pipe) as process:
         assert process.stdout is not None and process.stdin is not None
         try:
-            there, _, _ = select.select([process.stdout], [], [], 30)
+            there, _, _ = select.select([process.stdout], [], [], PATIENCE)
             assert there, "the server has not begun"
             yield int(process.stdout.readline()), process
             process.stdin.close()
-            assert process.wait(15) == 0
+            assert process.wait(PATIENCE) == 0
         finally:
             process.kill()
 
 
-def ask(port: int, request: bytes, wait: float = 10.0) -> bytes:
-    """What is answered, as far as it comes until the other side closes or falls silent."""
-    answer: List[bytes] = []
-    with socket.create_connection(("127.0.0.1", port), timeout=wait) as there, contextlib.suppress(OSError):
-        there.sendall(request)
-        while True:
-            answer.append(there.recv(65536))
-            if not answer[-1]:
-                break
-    return b"".join(answer)
+def ask(port: int, request: bytes) -> bytes:
+    """What is answered until the other side closes."""
+    with connected(port) as there:
+        with may_close():
+            there.sendall(request)
+        return rest(there)
 
 
 def serves(port: int) -> bool:
@@ -85,7 +82,7 @@ def test_chunks_are_refused_and_none_is_read(line: str) -> None:
 def test_chunks_behind_other_requests_are_not_read_either() -> None:
     first = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20
     with serving() as (port, process):
-        ask(port, first + b"POST / HTTP/1.1\r\n" + CHUNKED + b"\r\n-1\r\n", wait=5.0)
+        ask(port, first + b"POST / HTTP/1.1\r\n" + CHUNKED + b"\r\n-1\r\n")
         assert serves(port)
         assert process.stdin is not None and process.stderr is not None
         process.stdin.close()
@@ -95,28 +92,25 @@ def test_chunks_behind_other_requests_are_not_read_either() -> None:
 def test_a_body_that_never_comes_or_a_head_that_drips_is_given_up() -> None:
     starts = [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 4000\r\n\r\nx"]
     with serving(longest=1.0) as (port, _):
-        slow = [socket.create_connection(("127.0.0.1", port), timeout=20) for _ in starts]
+        slow = [connected(port) for _ in starts]
         for there, start in zip(slow, starts):
-            there.sendall(start)
-        assert serves(port)
+            with may_close():
+                there.sendall(start)
+        until(lambda: serves(port), "others are answered, where they are fast enough")
         for there in slow:
-            with contextlib.suppress(ConnectionError):
-                assert there.recv(100) == b""
+            assert rest(there) == b""
             there.close()
 
 
 def test_who_does_not_read_an_answer_is_given_up() -> None:
     many = b"GET /page.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20000
     with serving(longest=1.0) as (port, process):
-        with socket.create_connection(("127.0.0.1", port), timeout=10) as there:
+        with connected(port) as there:
             there.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            with contextlib.suppress(OSError):
+            with may_close():
                 there.sendall(many)
-            deadline = time.monotonic() + 20
-            while connections(process.pid) and time.monotonic() < deadline:
-                time.sleep(0.1)
-            assert not connections(process.pid)
-        assert serves(port)
+            until(lambda: not connections(process.pid), "it is given up")
+        until(lambda: serves(port), "others are answered, where they are fast enough")
 
 
 def test_many_connections_take_neither_files_nor_the_server_away() -> None:
@@ -124,14 +118,11 @@ def test_many_connections_take_neither_files_nor_the_server_away() -> None:
     assert most > 600
     with serving(files=200, longest=3.0) as (port, process), contextlib.ExitStack() as held:
         for _ in range(400):
-            there = held.enter_context(socket.create_connection(("127.0.0.1", port), timeout=20))
-            with contextlib.suppress(OSError):
+            there = held.enter_context(connected(port))
+            with may_close():
                 there.sendall(b"GET / HTTP/1.1\r\n")
         assert connections(process.pid) < 150, "the node has files left for itself"
-        deadline = time.monotonic() + 20
-        while not serves(port):
-            assert time.monotonic() < deadline, "who does nothing makes room in time"
-            time.sleep(0.2)
+        until(lambda: serves(port), "who does nothing makes room in time")
 
 
 def connections(pid: int) -> int:

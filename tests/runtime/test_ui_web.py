@@ -7,7 +7,6 @@ import importlib
 import json
 import socket
 import threading
-import time
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -20,6 +19,8 @@ from ui_package import ui_page
 pytest.importorskip("tornado", reason="tornado is not installed")
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
+
+from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 ui_web: Any = importlib.import_module("ui_web")
 
@@ -79,10 +80,10 @@ class Patient(urllib.request.HTTPRedirectHandler):
 
 def get(web: Any, path: str = "/", method: str = "GET", data: Optional[bytes] = None, **headers: str) -> Any:
     """The answer, also where it is an error."""
-    opener = urllib.request.build_opener(Patient)
+    opener = urllib.request.build_opener(Patient, urllib.request.ProxyHandler({}))
     request = urllib.request.Request(f"http://127.0.0.1:{web.port}{path}", data, headers, method=method)
     try:
-        return opener.open(request, timeout=10)
+        return opener.open(request, timeout=PATIENCE)
     except urllib.error.HTTPError as answer:
         return answer
 
@@ -93,10 +94,12 @@ def talk(web: Any, script: Callable[[Any], Any], origin: str = "", **headers: st
     sent = {"Origin": origin or f"http://{host}", **headers}
 
     async def run() -> Any:
-        request = HTTPRequest(f"ws://127.0.0.1:{web.port}/live", headers={k: v for k, v in sent.items() if v != "none"})
-        there = await websocket_connect(request)
+        told = {name: value for name, value in sent.items() if value != "none"}
+        there = await websocket_connect(
+            HTTPRequest(f"ws://127.0.0.1:{web.port}/live", headers=told, connect_timeout=PATIENCE)
+        )
         try:
-            return await asyncio.wait_for(script(there), 20)
+            return await asyncio.wait_for(script(there), PATIENCE)
         finally:
             there.close()
 
@@ -271,16 +274,11 @@ def test_messages_that_are_too_long_end_the_talk(serve: Serve, node: Node) -> No
 ])
 def test_what_is_no_request_of_ours_does_no_harm(serve: Serve, junk: bytes) -> None:
     web = serve()
-    with socket.create_connection(("127.0.0.1", web.port), timeout=10) as there:
-        there.sendall(junk[:65536])
-        there.shutdown(socket.SHUT_WR)
-        answer = b""
-        try:
-            for part in iter(lambda: there.recv(4096), b""):
-                answer += part
-        except ConnectionError:
-            pass
-    assert b" 200 " not in answer
+    with connected(web.port) as there:
+        with may_close():
+            there.sendall(junk[:65536])
+            there.shutdown(socket.SHUT_WR)
+        assert b" 200 " not in rest(there)
     assert get(web).status == 200
 
 
@@ -291,10 +289,13 @@ def test_every_page_hears_what_happens_and_what_time_it_is(serve: Serve, node: N
     async def script(there: Any) -> Any:
         await there.read_message()
         threading.Thread(target=web.send, args=({"type": "view", "name": "<b>&"},)).start()
-        heard = [json.loads(await there.read_message()) for _ in range(2)]
-        return sorted(heard, key=lambda message: str(message["type"]))
+        heard: Dict[str, Any] = {}
+        while len(heard) < 2:
+            message = json.loads(await there.read_message())
+            heard[message["type"]] = message
+        return heard
 
-    assert talk(web, script) == [{"type": "tick", "now": 12.5}, {"type": "view", "name": "<b>&"}]
+    assert talk(web, script) == {"tick": {"type": "tick", "now": 12.5}, "view": {"type": "view", "name": "<b>&"}}
 
 
 def test_there_is_room_for_so_many_pages(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -306,9 +307,7 @@ def test_there_is_room_for_so_many_pages(serve: Serve, monkeypatch: pytest.Monke
         return await asyncio.get_running_loop().run_in_executor(None, talk, web, lambda other: other.read_message())
 
     assert talk(web, second) is None
-    deadline = time.monotonic() + 10
-    while talk(web, lambda there: there.read_message()) is None:
-        assert time.monotonic() < deadline, "whoever has gone leaves room"
+    until(lambda: talk(web, lambda there: there.read_message()) is not None, "whoever has gone leaves room")
 
 
 def test_a_page_that_does_not_read_is_given_up_and_memory_with_it(
@@ -317,21 +316,15 @@ def test_a_page_that_does_not_read_is_given_up_and_memory_with_it(
     monkeypatch.setattr(ui_web, "BEHIND", 1 << 16)
     web = serve()
     key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
-    with socket.create_connection(("127.0.0.1", web.port), timeout=10) as there:
+    with connected(web.port) as there:
         there.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         host = f"127.0.0.1:{web.port}"
         head = f"GET /live HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\n"
         head += "Upgrade: websocket\r\nConnection: Upgrade\r\n"
         there.sendall(f"{head}{key}\r\n".encode())
         assert b" 101 " in there.recv(200)
-        deadline = time.monotonic() + 20
-        while not web._pages and time.monotonic() < deadline:
-            time.sleep(0.01)
-        assert len(web._pages) == 1
-        while web._pages and time.monotonic() < deadline:
-            web.send({"type": "view", "padding": "x" * 50000})
-            time.sleep(0.01)
-        assert not web._pages
+        until(lambda: len(web._pages) == 1, "a page that listens")
+        until(lambda: web.send({"type": "view", "padding": "x" * 50000}) or not web._pages, "it is given up")
 
 
 def test_the_last_word_goes_out_before_the_end(serve: Serve) -> None:

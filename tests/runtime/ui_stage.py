@@ -7,7 +7,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from pursue_library import EVENTS, LOST, RUNNING, START, SYSTEM_STATE, WAITING, SystemState, format_state
 from std_msgs.msg import String
 
-UNIT = 0.1
+UNIT = 10.0  # seconds; who hears of the start later than that skips what a trace says of its beginning
 begun = []
 
 

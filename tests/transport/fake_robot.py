@@ -9,7 +9,6 @@ import ipaddress
 import json
 import ssl
 import threading
-import time
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
@@ -36,6 +35,7 @@ from pursue_gen.transport.mission_bundle import (
     read_order,
     unpack,
 )
+from tests.waiting import PATIENCE
 
 KEY = Ed25519PrivateKey.from_private_bytes(bytes(range(32)))
 STRANGER = Ed25519PrivateKey.from_private_bytes(bytes(32))
@@ -235,7 +235,9 @@ def _action(text: str) -> str:
 
 
 @contextlib.contextmanager
-def serving(robots: Sequence[FakeRobot], timeout: float = 5.0, tls: Optional[Path] = None) -> Iterator[List[Robot]]:
+def serving(
+    robots: Sequence[FakeRobot], timeout: float = PATIENCE, tls: Optional[Path] = None
+) -> Iterator[List[Robot]]:
     """The robots on ports of this machine: where they listen."""
     with contextlib.ExitStack() as stack:
         places = []
@@ -253,21 +255,25 @@ def serving(robots: Sequence[FakeRobot], timeout: float = 5.0, tls: Optional[Pat
 
 @contextlib.contextmanager
 def saying(answer: bytes, pause: float = 0.0, times: int = 1, wait: float = 0.0) -> Iterator[int]:
-    """A port where these bytes are answered, whatever is asked, after a while; so many times, with pauses between."""
+    """A port where these bytes are answered, whatever is asked, after a while; so many times, with pauses between; at
+    the end it does not wait any longer."""
+    over = threading.Event()
 
     class Junk(BaseHTTPRequestHandler):
         def handle(self) -> None:
             with contextlib.suppress(OSError):
                 self.request.recv(65536)
-                time.sleep(wait)
+                over.wait(wait)
                 for _ in range(times):
                     self.request.sendall(answer)
-                    time.sleep(pause)
+                    if over.wait(pause):
+                        break
 
     with contextlib.ExitStack() as stack:
         server = ThreadingHTTPServer(("127.0.0.1", 0), Junk)
         server.daemon_threads = True
         _serve(stack, server)
+        stack.callback(over.set)
         yield server.server_address[1]
 
 

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from pursue_gen.transport.client import ANSWER_LIMIT, Robot, Unreached, health, plain, send_order
 from pursue_gen.transport.client import _status as status_of
 from pursue_gen.transport.mission_bundle import ABORT, Order, write_order
+from tests.waiting import PATIENCE
 
 NEW, _ = bundle()
 GOOD: Dict[str, Any] = {
@@ -30,7 +31,7 @@ def http(body: bytes, status: str = "200 OK", length: str = "") -> bytes:
     return f"HTTP/1.1 {status}\r\nContent-Length: {length or len(body)}\r\n\r\n".encode() + body
 
 
-def asked(answer: bytes, pause: float = 0.0, times: int = 1, timeout: float = 2.0) -> str:
+def asked(answer: bytes, pause: float = 0.0, times: int = 1, timeout: float = PATIENCE) -> str:
     """Why an answer cannot be used, when a robot's health is asked."""
     with saying(answer, pause, times) as port, pytest.raises(Unreached) as problem:
         health(Robot("bot1", "127.0.0.1", port, timeout=timeout))
@@ -105,9 +106,9 @@ def test_gigabytes_are_not_read() -> None:
 )
 def test_a_slow_drip_ends_in_time(answer: bytes) -> None:
     started = time.monotonic()
-    # Each byte comes long before the timeout of one reading; all together would take a minute.
-    assert "no " in asked(answer, pause=0.05, times=1200, timeout=0.3)
-    assert time.monotonic() - started < 30
+    # Each byte comes long before the timeout of one reading; all together would take four minutes.
+    assert "no " in asked(answer, pause=0.05, times=4800, timeout=0.3)
+    assert time.monotonic() - started < PATIENCE
 
 
 def test_who_says_nothing_is_given_up() -> None:
@@ -125,10 +126,9 @@ def test_a_reader_that_is_silent_is_told() -> None:
 def test_an_order_may_take_longer_than_a_look() -> None:
     done = json.dumps({"ok": True, "code": "prepared", "message": "", "status": GOOD}).encode()
     with saying(http(done), wait=0.5) as port:
-        robot = Robot("bot1", "127.0.0.1", port, timeout=0.2)
-        assert send_order(robot, "an order").ok
-        with pytest.raises(Unreached):
-            health(robot)
+        assert send_order(Robot("bot1", "127.0.0.1", port, timeout=0.2), "an order").ok
+    with saying(http(done), wait=PATIENCE) as port, pytest.raises(Unreached):
+        health(Robot("bot1", "127.0.0.1", port, timeout=0.2))
 
 
 def test_who_takes_no_bundle_is_given_up() -> None:
@@ -144,8 +144,9 @@ def test_who_takes_no_bundle_is_given_up() -> None:
 def test_an_answer_before_the_bundle_was_taken_is_heard() -> None:
     refusal = json.dumps({"ok": False, "code": "too_large", "message": "too large", "status": None}).encode()
     heard: List[int] = []
-    with saying(http(refusal, "413 Payload Too Large"), pause=0.2) as port:
-        answer = send_order(Robot("bot1", "127.0.0.1", port), "an order", b"x" * 100_000, heard.append)
+    with saying(http(refusal, "413 Payload Too Large"), pause=PATIENCE) as port:
+        robot = Robot("bot1", "127.0.0.1", port, timeout=PATIENCE)
+        answer = send_order(robot, "an order", b"x" * 100_000, heard.append)
     assert (answer.ok, answer.http, answer.code, answer.status) == (False, 413, "too_large", None)
     assert heard
 
@@ -170,7 +171,8 @@ def test_a_robots_text_cannot_command_the_terminal() -> None:
     assert len(plain("x" * 10_000)) < 400
     body = json.dumps({"ok": False, "code": "x", "message": "\x1b]0;you\x07", "status": GOOD}).encode()
     with saying(http(body, "422 Unprocessable")) as port:
-        assert send_order(Robot("bot1", "127.0.0.1", port), "an order").message.isprintable()
+        robot = Robot("bot1", "127.0.0.1", port, timeout=PATIENCE)
+        assert send_order(robot, "an order").message.isprintable()
 
 
 JSON = st.recursive(
@@ -224,7 +226,7 @@ def test_with_tls_the_name_of_the_machine_counts(tmp_path: Path) -> None:
 
 def test_with_tls_who_does_not_speak_it_is_told() -> None:
     with serving([FakeRobot("bot1")]) as (place,), pytest.raises(Unreached) as problem:
-        health(replace(place, tls=True))
+        health(replace(place, tls=True, timeout=0.5))  # it may wait for the end of what it takes for a line
     assert not problem.value.sent
 
 

@@ -21,6 +21,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.transport.keys import default_key, key_names, keys_folder, load_private, load_public, new_key
 from pursue_gen.transport.mission_bundle import fingerprint, read_keys
 from tests.authoring.commands import pursue
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -217,7 +218,7 @@ def test_a_private_key_is_never_printed(home: Path) -> None:
 def without_cryptography(*words: object) -> "subprocess.CompletedProcess[str]":
     program = "import sys; sys.modules['cryptography'] = None; from pursue_gen.cli import main; main()"
     command = [sys.executable, "-c", program, *map(str, words)]
-    return subprocess.run(command, cwd=str(ROOT), capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, cwd=str(ROOT), capture_output=True, text=True, timeout=2 * PATIENCE, check=False)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from pursue_gen.transport.client import Robot, Status
 from pursue_gen.transport.mission_bundle import OWN, mission_id
 from pursue_gen.transport.send_checks import asked_mission, previous
 from pursue_gen.transport.send_told import upload_lines
+from tests.waiting import PATIENCE
 
 SCENARIO = str(Path(__file__).resolve().parent.parent.parent / "scenarios" / "thesis" / "scenario_1.pur")
 A, B, C = (make_bundle(name)[0] for name in "abc")
@@ -48,7 +49,7 @@ def robots(desk: Path) -> Iterator[List[FakeRobot]]:
     ]
     with serving(fleet) as places:
         lines = [f"  {place.name}: {{host: 127.0.0.1, port: {place.port}}}\n" for place in places]
-        (desk / "robots.yaml").write_text("format: 1\nrobots:\n" + "".join(lines))
+        (desk / "robots.yaml").write_text(f"format: 1\ntimeout: {PATIENCE}\nrobots:\n" + "".join(lines))
         yield fleet
 
 
@@ -272,7 +273,7 @@ def test_waiting_ends_with_the_mission_under_way(send: Any, robots: List[FakeRob
 
     thread = threading.Thread(target=end_later)
     thread.start()
-    status, out, err = send("catch.pursue", "--wait", "30")
+    status, out, err = send("catch.pursue", "--wait", str(PATIENCE))
     thread.join()
     assert status == 0, err
     assert cells(out)[0][2] == f"{mission_id(robots[0].current)} (catch)"
@@ -320,7 +321,8 @@ class _Terminal(io.StringIO):
 
 
 def test_a_terminal_shows_a_line_per_robot_and_forgets_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TERM", "xterm")
+    for name, value in (("TERM", "xterm"), ("COLUMNS", "80")):
+        monkeypatch.setenv(name, value)
     stream = _Terminal()
     with upload_lines(False, stream) as show:
         assert show is not None

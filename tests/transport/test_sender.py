@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import _thread
+import contextlib
+import socket
+import threading
 from dataclasses import replace
 from typing import Callable, List, Optional, Sequence, Tuple
 
@@ -15,6 +18,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.transport.client import Robot, Status
 from pursue_gen.transport.mission_bundle import OWN
 from pursue_gen.transport.sender import Sent, look, send, wait
+from tests.waiting import PATIENCE
 
 NEW, CONTENT = bundle("catch")
 OLD, _ = bundle("guard")
@@ -85,9 +89,13 @@ def test_one_that_cannot_be_reached_leaves_all_as_they_were() -> None:
 
 def test_a_port_without_a_server_is_told_as_refused() -> None:
     robots = fleet()
-    with serving(robots) as places:
-        pass
-    result = sent(robots, places)
+    with contextlib.ExitStack() as held:
+        places = []
+        for robot in robots:
+            silent = held.enter_context(socket.socket())  # nobody else gets its port, and it does not listen
+            silent.bind(("127.0.0.1", 0))
+            places.append(Robot(robot.name, "127.0.0.1", silent.getsockname()[1]))
+        result = sent(robots, places)
     assert {row.outcome for row in result.rows} == {"not reached: connection refused"}
 
 
@@ -265,7 +273,7 @@ def test_a_mission_under_way_is_ended_first_and_waiting_shows_when() -> None:
         rows = wait(places, NEW, 0.05, 0.01)
         assert [bool(row.after and row.after.current == NEW) for row in rows] == [False, True, True]
         robots[0].end_mission()
-        rows = wait(places, NEW, 5.0, 0.01)
+        rows = wait(places, NEW, PATIENCE, 0.01)
         assert all(row.after and row.after.current == NEW for row in rows)
 
 
@@ -311,9 +319,10 @@ def test_a_robot_under_the_name_of_another_is_told() -> None:
 
 def test_ctrl_c_makes_all_forget_what_they_prepared() -> None:
     robots = fleet()
+    once = threading.Lock()
 
     def interrupt() -> None:
-        if all(robot.prepared == NEW for robot in robots):
+        if all(robot.prepared == NEW for robot in robots) and once.acquire(blocking=False):
             _thread.interrupt_main()
 
     for robot in robots:

@@ -12,6 +12,7 @@ import pytest
 from fake_robot import FakeRobot, serving
 
 from pursue_gen.transport.client import health
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "transport.md").read_text(encoding="utf-8")
@@ -23,7 +24,7 @@ def test_a_certificate_made_as_the_page_says_is_accepted(tmp_path: Path) -> None
     found = re.search(r"^ +(openssl .*\n.*)$", PAGE, re.MULTILINE)
     assert found is not None
     command = found.group(1).replace("10.0.0.12", "127.0.0.1")
-    subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, check=True, timeout=60)
+    subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, check=True, timeout=PATIENCE)
     both = tmp_path / "both.pem"
     both.write_bytes((tmp_path / "bot2.pem").read_bytes() + (tmp_path / "bot2.key").read_bytes())
     with serving([FakeRobot("bot2")], tls=both) as (place,):

@@ -15,6 +15,7 @@ from fake_robot import KEY, FakeRobot, certificate, serving
 
 from pursue_gen.cli import main
 from pursue_gen.transport.client import Robot, Unreached, health
+from tests.waiting import PATIENCE
 
 SCENARIO = str(Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur")
 
@@ -39,7 +40,8 @@ def test_the_private_key_is_in_nothing_that_is_sent(tmp_path: Path, monkeypatch:
     to = tmp_path / "robots.yaml"
     robot = FakeRobot("base", ("UI", "observer", "controllerObj", "controller_bot1", "controller_bot2"))
     with serving([robot]) as (place,):
-        to.write_text(f"format: 1\nrobots:\n  base: {{host: 127.0.0.1, port: {place.port}}}\n")
+        line = f"  base: {{host: 127.0.0.1, port: {place.port}}}\n"
+        to.write_text(f"format: 1\ntimeout: {PATIENCE}\nrobots:\n{line}")
         for words in ((SCENARIO, "--computed-poses"), ("--back",), ("--status",)):
             monkeypatch.setattr("sys.argv", ["pursue-gen", "send", *words, "--to", str(to)])
             with pytest.raises(SystemExit) as end:
@@ -76,6 +78,6 @@ def test_the_desk_speaks_no_old_tls(tmp_path: Path) -> None:
         thread = threading.Thread(target=answer)
         thread.start()
         with pytest.raises(Unreached, match="no TLS with it"):
-            health(Robot("bot1", "127.0.0.1", server.getsockname()[1], tls=True, ca=file))
+            health(Robot("bot1", "127.0.0.1", server.getsockname()[1], tls=True, ca=file, timeout=PATIENCE))
         thread.join()
     assert heard == []

@@ -241,24 +241,25 @@ class Run:
         deadline = time.monotonic() + patience
         words = self.words(name, self.services[name]["healthcheck"]["test"][1:])
         while time.monotonic() < deadline:
-            if subprocess.run(words, capture_output=True, timeout=patience, check=False).returncode == 0:
-                return True
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                if subprocess.run(words, capture_output=True, timeout=patience, check=False).returncode == 0:
+                    return True
             time.sleep(0.5)
         return False
 
     def play(self) -> Dict[str, Any]:
         """The mission: who was healthy, the exit statuses, and how long it took."""
         begin = time.monotonic()
-        self.start("master")
-        health = {"master": self.healthy("master", 60)}
-        others = [name for name in self.services if name != "master"]
-        for name in others:
-            self.start(name)
-        health.update((name, self.healthy(name, 30)) for name in others)
-        self.processes["ui"].wait(300)
+        health: Dict[str, bool] = {}
+        others = [name for name in self.services if name not in ("master", "ui")]
+        for several in (["master"], others, ["ui"]):  # the UI begins the mission, and with its end all are gone
+            for name in several:
+                self.start(name)
+            health.update((name, self.healthy(name, 120)) for name in several)
+        self.processes["ui"].wait(600)
         for name in others:
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self.processes[name].wait(15)
+                self.processes[name].wait(60)
         statuses = {name: self.processes[name].poll() for name in self.processes}
         words = self.words("observer", self.services["observer"]["healthcheck"]["test"][1:])
         dead = subprocess.run(words, capture_output=True, timeout=60, check=False).returncode

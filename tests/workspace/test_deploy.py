@@ -25,6 +25,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace import Options, generate, write_tree
 from pursue_gen.workspace.deploy import DEBIAN_PACKAGES, service_names
 from pursue_gen.workspace.machines import Machine, Machines
+from tests.waiting import PATIENCE
 
 OPTIONS = Options(reaction=REACTION, docker=True, systemd=True)
 CONTROLLERS = {"controller_polBot1", "controller_polBot2", "controllerObj"}
@@ -65,7 +66,7 @@ def run(words: List[str], folder: Path, **more: str) -> "subprocess.CompletedPro
         env=environment,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=2 * PATIENCE,
         check=False,
         stdin=subprocess.DEVNULL,
     )
@@ -197,12 +198,15 @@ def test_every_variable_is_explained(generated: Dict[str, bytes]) -> None:
 
 
 def test_debian_12_has_every_package() -> None:
-    words = [tool("apt-cache"), "show", "--no-all-versions", "catkin", "g++", "make", *DEBIAN_PACKAGES]
+    tools = ("catkin", "g++", "make")
+    words = [tool("apt-cache"), "show", "--no-all-versions", *tools, *DEBIAN_PACKAGES]
     if "bookworm" not in Path("/etc/os-release").read_text(encoding="utf-8"):
         pytest.skip("this is not Debian 12")
     done = run(words, Path("/"))
-    found = set(re.findall(r"^Package: (\S+)", done.stdout, re.MULTILINE))
-    if not found:
+    # Without lists apt still knows what is installed, but for its file in the archive.
+    listed = [record for record in done.stdout.split("\n\n") if "\nFilename: " in record]
+    found = set(re.findall(r"^Package: (\S+)", "\n".join(listed), re.MULTILINE))
+    if not found >= set(tools):
         pytest.skip("apt has no lists here")
     assert set(DEBIAN_PACKAGES) <= found, done.stderr
 
@@ -232,7 +236,7 @@ def test_the_images_play_a_mission_to_its_goal() -> None:
             str(place / "ws"),
             str(place / "image"),
         ]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=1800, check=False)
+        done = subprocess.run(words, capture_output=True, text=True, timeout=3600, check=False)
         assert done.returncode == 0, done.stderr[-8000:]
         found = json.loads(done.stdout)
         assert set(found["healthy"].values()) == {True} and found["dead"] != 0

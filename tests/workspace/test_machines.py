@@ -18,6 +18,7 @@ from worlds import REACTION, SCENARIOS, files, world
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.workspace import Options, generate
 from pursue_gen.workspace.machines import Machine, Machines, nodes_of, parse_machines
+from tests.waiting import PATIENCE
 
 NODES = nodes_of(["controller_bot1", "controller_bot2", "controllerObj"])
 GOOD = """\
@@ -159,7 +160,7 @@ def test_roslaunch_takes_them(tmp_path: Path) -> None:
     )
     environment = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "ROS_MASTER_URI": "http://localhost:1"}
     words = [sys.executable, "-c", script, str(file)]
-    done = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=60, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=PATIENCE, check=False)
     assert "('observer', '127.0.0.2', 'ros', '/opt/pursue/env.sh')" in done.stdout, done.stderr
     assert "('UI', '127.0.0.1', None" in done.stdout
 
@@ -169,10 +170,10 @@ def test_the_command_tells_what_has_no_machine_and_writes_nothing_where_the_file
     file.write_text(GOOD, encoding="utf-8")
     words = [sys.executable, "-m", "pursue_gen", "ws", str(SCENARIOS / "thesis/scenario_1.pur")]
     words += ["--machines", str(file), "-o", str(tmp_path / "ws")]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=2 * PATIENCE, check=False)
     assert done.returncode == 0 and "TRN043" in done.stderr
     file.write_text(GOOD.replace("UI", "IU"), encoding="utf-8")
     words[-1] = str(tmp_path / "other")
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=2 * PATIENCE, check=False)
     assert done.returncode == 2 and f"{file}:4:34: error TRN041" in done.stderr
     assert not (tmp_path / "other").exists()
