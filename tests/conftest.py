@@ -16,6 +16,9 @@ ROOT = Path(__file__).resolve().parent.parent
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Who looks for a fault in the program wants tracebacks; tests want what everybody gets.
+os.environ.pop("PURSUE_DEBUG", None)
+
 # Other work on the machine must not fail a test; in CI a change is judged by the same examples every time.
 settings.register_profile(
     "project",

@@ -15,7 +15,7 @@ from benchmarks.measure import Bounds, Case, measured
 from benchmarks.plots import pictures
 from tests.conftest import thesis_scenario
 
-ENOUGH = Bounds(60.0, 2048)
+ENOUGH = Bounds(600.0, 2048)
 
 
 def family_case(name: str, size: int, game: str) -> Case:
@@ -33,7 +33,10 @@ def test_a_case_is_decided_and_proven_in_another_process() -> None:
 
 def test_a_case_beyond_its_limit_says_so_and_the_rest_of_its_family_is_not_tried() -> None:
     cases = [family_case("visitors", size, "default") for size in (3, 4)] + [family_case("ring", 4, "ideal")]
-    late, skipped, other = synthesis.measurements(cases, Bounds(0.2, 2048))
+    for seconds in (0.2, 2.0, 20.0):  # on a busy machine the least of them may be too short for the last case
+        late, skipped, other = synthesis.measurements(cases, Bounds(seconds, 2048))
+        if other.get("verdict"):
+            break
     assert late["outcome"] in ("time", "memory") and late.get("verdict") is None
     assert skipped["outcome"] == "skipped"
     assert other["verdict"] == "won"

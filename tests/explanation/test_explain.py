@@ -23,7 +23,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.test_cli import pursue
 
-PLENTY = 120.0
+PLENTY = 1200.0
 DEFAULT = Rules()
 
 CALLED = """poi "desk"

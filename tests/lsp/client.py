@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, Dict, List, Optional, Tuple, Type
 
 URI = "file:///some%20where/my_floor.pur"
-PATIENCE = 60
+PATIENCE = 300
 SNIPPETS = {
     "textDocument": {
         "completion": {"completionItem": {"snippetSupport": True}},

@@ -46,7 +46,7 @@ def asked(name: str, state: State, now: Sequence[Fraction], **changed: Any) -> R
         "clocks": {clock: float(value) for clock, value in zip(network.clocks, now)},
         "ahead": 0.0,
         "excused": [],
-        "limit": 60.0,
+        "limit": 1200.0,
     }
     return {**request, **changed}
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import sys
+from pathlib import Path
 from typing import Any, Dict, List
 
 import pytest
@@ -60,7 +62,8 @@ def test_from_every_place_where_somebody_was_early_or_late_there_is_a_plan(name:
 
 @pytest.mark.parametrize("name", THESIS)
 def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
-    from tests.runtime.node_modules import library, pursue_strategy
+    sys.path.append(str(Path(__file__).resolve().parent.parent / "runtime"))
+    from node_modules import library, pursue_strategy
 
     for state, clocks in walk(name, 3, 8):
         request = asked(name, state, clocks, ahead=0.0)

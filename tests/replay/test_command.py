@@ -20,7 +20,7 @@ from pursue_gen.workspace import Options, write_workspace
 def called(*words: Any) -> "subprocess.CompletedProcess[str]":
     """The command in a process of its own."""
     command = [sys.executable, "-m", "pursue_gen", "replay", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert "Traceback" not in done.stderr, done.stderr
     return done
 

@@ -125,7 +125,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("recordings")
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 @given(kind=st.sampled_from(["", "BZ2", "LZ4", "journal"]), part=st.floats(0.0, 0.999))
 def test_what_is_cut_off_anywhere_is_read_as_far_as_it_goes(folder: Path, kind: str, part: float) -> None:
     content = whole(kind, folder)
@@ -136,7 +136,7 @@ def test_what_is_cut_off_anywhere_is_read_as_far_as_it_goes(folder: Path, kind: 
     assert not good or (kind == "journal" and part > 0.9)
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
 @given(kind=st.sampled_from(["", "BZ2", "LZ4", "journal"]), data=st.data())
 def test_damaged_bytes_never_end_in_a_traceback(folder: Path, kind: str, data: st.DataObject) -> None:
     content = bytearray(whole(kind, folder))

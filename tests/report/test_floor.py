@@ -94,7 +94,7 @@ def test_bad_maps_are_told_with_the_file_and_what_was_expected(
     assert str(tmp_path) in finding.message and problem.value.exit_status == 2
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=list(HealthCheck), deadline=None)
 @given(
     st.binary(max_size=60),
     st.sampled_from([b"", b"P5 ", b"P2 3 1 9 ", b"P5 2 2 255 ", b"\x89PNG\r\n\x1a\n"]),

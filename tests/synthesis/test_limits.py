@@ -111,9 +111,12 @@ def test_ctrl_c_while_the_progress_is_told_ends_an_engine(game: Game, engine: st
 @engines
 def test_of_a_large_game_it_is_told_how_far_it_got(engine: str) -> None:
     scenario = parse(crowd(), "crowd.pur")
-    with pytest.raises(PursueError) as failure:
-        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(seconds=0.5))
-    words = told(failure.value).split("; ")[1].split()
+    for seconds in (0.5, 5.0, 50.0):  # on a busy machine the time may be over before much is done
+        with pytest.raises(PursueError) as failure:
+            solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(seconds))
+        words = told(failure.value).split("; ")[1].split()
+        if int(words[0]) > 1:
+            break
     assert words[1:4] == ["discrete", "states", "were"] and int(words[0]) > 1
     assert words[6] == "waiting," and int(words[5]) > 0
 
@@ -123,7 +126,7 @@ def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
     scenario = parse(crowd(), "crowd.pur")
     most = memory_in_use() + 24
     with pytest.raises(PursueError) as failure:
-        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(60, most))
+        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(1200, most))
     assert f"the limit of {most} MiB of memory" in told(failure.value)
 
 
@@ -149,7 +152,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
         pytest.skip("this system does not tell how much memory a process has")
     root = Path(__file__).resolve().parents[2]
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=str(root), stdout=subprocess.PIPE, timeout=120, universal_newlines=True
+        [sys.executable, "-c", code], cwd=str(root), stdout=subprocess.PIPE, timeout=600, universal_newlines=True
     )
     assert done.stdout.startswith("5 no verdict with the memory that there is")
 

@@ -31,6 +31,7 @@ from tests.synthesis.random_games import networks
 from tests.synthesis.region_game import RegionGame
 
 REPORTED, DEFAULT = Rules(reaction=Fraction(0)), Rules()
+PLENTY = Limits(3600.0)
 ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
 
 
@@ -46,7 +47,7 @@ def _published(folder: Path, name: str) -> Tuple[Network, Objective]:
 
 def _is_least(network: Network, objective: Objective, rules: Rules, least: Fraction) -> None:
     """It is found, and the strategy that is made for it wins and keeps it, as the checker sees it."""
-    found = fastest_solution(network, objective, rules)
+    found = fastest_solution(network, objective, rules, PLENTY)
     guarantee = found.guarantee
     assert guarantee is not None and guarantee.worst is not None
     assert guarantee.exact
@@ -110,7 +111,7 @@ def _edge(source: str, target: str, op: str, bound: int, controllable: bool = Tr
 
 
 def _least(network: Network, reaction: Fraction = Fraction(0)) -> Fraction:
-    guarantee, _ = fastest(network, REACH, reaction, None)
+    guarantee, _ = fastest(network, REACH, reaction, None, PLENTY)
     assert guarantee.exact
     return guarantee.least
 
@@ -129,7 +130,7 @@ def test_the_least_time_of_small_games() -> None:
 def test_a_strategy_may_use_the_whole_tolerance() -> None:
     network = _race(_edge("start", "half", ">", 2, reset=True), _edge("half", "goal", ">=", 3))
     for reaction in (Fraction(0), Fraction(1, 10), Fraction(1, 4)):
-        guarantee, faster = fastest(network, REACH, reaction, None)
+        guarantee, faster = fastest(network, REACH, reaction, None, PLENTY)
         assert faster is not None
         assert faster.kept == guarantee.least + TOLERANCE
 
@@ -138,7 +139,7 @@ def test_the_strategy_of_a_network_without_a_counting_clock_brings_one() -> None
     quick = _edge("start", "half", ">", 2, reset=True)
     network = _race(_edge("start", "goal", ">", 7), quick, _edge("half", "goal", ">", 3))
     assert counting_clock(network) is None
-    found = fastest_solution(network, REACH, IDEAL)
+    found = fastest_solution(network, REACH, IDEAL, PLENTY)
     assert found.guarantee is not None and found.guarantee.least == 5
     assert verify(found.network, REACH, found.strategy).ok
 
@@ -211,7 +212,7 @@ def test_games_with_a_deadline_agree_with_brute_force(
 def test_the_least_time_agrees_with_brute_force(drawn: Tuple[Network, Objective], delay: int) -> None:
     (network, objective), reaction = drawn, Fraction(delay)
     assume(_won_by_regions(network, objective, reaction, None))
-    guarantee, _ = fastest(network, objective, reaction, None)
+    guarantee, _ = fastest(network, objective, reaction, None, PLENTY)
     assert guarantee.exact
     value = int(guarantee.least)
     assume(value <= 6)

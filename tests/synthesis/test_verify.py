@@ -428,7 +428,7 @@ def test_every_command_that_plays_reach_is_needed_in_its_zone(reference_dir: Pat
                 assert not verify(net, objective, broken).ok
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.data())
 def test_a_plan_passes_iff_no_block_is_missing_that_plays_reach(reference_dir: Path, data: st.DataObject) -> None:
     net, objective, plan = published(reference_dir, "CT1")
