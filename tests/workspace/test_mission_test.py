@@ -6,7 +6,7 @@ import importlib.util
 import json
 import sys
 import unittest.mock
-from typing import Any, Dict
+from typing import Any, Dict, List
 
 import pytest
 from worlds import files
@@ -77,3 +77,20 @@ def test_the_system_state_is_read_up_to_its_clocks(judge: Any) -> None:
     head, values = judge.read_state("seq=3 stamp=1.5 status=running\nbot1=going_a_to_b\nPbot1=-12\n\nCbot1=0.5")
     assert head == {"seq": "3", "stamp": "1.5", "status": "running"}
     assert values == {"bot1": "going_a_to_b", "Pbot1": "-12"}
+
+
+def test_the_mission_is_started_again_until_the_observer_hears_it(judge: Any) -> None:
+    said: List[str] = []
+    record = judge.Record([])
+
+    def publish(word: str) -> None:
+        said.append(word)
+        record.status = "running" if len(said) == 3 else "waiting"
+
+    class Played(judge.MissionTest):  # type: ignore[misc, name-defined]
+        voice = unittest.mock.Mock(publish=publish)
+
+    with unittest.mock.patch.object(record, "wait", lambda done, seconds: done()):
+        Played.record = record
+        Played.start()
+    assert said == ["_start_"] * 3
