@@ -23,11 +23,12 @@ def native_modules() -> List[Any]:
     except ImportError:
         excuse("pybind11 is missing")
         return []
-    core = Path("pursue_gen/synthesis/core")
+    core = Path("pursue_gen/synthesis/native")
     module = Pybind11Extension(
-        "pursue_gen.synthesis._core",
+        "pursue_gen.synthesis.native._core",
         [(core / "module.cpp").as_posix()],
-        depends=sorted(header.as_posix() for header in core.glob("*.hpp")),
+        include_dirs=["pursue_gen"],
+        depends=sorted(header.as_posix() for header in Path("pursue_gen").rglob("*.hpp")),
         cxx_std=17,
         extra_compile_args=["-O3", "-g0"],
     )
@@ -70,7 +71,7 @@ class WithTemplates(build_py):
     """
 
     def run(self) -> None:
-        """Copies what pursue_gen.workspace.templates_dir, .cli_explain and .authoring.examples look for."""
+        """Copies what pursue_gen.workspace.templates_dir, .cli.explain and .authoring.examples look for."""
         super().run()
         if getattr(self, "editable_mode", False):
             return

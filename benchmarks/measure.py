@@ -89,9 +89,9 @@ def measured(case: Case, bounds: Bounds) -> Row:
 def _measure(case: Case, bounds: Bounds) -> None:
     """Decides, proves, looks for the margin, and prints after each what it cost, as far as it gets."""
     from pursue_gen.diagnostics import PursueError
-    from pursue_gen.pipeline import Rules, played, prove
+    from pursue_gen.proof.margin import strategy_margin
+    from pursue_gen.solving.solution import Rules, played, prove
     from pursue_gen.synthesis.limits import Limits
-    from pursue_gen.synthesis.margin import strategy_margin
     from pursue_gen.synthesis.solve import solve
 
     network, objective = _game(case)

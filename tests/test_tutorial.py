@@ -24,7 +24,7 @@ PATIENT = """
 import sys
 from pursue_gen.explanation import explain
 explain.DEFAULT_SECONDS = 600.0  # how much is found out in the usual time is a matter of the machine
-from pursue_gen.cli import main
+from pursue_gen.cli.app import main
 sys.exit(main())
 """
 

@@ -26,20 +26,21 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from pursue_gen.diagnostics import PursueError  # noqa: E402
+from pursue_gen.drawing import map_svg  # noqa: E402
+from pursue_gen.drawing.layout import poses  # noqa: E402
 from pursue_gen.files import write_texts  # noqa: E402
 from pursue_gen.language import load, parse  # noqa: E402
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario  # noqa: E402
-from pursue_gen.pipeline import Rules, Solution, guaranteed, played, prove  # noqa: E402
-from pursue_gen.report import map_svg, timeline  # noqa: E402
+from pursue_gen.report import timeline  # noqa: E402
 from pursue_gen.report.recording import ending_words, simulated  # noqa: E402
 from pursue_gen.simulation.mission import Settings  # noqa: E402
 from pursue_gen.simulation.runs import Case, case_of  # noqa: E402
-from pursue_gen.synthesis.optimize import Guarantee  # noqa: E402
+from pursue_gen.solving.least_time import Guarantee  # noqa: E402
+from pursue_gen.solving.solution import Rules, Solution, guaranteed, played, prove  # noqa: E402
 from pursue_gen.synthesis.solve import Verdict, solve  # noqa: E402
 from pursue_gen.tga import scenario_objective, translate  # noqa: E402
 from pursue_gen.tga.network import Kind  # noqa: E402
 from pursue_gen.workspace import Options  # noqa: E402
-from pursue_gen.workspace.layout import poses  # noqa: E402
 
 SCENARIOS, DOCS = ROOT / "scenarios", ROOT / "docs"
 PAGES, INDEX = DOCS / "scenarios", DOCS / "scenarios.md"

@@ -26,7 +26,7 @@ from pursue_gen.authoring.wishes import (
     slow_enough,
     unused,
 )
-from pursue_gen.console import usage
+from pursue_gen.cli.console import usage
 from pursue_gen.diagnostics import PursueError
 
 Answer = TypeVar("Answer")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Tuple
 
-from pursue_gen.console import usage
+from pursue_gen.cli.console import usage
 from pursue_gen.files import read_text, write_texts
 
 _COMMENT = re.compile(r"\s*((?://[^\n]*\n?[ \t]*)+|/\*.*?\*/)", re.S)

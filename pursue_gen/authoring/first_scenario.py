@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Iterable, List, Optional
 
 from pursue_gen.authoring.wishes import AVOID, CATCH, KINDS, NEVER_WITH, REACH, RESPOND, Task, Wishes, deadline, unused
-from pursue_gen.console import usage
+from pursue_gen.cli.console import usage
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.names import check_names
 from pursue_gen.language.parser import parse, read, without_errors
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.synthesis.limits import Limits, Listener
 
 _PATIENCE = 10.0

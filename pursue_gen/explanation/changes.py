@@ -11,9 +11,9 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
-from pursue_gen.pipeline import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.solving.solution import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate

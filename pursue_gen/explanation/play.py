@@ -12,14 +12,14 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Oracle, Position
-from pursue_gen.synthesis.dbm import constant
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
+from pursue_gen.zones.dbm import constant
 
 _MOST_STEPS = 60
 _FINE = Fraction(1, 1000)

@@ -11,11 +11,11 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
-from pursue_gen.synthesis.dbm import constant, is_strict
-from pursue_gen.synthesis.directed import RelaxedPlanner
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
+from pursue_gen.synthesis.reference.directed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
 from pursue_gen.tga.network import Edge
+from pursue_gen.zones.dbm import constant, is_strict
 
 Choice = Tuple[JointMove, Fraction]
 """A move and after what delay it is decided."""

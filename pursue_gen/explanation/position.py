@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.synthesis.game import State
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 

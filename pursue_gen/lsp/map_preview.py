@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.layout import poses
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.lsp.document import Document
-from pursue_gen.report import map_svg
-from pursue_gen.workspace.layout import poses
 
 _MOST_PLACES = 400
 """More places cannot be read on one picture, and to lay them out takes long."""

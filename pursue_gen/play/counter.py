@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.explanation.policy import COARSE, Window, longest, moments, window
 from pursue_gen.explanation.position import Oracle, Position
 from pursue_gen.play.table import (

@@ -6,13 +6,13 @@ from typing import Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Rules, solve_scenario
 from pursue_gen.play.advice import Advisor
 from pursue_gen.play.counter import robots_game
 from pursue_gen.play.session import GameOf, Session
 from pursue_gen.play.table import Board, beginning, board_of
 from pursue_gen.play.words import words_of
 from pursue_gen.play.world import World
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 
 _CANNOT_BE_MET = "SYN021"

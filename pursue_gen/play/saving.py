@@ -9,8 +9,8 @@ from typing import Iterator
 from pursue_gen import __version__
 from pursue_gen.explanation.words import time_text
 from pursue_gen.files import write_texts
-from pursue_gen.game_options import in_words
 from pursue_gen.play.table import LOST, ROBOTS, RUNNING, WON, Board, Deed, Table
+from pursue_gen.solving.options import in_words
 from pursue_gen.tga.network import is_end
 
 _START = 1000.0

@@ -13,8 +13,7 @@ from typing import Iterator, Optional, Tuple
 from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Rules, played
-from pursue_gen.synthesis.dbm import constant, is_strict
+from pursue_gen.solving.solution import Rules, played
 from pursue_gen.synthesis.game import (
     Game,
     JointMove,
@@ -27,6 +26,7 @@ from pursue_gen.synthesis.game import (
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective, is_end
 from pursue_gen.tga.words import event_word
+from pursue_gen.zones.dbm import constant, is_strict
 
 GRAIN = Fraction(1, 1000)
 """Time units after a moment that is itself just too early; moments that people name are multiples of it."""

@@ -10,9 +10,9 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
-from pursue_gen.pipeline import played, prove
 from pursue_gen.replanning.request import Request, read_request
 from pursue_gen.replanning.start import begun, late
+from pursue_gen.solving.solution import played, prove
 from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy

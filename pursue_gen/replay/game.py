@@ -14,8 +14,8 @@ from pursue_gen.files import read_text
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
-from pursue_gen.pipeline import Rules, played, solution
 from pursue_gen.replay.orders import Orders, of_strategy
+from pursue_gen.solving.solution import Rules, played, solution
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy

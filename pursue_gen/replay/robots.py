@@ -5,11 +5,11 @@ from __future__ import annotations
 import bisect
 from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
+from pursue_gen.drawing.layout import poses
 from pursue_gen.replay.finding import FAULT, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import Order, Record, State
-from pursue_gen.workspace.layout import poses
 
 LATE = 2.0
 """Seconds by which an order may be heard after its activity is over: messages take time, and robots may be quick."""

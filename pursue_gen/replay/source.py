@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional, Union
 
-from pursue_gen.asked import Asked
-from pursue_gen.console import usage
+from pursue_gen.cli.console import usage
 from pursue_gen.files import read_text
 from pursue_gen.language import load
 from pursue_gen.replay.game import Source, from_data, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.replay.record import Record
+from pursue_gen.solving.request import Asked
 from pursue_gen.tga import translate
 
 

@@ -13,15 +13,16 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.layout import poses
+from pursue_gen.drawing.look import AgentLook, agent_looks, mark, safe, tag, text
 from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
-from pursue_gen.report import map_svg, timeline
+from pursue_gen.report import timeline
 from pursue_gen.report.html import Section, asset, data, page
-from pursue_gen.report.look import AgentLook, agent_looks, mark, safe, tag, text
 from pursue_gen.report.recording import Recording, Stay, Step, ending_words, stays
 from pursue_gen.report.timeline import event_words
 from pursue_gen.report.words import Words, words_of
-from pursue_gen.workspace.layout import poses
 
 _ID = "animation"
 _AWAY = 28.0

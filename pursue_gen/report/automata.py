@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import List, Optional, Tuple
 
+from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node
 from pursue_gen.report.html import Section, figure, table
-from pursue_gen.report.look import safe
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text
 from pursue_gen.tga.network import Automaton, Edge, Location, Network
 from pursue_gen.tga.positions import positions

@@ -8,7 +8,7 @@ import subprocess
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence
 
-from pursue_gen.report.look import FONT, INK, PAPER, clean, safe
+from pursue_gen.drawing.look import FONT, INK, PAPER, clean, safe
 
 HOW_TO_GET = "install graphviz (Debian, Ubuntu: sudo apt install graphviz) and make the report again"
 _SECONDS = 20

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 from pursue_gen import __version__
-from pursue_gen.report.look import safe
+from pursue_gen.drawing.look import safe
 
 _NUMBER = re.compile(r"-?[\d,]+(\.\d+)?")
 

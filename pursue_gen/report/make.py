@@ -8,16 +8,16 @@ from typing import Callable, Optional, Tuple
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import DEFAULT_SECONDS, explain
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import IDEAL, Rules, Solution, played
+from pursue_gen.proof.margin import told
 from pursue_gen.report import tables
 from pursue_gen.report.commands import Game
 from pursue_gen.report.floor import Floor
 from pursue_gen.report.recording import simulated
 from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report
-from pursue_gen.solvers import margins, solved
+from pursue_gen.solving.solution import IDEAL, Rules, Solution, played
+from pursue_gen.solving.solvers import margins, solved
 from pursue_gen.synthesis.limits import Limits, Listener
-from pursue_gen.synthesis.margin import told
 from pursue_gen.tga import scenario_objective, translate
 
 _CANNOT_BE_MET = "SYN021"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
+from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.split import UI
 from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.report.html import Section, figure, table
-from pursue_gen.report.look import safe
 
 EVENTS, STATE, PLAN, DIAGNOSTICS = "/pursue/events", "/pursue/system_state", "/pursue/plan", "/diagnostics"
 _STRING, _POSE, _STATUS = "std_msgs/String", "geometry_msgs/PoseStamped", "diagnostic_msgs/DiagnosticArray"

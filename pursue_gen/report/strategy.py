@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import List, Optional
 
+from pursue_gen.drawing.look import safe
 from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node
 from pursue_gen.report.html import Section, asset, data, figure
-from pursue_gen.report.look import safe
 from pursue_gen.report.strategy_data import Book, Situation, as_json, shown_name, size
 
 MOST_STATES = 40

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, List, Optional, Sequence, Tuple
 
+from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
-from pursue_gen.pipeline import Solution
 from pursue_gen.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.report.html import Section, table
-from pursue_gen.report.look import safe
 from pursue_gen.report.thesis_figures import Times, thesis_times
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, Summary, case_of, simulate
-from pursue_gen.simulation.told import WORDS
+from pursue_gen.simulation.words import WORDS
+from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options
 

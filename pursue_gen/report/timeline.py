@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, Tuple
 
+from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.language.scenario import Respond
 from pursue_gen.replay.record import HOLDING, LOST, STOPPED, WON
 from pursue_gen.report.html import Section, table
-from pursue_gen.report.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.report.recording import Recording, Stay, Step, ending_words, lasting, stays
 from pursue_gen.report.words import Words, words_of
 from pursue_gen.tga import names

@@ -5,20 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Optional, Sequence, Tuple
 
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.layout import poses
+from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
-from pursue_gen.pipeline import Rules, Solution
-from pursue_gen.report import animation, automata, graphviz, map_svg, ros_graph, strategy, tables, timeline, verdict
+from pursue_gen.report import animation, automata, graphviz, ros_graph, strategy, tables, timeline, verdict
 from pursue_gen.report.commands import CommandsTable
 from pursue_gen.report.floor import Floor
 from pursue_gen.report.html import Section, figure, page
-from pursue_gen.report.look import safe
 from pursue_gen.report.recording import Recording
 from pursue_gen.report.strategy_data import Book, book_of
 from pursue_gen.report.tables import Measured
 from pursue_gen.report.verdict import Lost
+from pursue_gen.solving.solution import Rules, Solution
 from pursue_gen.tga.network import Network
-from pursue_gen.workspace.layout import poses
 
 
 @dataclass(frozen=True)

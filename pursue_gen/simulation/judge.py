@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
 
-from pursue_gen.simulation.held import EPSILON, Commands, commands_in
-from pursue_gen.synthesis.dbm import INF, Dbm, constant
-from pursue_gen.synthesis.verify_moves import Arena, JointMove, State
+from pursue_gen.proof.moves import Arena, JointMove, State
+from pursue_gen.simulation.commands import EPSILON, Commands, commands_in
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.words import event_word
+from pursue_gen.zones.dbm import INF, Dbm, constant
 
 BUSY = ("going_", "doing_")
 

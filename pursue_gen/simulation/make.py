@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Optional, Tuple
 
-from pursue_gen.asked import Asked, solution_of
-from pursue_gen.console import tell, usage
+from pursue_gen.cli.console import tell, usage
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
+from pursue_gen.solving.request import Asked, solution_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options

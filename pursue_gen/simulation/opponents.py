@@ -5,13 +5,13 @@ from __future__ import annotations
 import random
 from typing import List, NamedTuple, Optional, Tuple
 
-from pursue_gen.simulation.held import EPSILON
+from pursue_gen.proof.moves import JointMove, State
+from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.synthesis.dbm import INF, Dbm, constant, is_strict
-from pursue_gen.synthesis.verify_moves import JointMove, State
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.words import event_word
+from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
 
 OPPONENTS = {
     "random": "each does any of what it may do, or nothing, at any moment; the first and the last one often",

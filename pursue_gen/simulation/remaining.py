@@ -12,14 +12,14 @@ from fractions import Fraction
 from typing import Deque, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.pipeline import Solution
-from pursue_gen.synthesis.dbm import INF, Dbm, constant, raw
-from pursue_gen.synthesis.verify_loop import ClosedLoop, Entry
-from pursue_gen.synthesis.verify_moves import JointMove, State
-from pursue_gen.synthesis.verify_time import Broken
-from pursue_gen.synthesis.verify_zones import with_neighbours
-from pursue_gen.synthesis.worst_case import LONGEST, counting_clock, with_counter, with_deadline
+from pursue_gen.proof.closed_loop import ClosedLoop, Entry
+from pursue_gen.proof.delays import Broken
+from pursue_gen.proof.moves import JointMove, State
+from pursue_gen.proof.worst_case import LONGEST, counting_clock, with_counter, with_deadline
+from pursue_gen.proof.zones import with_neighbours
+from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Kind
+from pursue_gen.zones.dbm import INF, Dbm, constant, raw
 
 STATES = 2_000
 """So many symbolic states are looked at from one point; a game with longer plays is too large."""

@@ -7,10 +7,10 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Solution
+from pursue_gen.proof.moves import Arena
 from pursue_gen.simulation.code import load, sources
-from pursue_gen.simulation.held import Commands, commands_of
-from pursue_gen.synthesis.verify_moves import Arena
+from pursue_gen.simulation.commands import Commands, commands_of
+from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, generate
 
 _MODULES = ("observer_core", "controller_core", "observer_journal", "simulator_core", "ui_core", "ui_players")

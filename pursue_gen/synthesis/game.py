@@ -13,8 +13,8 @@ from math import gcd
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
-from pursue_gen.synthesis.dbm import Dbm, constant, raw
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
+from pursue_gen.zones.dbm import Dbm, constant, raw
 
 Bound = Tuple[int, int, int]
 """`x_i - x_j` within a raw bound: (i, j, raw)."""

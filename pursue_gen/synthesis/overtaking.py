@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import Iterable, List, Sequence, Tuple
 
-from pursue_gen.synthesis.dbm import Dbm
-from pursue_gen.synthesis.federation import Federation
 from pursue_gen.synthesis.game import Action, Game, RawBlock
+from pursue_gen.zones.dbm import Dbm
+from pursue_gen.zones.federation import Federation
 
 Piece = Tuple[Dbm, Action]
 

@@ -8,11 +8,11 @@ from fractions import Fraction
 from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.synthesis import native
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.overtaking import without_overtaking
-from pursue_gen.synthesis.reference import solve_reference
+from pursue_gen.synthesis.reference.engine import solve_reference
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Kind, Network, Objective

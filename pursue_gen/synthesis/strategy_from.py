@@ -6,9 +6,9 @@ from collections import deque
 from fractions import Fraction
 from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
-from pursue_gen.synthesis.dbm import INF, LE_ZERO, constant, is_strict
 from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
+from pursue_gen.zones.dbm import INF, LE_ZERO, constant, is_strict
 
 Matrix = Tuple[int, ...]
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Mapping, Optional, Tuple
 
-from pursue_gen.asked import Asked, told_solution
-from pursue_gen.console import show
+from pursue_gen.cli.console import show
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.request import Asked, told_solution
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.transport.keys import Ed25519PrivateKey, public_keys  # first: it says what to do without cryptography
 from pursue_gen.transport.mission_bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack

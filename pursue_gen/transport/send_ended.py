@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import List, Optional, Sequence, Tuple
 
-from pursue_gen.console import count, quoted
+from pursue_gen.cli.console import count, quoted
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.transport.client import Status
 from pursue_gen.transport.send_checks import DIFFERENT, UNCHANGED

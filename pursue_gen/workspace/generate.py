@@ -14,9 +14,10 @@ import jinja2
 
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.layout import poses
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.partition import SubStrategy, partition, strategy_file
-from pursue_gen.report import map_svg
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
@@ -24,7 +25,6 @@ from pursue_gen.tga.uppaal import write_network, write_query
 from pursue_gen.tga.words import event_word
 from pursue_gen.workspace import context, deploy, expected, game_file, model_file
 from pursue_gen.workspace.context import Options
-from pursue_gen.workspace.layout import poses
 from pursue_gen.workspace.mission_manifest import MISSION, Manifest, make_manifest, mission_file
 from pursue_gen.workspace.packages import RECEIVING, TEST_DEPENDS, Package, environment, files_of, templates_dir
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from pursue_gen.asked import Asked, told_solution
-from pursue_gen.console import show, tell
+from pursue_gen.cli.console import show, tell
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.synthesis.margin import QUICK, strategy_margin, told
+from pursue_gen.proof.margin import QUICK, strategy_margin, told
+from pursue_gen.solving.request import Asked, told_solution
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options, machines_for, write_workspace
 

@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from unittest import mock
 
-from pursue_gen.cli import main
+from pursue_gen.cli.app import main
 
 
 @dataclass(frozen=True)

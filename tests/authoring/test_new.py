@@ -13,13 +13,13 @@ import pytest
 from pursue_gen.authoring.dialog import Dialog, wishes
 from pursue_gen.authoring.first_scenario import scenario_text
 from pursue_gen.authoring.wishes import KINDS, Robot, Task, Wishes, deadline, fewest_places, slow_enough
-from pursue_gen.cli import main
-from pursue_gen.cli_new import Goal
+from pursue_gen.cli.app import main
+from pursue_gen.cli.new import Goal
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, load, parse
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.scenario import Avoid, NeverWith, Reach, Respond, Scenario
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.solving.solution import Rules, solve_scenario
 
 from .commands import pursue
 

@@ -12,16 +12,16 @@ from typing import Tuple
 import pytest
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.explanation.changes import Change
-from pursue_gen.explanation.clock import Clock
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
-from pursue_gen.pipeline import CONTROLLABLE, IDEAL, Rules, played
-from pursue_gen.synthesis import native
+from pursue_gen.solving.solution import CONTROLLABLE, IDEAL, Rules, played
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
-from tests.test_cli import pursue
+from tests.cli.test_commands import pursue
 
 PLENTY = 1200.0
 DEFAULT = Rules()

@@ -9,7 +9,7 @@ from typing import Tuple
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.explanation.clock import Clock
+from pursue_gen.explanation.allowance import Clock
 from pursue_gen.explanation.play import Play, counter_play
 from pursue_gen.explanation.position import Oracle, Position, beginning_at
 from pursue_gen.synthesis.game import compile_game, initial_state

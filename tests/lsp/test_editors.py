@@ -182,7 +182,7 @@ def test_vim_knows_the_file_names() -> None:
 
 
 def token_types(text: str) -> List[Tuple[str, str]]:
-    from pursue_gen.lexer import PursueLexer
+    from pursue_gen.language.lexer import PursueLexer
 
     tokens = PursueLexer().get_tokens(text)
     return [(str(kind)[6:], value) for kind, value in tokens if str(kind) != "Token.Text.Whitespace"]
@@ -206,13 +206,13 @@ def test_pygments_sees_the_words_that_the_parser_sees(name: str) -> None:
 @pytest.mark.skipif(find_spec("pygments") is None, reason="pygments is not installed")
 def test_pygments_gives_back_every_text() -> None:
     for text in ('poi "a', "/* never", "x\u200by \x00 é😀", "wait-for it", "12abc 1.5"):
-        from pursue_gen.lexer import PursueLexer
+        from pursue_gen.language.lexer import PursueLexer
 
         assert "".join(value for _, value in PursueLexer(ensurenl=False, stripnl=False).get_tokens(text)) == text
 
 
 def test_pygments_finds_it_by_the_entry_point() -> None:
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    assert '[project.entry-points."pygments.lexers"]\npursue = "pursue_gen.lexer:PursueLexer"\n' in text
+    assert '[project.entry-points."pygments.lexers"]\npursue = "pursue_gen.language.lexer:PursueLexer"\n' in text
     source = Path(ROOT / "pursue_gen" / "lexer.py").read_text(encoding="utf-8")
     assert "class PursueLexer(" in source

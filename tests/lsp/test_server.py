@@ -234,7 +234,7 @@ def test_ten_thousand_lines_hold_nothing_up() -> None:
 
 def test_without_pygls_it_says_what_to_install() -> None:
     hidden = "import sys; sys.modules['pygls'] = None; sys.modules['pygls.exceptions'] = None;"
-    program = hidden + "sys.argv = ['pursue-gen', 'lsp']; from pursue_gen.cli import main; main()"
+    program = hidden + "sys.argv = ['pursue-gen', 'lsp']; from pursue_gen.cli.app import main; main()"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == 6
     assert "pip install" in done.stderr and "Traceback" not in done.stderr

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import IDEAL, Rules
 from pursue_gen.play.counter import Robots
 from pursue_gen.play.games import game_of
 from pursue_gen.play.session import GameOf, Session
 from pursue_gen.play.table import GRAIN, Plan, Table, beginning, board_of
 from pursue_gen.play.words import words_of
 from pursue_gen.play.world import Offer, World
+from pursue_gen.solving.solution import IDEAL, Rules
 from pursue_gen.synthesis.limits import NO_LIMITS
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

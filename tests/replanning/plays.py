@@ -10,10 +10,10 @@ from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Rules, Solution, solve_scenario
-from pursue_gen.synthesis.dbm import INF, Dbm, constant, is_strict
-from pursue_gen.synthesis.verify_loop import ClosedLoop
-from pursue_gen.synthesis.verify_moves import State
+from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.moves import State
+from pursue_gen.solving.solution import Rules, Solution, solve_scenario
+from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 

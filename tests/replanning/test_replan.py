@@ -13,7 +13,7 @@ import yaml
 from pursue_gen.partition import partition
 from pursue_gen.partition.strategy_file import render
 from pursue_gen.replanning import replan
-from pursue_gen.synthesis import native
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga.network import Network
 from tests.replanning.plays import asked, beginning, busy, ended, game_of, solved, walk
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.replanning.request import read_request
 from pursue_gen.replanning.start import begun, region
-from pursue_gen.synthesis import native
 from pursue_gen.synthesis.game import compile_game, start_zone
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, Location, Network, is_end
 from tests.replanning.plays import asked, beginning, solved, walk

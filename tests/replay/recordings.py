@@ -10,13 +10,13 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from rosbags.rosbag1 import Writer
 
+from pursue_gen.drawing.layout import poses
 from pursue_gen.language import load
-from pursue_gen.pipeline import Rules, played
 from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.moves import Moves, after
 from pursue_gen.replay.record import State
+from pursue_gen.solving.solution import Rules, played
 from pursue_gen.tga import translate
-from pursue_gen.workspace.layout import poses
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
 START = 100.0

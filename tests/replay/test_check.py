@@ -206,7 +206,7 @@ def test_a_win_without_the_goal_is_a_fault() -> None:
 
 @pytest.mark.parametrize("status, said", [("stopped", "was stopped"), ("running", "had not ended")])
 def test_a_mission_that_was_not_won_is_said_so(status: str, said: str) -> None:
-    from pursue_gen.replay.told import verdict
+    from pursue_gen.replay.summary import verdict
 
     made = mission(PLAY[:-1])
     last = made.states[-1]
@@ -252,7 +252,7 @@ def plan_data() -> Dict[str, Any]:
     """The strategy of scenario 1 as it stands on pursue/plan."""
     yaml = pytest.importorskip("yaml")
     known = game()
-    from pursue_gen.pipeline import Rules, solution
+    from pursue_gen.solving.solution import Rules, solution
     from pursue_gen.tga import translate
 
     strategy = solution(translate(known.scenario), known.objective, Rules()).strategy

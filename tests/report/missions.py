@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 from pursue_gen.language import load
-from pursue_gen.pipeline import Rules, played, solve_scenario
 from pursue_gen.report.recording import Recording, Step, simulated
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import case_of
+from pursue_gen.solving.solution import Rules, played, solve_scenario
 from pursue_gen.tga import translate
 from pursue_gen.workspace import Options
 

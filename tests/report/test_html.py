@@ -8,7 +8,7 @@ from typing import Dict, List, Optional, Tuple
 
 import pytest
 
-from pursue_gen.report import look
+from pursue_gen.drawing import look
 from pursue_gen.report.html import Section, data, figure, page, table
 
 HOSTILE = "<img src=x onerror=\"alert('1')\">&amp;\x00\u2028</script>"

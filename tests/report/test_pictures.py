@@ -13,8 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.drawing import look
 from pursue_gen.language import load
-from pursue_gen.report import automata, graphviz, look
+from pursue_gen.report import automata, graphviz
 from pursue_gen.report import png as png_module
 from pursue_gen.report.png import png
 from pursue_gen.tga import translate

@@ -8,7 +8,7 @@ from typing import NamedTuple, Tuple
 import pytest
 from typer.testing import CliRunner
 
-from pursue_gen.cli import app
+from pursue_gen.cli.app import app
 from pursue_gen.report import graphviz
 from pursue_gen.report.png import available
 

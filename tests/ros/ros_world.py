@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import load
-from pursue_gen.pipeline import IDEAL, Rules, solve_scenario
+from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 from tests.waiting import PATIENCE
 

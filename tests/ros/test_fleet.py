@@ -21,7 +21,7 @@ from stage import ready
 from test_links import Nodes, nodes, until
 
 from pursue_gen.language import load
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 from tests.namespaces import Lab, lab, why_not
 from tests.waiting import PATIENCE

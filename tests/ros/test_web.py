@@ -14,7 +14,7 @@ import pytest
 from ros_world import SCENARIOS, Ros, end, make
 
 from pursue_gen.language import parse
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 from tests.waiting import PATIENCE
 

@@ -9,7 +9,7 @@ from typing import Any, Dict, List
 import pytest
 
 from pursue_gen.language import load
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 
 roslaunch = pytest.importorskip("roslaunch", reason="ROS is not installed")

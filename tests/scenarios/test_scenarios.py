@@ -15,7 +15,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
 from pursue_gen.simulation.mission import GOAL, SAFE
 from pursue_gen.simulation.runs import Players
-from pursue_gen.synthesis.native import available
+from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tga import translation_notes
 
 FILES = make.scenario_files()

@@ -9,10 +9,10 @@ from typing import Dict, Optional, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.pipeline import Rules, Solution, solve_scenario
 from pursue_gen.simulation.mission import Outcome, Settings, play
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_from
+from pursue_gen.solving.solution import Rules, Solution, solve_scenario
 from pursue_gen.workspace import Options, generate
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

@@ -7,7 +7,7 @@ from typing import Any, Dict
 import pytest
 from stages import THIEF, files, missions, sabotaged, solved, stage
 
-from pursue_gen.simulation.held import commands_of
+from pursue_gen.simulation.commands import commands_of
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.mission import FAILED, Settings
 

@@ -11,12 +11,12 @@ import pytest
 from stages import SCENARIOS, THESIS, THIEF, missions, remaining, solved, stage
 
 from pursue_gen.language import load
-from pursue_gen.pipeline import Rules, solve_scenario
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.simulation.faults import FAULTS, HARMLESS
 from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Settings, play
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import stage_of
-from pursue_gen.synthesis.worst_case import worst_case
+from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options
 
 

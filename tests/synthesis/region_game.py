@@ -10,7 +10,6 @@ from fractions import Fraction
 from itertools import product
 from typing import Dict, Iterator, List, Optional, Set, Tuple
 
-from pursue_gen.synthesis.dbm import Dbm, constant
 from pursue_gen.synthesis.game import (
     Bound,
     Game,
@@ -24,6 +23,7 @@ from pursue_gen.synthesis.game import (
     start_zone,
 )
 from pursue_gen.tga.network import Kind
+from pursue_gen.zones.dbm import Dbm, constant
 
 Region = Tuple[Fraction, ...]
 Position = Tuple[State, Region]

@@ -8,7 +8,6 @@ from typing import Optional, Tuple
 import pytest
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.synthesis.dbm import raw
 from pursue_gen.synthesis.game import Game, compile_game, initial_state, invariant, is_bad, is_goal, joint_moves
 from pursue_gen.tga.network import (
     Automaton,
@@ -22,6 +21,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
+from pursue_gen.zones.dbm import raw
 
 REACH = Objective(Kind.REACH, goal=("S", "b"))
 

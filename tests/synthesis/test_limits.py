@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, render
 from pursue_gen.language import load, parse
-from pursue_gen.pipeline import IDEAL, prove, solution
+from pursue_gen.proof.checker import Report, verify
+from pursue_gen.solving.solution import IDEAL, prove, solution
 from pursue_gen.synthesis import limits as limits_module
-from pursue_gen.synthesis import native, reference
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import (
     CAREFUL,
@@ -31,9 +31,10 @@ from pursue_gen.synthesis.limits import (
     limit_reached,
     memory_in_use,
 )
+from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.reference import engine as reference
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.synthesis.verify import Report, verify
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.conftest import thesis_scenario
@@ -136,7 +137,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
         import resource
         from pursue_gen.diagnostics import PursueError
         from pursue_gen.language import parse
-        from pursue_gen.synthesis import native
+        from pursue_gen.synthesis.native import engine as native
         from pursue_gen.synthesis.game import compile_game
         from pursue_gen.tga import scenario_objective, translate
         scenario = parse({crowd()!r}, "crowd.pur")
@@ -201,7 +202,7 @@ def test_one_allowance_is_for_the_solver_and_the_checker(game: Game, eager: None
     solution(*game, IDEAL, Limits(600, 1 << 20), progress=heard.append)
     phases = [p.phase for p in heard]
     assert phases == sorted(phases, reverse=True) and set(phases) == {SOLVING, PROVING}
-    with mock.patch("pursue_gen.pipeline.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
+    with mock.patch("pursue_gen.solving.solution.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
         solution(*game, IDEAL, Limits(600))
     given_limits = checker.call_args[1]["limits"]
     assert given_limits.seconds == 600 and 0 < given_limits.spent < 600
@@ -209,7 +210,8 @@ def test_one_allowance_is_for_the_solver_and_the_checker(game: Game, eager: None
 
 def test_what_the_checker_does_not_decide_is_no_defeat(game: Game, strategy: Strategy) -> None:
     undecided = Report(False, "limit: not decided within 7 symbolic states", (), frozenset(), 7)
-    with mock.patch("pursue_gen.pipeline.verify", return_value=undecided), pytest.raises(PursueError) as failure:
+    checker = mock.patch("pursue_gen.solving.solution.verify", return_value=undecided)
+    with checker, pytest.raises(PursueError) as failure:
         prove(*game, strategy, Fraction(0))
     assert "not proven: limit: not decided within 7 symbolic states" in told(failure.value)
 

@@ -10,13 +10,13 @@ from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load, parse
-from pursue_gen.synthesis import native
-from pursue_gen.synthesis.dbm import INF, Dbm
-from pursue_gen.synthesis.federation import Federation
 from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
-from pursue_gen.synthesis.reference import solve_reference
+from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.reference.engine import solve_reference
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Kind
+from pursue_gen.zones.dbm import INF, Dbm
+from pursue_gen.zones.federation import Federation
 from tests.conftest import thesis_scenario
 from tests.synthesis.random_games import games
 from tests.synthesis.region_game import RegionGame

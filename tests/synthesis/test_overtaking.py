@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from benchmarks.families import catch_by_one_distance
 from pursue_gen.language import parse
-from pursue_gen.pipeline import Rules, played, prove
-from pursue_gen.synthesis import native
-from pursue_gen.synthesis.dbm import Dbm
+from pursue_gen.proof.checker import verify
+from pursue_gen.solving.solution import Rules, played, prove
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.overtaking import kept_apart
 from pursue_gen.synthesis.solve import solve
-from pursue_gen.synthesis.verify import verify
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.zones.dbm import Dbm
 from tests.synthesis.zones import Point, later, points, times, zones
 
 HALF = Fraction(1, 2)

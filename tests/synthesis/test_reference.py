@@ -10,11 +10,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.language import load
-from pursue_gen.synthesis.federation import Federation
+from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.game import Game, compile_game, joint_moves
-from pursue_gen.synthesis.reference import Outcome, solve_reference
+from pursue_gen.synthesis.reference.engine import Outcome, solve_reference
 from pursue_gen.synthesis.strategy_from import followed, to_strategy
-from pursue_gen.synthesis.verify import verify
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import (
     Automaton,
@@ -27,6 +26,7 @@ from pursue_gen.tga.network import (
     Objective,
 )
 from pursue_gen.tga.uppaal import read_network, read_query
+from pursue_gen.zones.federation import Federation
 from tests.conftest import thesis_scenario
 from tests.synthesis.random_games import games
 from tests.synthesis.region_game import RegionGame

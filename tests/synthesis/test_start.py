@@ -11,14 +11,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.synthesis import native
+from pursue_gen.proof.checker import verify
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.synthesis.game import compile_game, initial_state, start_zone
-from pursue_gen.synthesis.least_time import least_time
-from pursue_gen.synthesis.reference import solve_reference
+from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.reference.engine import solve_reference
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
-from pursue_gen.synthesis.verify import verify
-from pursue_gen.synthesis.worst_case import worst_case
+from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,

@@ -8,8 +8,8 @@ from typing import List, Sequence, Tuple
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from pursue_gen.synthesis.dbm import Dbm, raw
-from pursue_gen.synthesis.federation import Federation
+from pursue_gen.zones.dbm import Dbm, raw
+from pursue_gen.zones.federation import Federation
 
 CLOCKS = 3
 DIM = CLOCKS + 1

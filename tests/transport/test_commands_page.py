@@ -9,7 +9,7 @@ from typing import Any, Iterator, Tuple
 import pytest
 from typer.main import get_command
 
-from pursue_gen.cli import app
+from pursue_gen.cli.app import app
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "commands.md").read_text(encoding="utf-8")
 

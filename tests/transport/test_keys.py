@@ -216,7 +216,7 @@ def test_a_private_key_is_never_printed(home: Path) -> None:
 
 
 def without_cryptography(*words: object) -> "subprocess.CompletedProcess[str]":
-    program = "import sys; sys.modules['cryptography'] = None; from pursue_gen.cli import main; main()"
+    program = "import sys; sys.modules['cryptography'] = None; from pursue_gen.cli.app import main; main()"
     command = [sys.executable, "-c", program, *map(str, words)]
     return subprocess.run(command, cwd=str(ROOT), capture_output=True, text=True, timeout=2 * PATIENCE, check=False)
 

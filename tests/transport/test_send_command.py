@@ -15,11 +15,11 @@ from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption,
 from fake_robot import GONE, KEY, REFUSED, FakeRobot, serving
 from fake_robot import bundle as make_bundle
 
-from pursue_gen.cli import main
+from pursue_gen.cli.app import main
 from pursue_gen.transport.client import Robot, Status
 from pursue_gen.transport.mission_bundle import OWN, mission_id
 from pursue_gen.transport.send_checks import asked_mission, previous
-from pursue_gen.transport.send_told import upload_lines
+from pursue_gen.transport.send_table import upload_lines
 from tests.waiting import PATIENCE
 
 SCENARIO = str(Path(__file__).resolve().parent.parent.parent / "scenarios" / "thesis" / "scenario_1.pur")

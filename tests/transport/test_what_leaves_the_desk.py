@@ -13,7 +13,7 @@ import pytest
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat
 from fake_robot import KEY, FakeRobot, certificate, serving
 
-from pursue_gen.cli import main
+from pursue_gen.cli.app import main
 from pursue_gen.transport.client import Robot, Unreached, health
 from tests.waiting import PATIENCE
 

@@ -1,0 +1,118 @@
+"""The command `bundle`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import List, Optional
+
+import typer
+
+from pursue_gen.cli.console import guarded, quoted, suggest, tell, usage
+from pursue_gen.cli.options import (
+    COMPUTED_POSES,
+    CONTROLLERS,
+    ENDS,
+    EXPLAIN,
+    KEY,
+    KEYS,
+    LIMIT,
+    MEMORY,
+    OPTIMIZE,
+    PLAN,
+    POSES,
+    REACH_OBJ,
+    REACTION,
+    SLACK,
+    SOLVER,
+    VERIFYTGA,
+    Controllers,
+    Ends,
+    Optimize,
+    Solver,
+    value,
+)
+
+
+@guarded
+def bundle(
+    scenario: Optional[Path] = typer.Argument(None, metavar="SCENARIO", help="A scenario in PuRSUE-ML."),
+    output: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="FILE", help="Where the bundle goes; <scenario>.pursue by default."
+    ),
+    key: Optional[str] = KEY,
+    keys: Optional[Path] = KEYS,
+    check: Optional[Path] = typer.Option(
+        None, "--check", metavar="FILE.pursue", help="Show what is in a bundle, and check all of it, instead."
+    ),
+    controllers: Controllers = CONTROLLERS,
+    reach_obj: str = REACH_OBJ,
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
+    plan: Optional[Path] = PLAN,
+    poses: Optional[Path] = POSES,
+    computed_poses: bool = COMPUTED_POSES,
+    solver: Optional[Solver] = SOLVER,
+    verifytga: Optional[Path] = VERIFYTGA,
+    optimize: Optional[Optimize] = OPTIMIZE,
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
+    explain: bool = EXPLAIN,
+) -> None:
+    """Write a mission as one signed file, which robots take: data only, no code.
+
+    Its file and its digest are printed on stdout. The same scenario with the same options, signed with the same key,
+    gives the same file.
+    """
+    from pursue_gen.files import write_bytes
+    from pursue_gen.language import load
+    from pursue_gen.solving.options import asked_limits
+    from pursue_gen.transport.bundles import SUFFIX, AskedMission, make_mission, sign
+    from pursue_gen.transport.keys import keys_folder, load_private
+
+    folder = keys or keys_folder()
+    if check is not None:
+        if scenario is not None or output is not None:
+            raise usage("--check looks at a bundle that is there", "leave out SCENARIO and -o")
+        _tell_bundle(check, folder)
+        return
+    if scenario is None:
+        raise usage("a scenario is missing", "pursue-gen bundle my_floor.pur, or pursue-gen bundle --check FILE.pursue")
+    target = output or Path(f"{scenario.stem}{SUFFIX}")
+    if target.suffix != SUFFIX:
+        raise usage(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
+    private = load_private(key, folder)  # before the work: it may be missing
+    how = (value(solver), verifytga, value(optimize), asked_limits(limit, memory), poses, computed_poses)
+    asked = AskedMission(controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan, *how)
+    manifest, files = make_mission(load(scenario), asked, scenario if explain else None)
+    write_bytes({target: sign(manifest, files, private)})
+    print(target, manifest.digest, sep="\n")
+    tell(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
+    suggest(f"pursue-gen send {quoted(target)} --to robots.yaml")
+
+
+def _tell_bundle(file: Path, folder: Path) -> None:
+    """What is in a bundle, as a table on stdout, once all of it is checked."""
+    from pursue_gen.cli.console import show
+    from pursue_gen.transport.bundles import read_bundle
+    from pursue_gen.transport.keys import public_keys
+    from pursue_gen.transport.mission_bundle import fingerprint, mission_id
+
+    known, findings = public_keys(folder)
+    show(findings)
+    names = {fingerprint(key): name for name, key in reversed(list(known.items()))}
+    _, found = read_bundle(file, {fingerprint(key): key for key in known.values()})
+    rows = (
+        ("scenario", found.manifest.scenario),
+        ("mission", f"{mission_id(found.digest)} (in states and logs)"),
+        ("digest", found.digest),
+        ("generator", f"pursue-gen {found.manifest.generator}"),
+        ("controllers", ", ".join(found.manifest.controllers)),
+        ("signed by", f"{names[found.signed_by]} ({found.signed_by})"),
+        ("files", str(len(found.files))),
+    )
+    for name, what in rows:
+        print(f"{name:12}  {what}")
+    for path, content in sorted(found.files.items()):
+        print(f"  {path:40}  {len(content)} bytes")
+    tell(f"{file} is as it was signed.")

@@ -1,0 +1,57 @@
+"""The command `fmt`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import List
+
+import typer
+
+from pursue_gen.cli.console import count, guarded, tell, usage
+from pursue_gen.diagnostics import Diagnostic, PursueError
+
+
+@guarded
+def fmt(
+    files: List[Path] = typer.Argument(..., metavar="FILE...", help="Scenarios; - alone: from stdin to stdout."),
+    check: bool = typer.Option(False, "--check", help="Change nothing; list what would be, and exit with 1."),
+    diff: bool = typer.Option(False, "--diff", help="Change nothing; print what would change, as diff -u does."),
+) -> None:
+    """Lay out scenarios in the one way: blanks and line breaks change, words, comments and their order never.
+
+    A file with syntax errors is left as it is, and the exit status is 3.
+    """
+    from pursue_gen.language.formatter_files import Layout, layout_of, layout_of_bytes, replace_text
+
+    stdin = files == [Path("-")]
+    if Path("-") in files and not stdin:
+        raise usage("- stands for stdin, and there are files as well", "name files, or - alone")
+    layouts: List[Layout] = []
+    problems: List[PursueError] = []
+    for file in files:
+        try:
+            layout = layout_of_bytes(sys.stdin.buffer.read(), "<stdin>") if stdin else layout_of(str(file))
+            if layout.changed and not (stdin or check or diff):
+                replace_text(layout)
+            layouts.append(layout)
+        except PursueError as problem:
+            problems.append(problem)
+    changed = [layout for layout in layouts if layout.changed]
+    for layout in changed:
+        if diff:
+            sys.stdout.write(layout.diff())
+        elif check:
+            print(layout.file)
+        elif not stdin:
+            tell(f"laid out: {layout.file}")
+    if stdin and layouts and not (check or diff):
+        sys.stdout.write(layouts[0].after)
+    elif not stdin:
+        word = "would change" if check or diff else "changed"
+        tell(f"{count(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} as it should be")
+    if problems:
+        findings: List[Diagnostic] = [finding for problem in problems for finding in problem.diagnostics]
+        raise PursueError(findings, problems[0].exit_status)
+    if check and changed:
+        raise typer.Exit(1)

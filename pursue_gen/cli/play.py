@@ -1,0 +1,81 @@
+"""The command `play`."""
+
+from __future__ import annotations
+
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import List, Optional
+
+import typer
+
+from pursue_gen.cli.console import guarded, usage
+from pursue_gen.cli.options import ENDS, LIMIT, MEMORY, REACTION, SCENARIO, SLACK, Ends, value
+
+_PROMPT = "> "
+
+
+class Side(str, Enum):
+    """Whom the person plays."""
+
+    WORLD = "world"
+    ROBOTS = "robots"
+
+
+@guarded
+def play(
+    scenario: Path = SCENARIO,
+    side: Optional[Side] = typer.Option(
+        None,
+        "--as",
+        help="Whom you play: world (everybody but the robots, where the objective can be met) or robots (where it "
+        "cannot). By default what fits.",
+    ),
+    seed: int = typer.Option(1, metavar="S", min=0, help="For what is drawn: when movements end that you leave alone."),
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
+) -> None:
+    """Play a scenario step by step: the others against the strategy; or the robots, where these cannot win.
+
+    Commands are read from stdin, with or without a terminal; help lists them. The exit status is 0.
+    """
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.language import load
+    from pursue_gen.play.counter import Robots
+    from pursue_gen.play.games import session_of
+    from pursue_gen.play.session import answer, farewell, opening
+    from pursue_gen.solving.options import asked_limits, asked_rules
+    from pursue_gen.tga import translate
+
+    read = load(scenario)
+    rules = asked_rules(translate(read), value(ends), reaction, slack)
+    with progress_line() as progress:
+        session = session_of(read, rules, seed, asked_limits(limit, memory), progress)
+    is_robots = isinstance(session.game, Robots)
+    if side is not None and (side is Side.ROBOTS) != is_robots:
+        can, whom = ("cannot", "robots") if is_robots else ("can", "others")
+        message = f"with these rules the objective {can} be met, so you can only play the {whom}"
+        raise usage(message, f"leave out --as {side.value}, or change the rules")
+    print("\n".join(opening(session)), flush=True)
+    interactive = sys.stdin.isatty()
+    while True:
+        if interactive:
+            print(_PROMPT, end="", flush=True)
+        try:
+            line = sys.stdin.readline()
+        except KeyboardInterrupt:
+            line = ""
+        if not line:
+            if not session.table.over:  # else it has been said
+                print(("\n" if interactive else "") + farewell(session))
+            return
+        if not interactive:
+            print(f"{_PROMPT}{line.strip()}")
+        reply = answer(session, line)
+        session = reply.session
+        print("\n".join(reply.lines), flush=True)
+        if reply.over:
+            return

@@ -1,0 +1,93 @@
+"""The command `replay`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, List, Optional
+
+import typer
+
+from pursue_gen.cli.console import guarded, tell, usage
+from pursue_gen.cli.options import ENDS, JSON, LIMIT, MEMORY, REACTION, SLACK, Ends, value
+
+if TYPE_CHECKING:
+    from pursue_gen.replay import Findings, Game, Record
+
+
+@guarded
+def replay(
+    recording: Path = typer.Argument(..., metavar="FILE", help="A bag of ROS 1, or an observer's journal (.jsonl)."),
+    scenario: Optional[Path] = typer.Argument(
+        None, metavar="[SCENARIO]", help="The scenario, where the recording does not hold it."
+    ),
+    workspace: Optional[Path] = typer.Option(
+        None, "--workspace", metavar="DIR", help="The workspace that was run: its scenario, rules and plan are taken."
+    ),
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
+    tolerance: float = typer.Option(
+        0.1, metavar="UNITS", min=0.0, help="How far events may miss the model's windows, in time units."
+    ),
+    timeline: Optional[Path] = typer.Option(
+        None, metavar="OUT", help="Draw what happened: a timeline OUT.svg, or a page OUT.html with an animation too."
+    ),
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
+    quiet: bool = typer.Option(False, "--quiet", "-q", help="Only what is wrong, the summary and the verdict."),
+    as_json_: bool = JSON,
+) -> None:
+    """Check a recorded mission against its scenario, step by step, and say where the world left the model.
+
+    Needs no ROS. The exit status is 0 if the mission kept to the model and was won, 1 if not, 2 if there is nothing to
+    check.
+    """
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.replay import check, game_of, read_recording
+    from pursue_gen.replay.journal import Journal, worked_out
+    from pursue_gen.replay.moves import Moves
+    from pursue_gen.replay.source import source_of
+    from pursue_gen.report.animation import check_name
+    from pursue_gen.solving.options import asked_limits
+    from pursue_gen.solving.request import Asked
+
+    if timeline is not None:
+        check_name(timeline)
+    found = read_recording(recording)
+    limits = asked_limits(limit, memory)
+    asked = Asked(ends=value(ends), reaction=reaction, slack=tuple(slack), limits=limits)
+    source = source_of(found, recording, scenario, workspace, asked)
+    with progress_line(as_json_) as progress:
+        game = game_of(source, limits, progress)
+    record = worked_out(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
+    if timeline is not None:
+        _draw(record, game, recording, timeline)
+    findings = check(record, game, tolerance)
+    _print(findings, record, recording, quiet, as_json_)
+    if not (findings.kept and findings.won):
+        raise typer.Exit(1)
+
+
+def _draw(record: Record, game: Game, recording: Path, timeline: Path) -> None:
+    from pursue_gen.report.animation import write
+    from pursue_gen.report.recording import from_record
+
+    shown = from_record(record, game.scenario, game.network, recording.name)
+    if shown is None:
+        raise usage(f"the mission never starts in {recording}", "leave out --timeline: there is nothing to draw")
+    write(shown, timeline)
+    tell(f"{timeline} shows the mission")
+
+
+def _print(findings: Findings, record: Record, recording: Path, quiet: bool, as_json_: bool) -> None:
+    from pursue_gen.replay.summary import as_json, listed, summary, verdict
+
+    if as_json_:
+        print(json.dumps(as_json(findings, record, str(recording)), indent=1))
+        tell(verdict(findings))
+        return
+    for line in listed(findings, notes=not quiet) if not quiet or not findings.kept else ():
+        print(line)
+    print(summary(findings))
+    print(verdict(findings))

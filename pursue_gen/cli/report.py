@@ -1,0 +1,174 @@
+"""The command `report`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import typer
+
+from pursue_gen.cli.console import count, guarded, quoted, show, suggest, tell, usage
+from pursue_gen.cli.options import JSON, LIMIT, MEMORY, OPTIMIZE, SCENARIO, Optimize, value
+from pursue_gen.diagnostics import PursueError, error
+
+if TYPE_CHECKING:
+    from pursue_gen.language.scenario import Scenario
+    from pursue_gen.report.make import Asked
+    from pursue_gen.report.whole import Report
+    from pursue_gen.synthesis.limits import Limits
+
+_NAMES = ("default", "ideal")
+_MARK = 'name="generator" content="pursue-gen'
+
+
+@guarded
+def report(
+    scenario: Path = SCENARIO,
+    file: Optional[Path] = typer.Argument(
+        None, metavar="[FILE]", help="With --html: where the page goes; <scenario>_report.html by default."
+    ),
+    html: bool = typer.Option(False, "--html", help="Write one HTML page with everything, for any browser."),
+    pictures: Optional[Path] = typer.Option(None, metavar="DIR", help="Write every picture there, as SVG and as PNG."),
+    floor: Optional[Path] = typer.Option(
+        None, "--map", metavar="YAML", help="A floor plan of map_server, to lie under the map."
+    ),
+    runs: int = typer.Option(
+        200, metavar="N", min=0, help="So many simulated missions for each shape of controllers, for the page."
+    ),
+    reach_obj: Optional[str] = typer.Option(
+        None,
+        metavar="dedicated|all|ROBOT",
+        help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
+    ),
+    optimize: Optional[Optimize] = OPTIMIZE,
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
+    as_json_: bool = JSON,
+    force: bool = typer.Option(False, "--force", help="Replace a FILE that is no report."),
+) -> None:
+    """Print how many commands and lines each controller has, beside the thesis's figures for its scenarios.
+
+    With --html or --pictures: show the scenario, its strategy and its workspace instead. A scenario that cannot be won
+    gets a page that says why.
+    """
+    from pursue_gen.report.floor import read_floor
+    from pursue_gen.report.make import Asked
+    from pursue_gen.solving.inputs import scenario_in
+    from pursue_gen.solving.options import asked_limits
+
+    wanted = value(optimize)
+    seen = html or pictures is not None
+    _check_options(seen, html, file, floor, as_json_)
+    limits = asked_limits(limit, memory)
+    if not seen:
+        _print_tables(scenario_in(scenario), reach_obj, limits, wanted, as_json_)
+        return
+    target = file or Path(f"{scenario.stem}_report.html")
+    if html and not force:
+        _check_target(target)
+    under = None if floor is None else read_floor(floor)
+    asked = Asked(reach_obj, wanted, runs if html else 0, under)
+    made = _made(scenario_in(scenario), asked, limits)
+    if pictures is not None:
+        _write_pictures(made, pictures)
+    if html:
+        _write_page(made, target)
+
+
+def _check_options(seen: bool, html: bool, file: Optional[Path], floor: Optional[Path], as_json_: bool) -> None:
+    if file is not None and not html:
+        raise usage(f"{file} has no meaning here", f"to write a page: pursue-gen report SCENARIO --html {file}")
+    if floor is not None and not seen:
+        raise usage("--map is for pages and pictures", "add --html or --pictures DIR")
+    if as_json_ and seen:
+        raise usage("--json is for the tables alone", "leave it out, or leave --html and --pictures out")
+
+
+def _check_target(target: Path) -> None:
+    """A page replaces a page, nothing else."""
+    if not target.is_file():
+        return
+    with open(target, encoding="utf-8", errors="replace") as stream:
+        if _MARK not in stream.read(4000):
+            raise usage(f"{target} is there and is no report", "name another file, or replace it with --force")
+
+
+def _print_tables(
+    scenario: Scenario, reach_obj: Optional[str], limits: Limits, optimize: Optional[str], as_json_: bool
+) -> None:
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.proof.margin import as_json as margin_json
+    from pursue_gen.proof.margin import told
+    from pursue_gen.report import commands
+    from pursue_gen.report.make import solved_both
+    from pursue_gen.solving.solvers import margins
+
+    with progress_line(as_json_) as progress:
+        both = solved_both(scenario, limits, optimize, progress)
+        found = [margins(won, False, limits)[0] for won in both]
+    game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
+    table = commands.commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
+    if as_json_:
+        of_games = {name: margin_json(margin) for name, margin in zip(_NAMES, found)}
+        times = {name: won.guarantee.as_json() for name, won in zip(_NAMES, both) if won.guarantee}
+        extra = {"margins": of_games, **({"times": times} if times else {})}
+        print(json.dumps({**commands.as_json(table), **extra}, indent=1))
+        return
+    print(commands.render_table(table))
+    for name, won, margin in zip(_NAMES, both, found):
+        print(f"{name} game: {told(margin, won.strategy)}")
+        if won.guarantee:
+            print(f"{name} game: {won.guarantee.in_words()}")
+
+
+def _made(scenario: Scenario, asked: Asked, limits: Limits) -> Report:
+    """Everything that is told; what takes long is shown while it does."""
+    from pursue_gen.cli.mission_count import counting
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.report.make import lost_report, solved_both, won_report
+
+    try:
+        with progress_line() as progress:
+            both = solved_both(scenario, limits, asked.optimize, progress)
+    except PursueError as problem:
+        if problem.exit_status not in (4, 5):
+            raise
+        show(problem.diagnostics)
+        with progress_line() as progress:
+            return lost_report(scenario, problem, limits, progress, asked.floor)
+    with counting(2 * asked.runs) as count:
+        return won_report(scenario, both, asked, limits, count)
+
+
+def _write_pictures(made: Report, folder: Path) -> None:
+    """Every picture as SVG and PNG, all or none."""
+    from pursue_gen.files import write_bytes
+    from pursue_gen.report import graphviz
+    from pursue_gen.report.png import png
+    from pursue_gen.report.whole import pictures
+
+    drawn = pictures(made)
+    missing = [name for name, svg in drawn.items() if not svg]
+    found = {name: svg for name, svg in drawn.items() if svg}
+    files = {folder / f"{name}.svg": svg.encode("utf-8") for name, svg in found.items()}
+    files.update({folder / f"{name}.png": png(svg) for name, svg in found.items()})
+    write_bytes(files)
+    for file in sorted(files):
+        print(file)
+    if missing:
+        reason = "graphviz could not draw them" if graphviz.installed() else graphviz.HOW_TO_GET
+        message = f"{count(len(missing), 'picture')} could not be drawn: {', '.join(missing)}"
+        raise PursueError([error("REP005", message, hint=reason)], exit_status=6)
+
+
+def _write_page(made: Report, target: Path) -> None:
+    from pursue_gen.files import write_texts
+    from pursue_gen.report import graphviz
+    from pursue_gen.report.whole import report_page
+
+    write_texts({target: report_page(made)})
+    print(target)
+    if not graphviz.installed():
+        tell(f"Some pictures are missing in it: {graphviz.HOW_TO_GET}.")
+    suggest(f"xdg-open {quoted(target)}")

@@ -1,0 +1,146 @@
+"""The command `sim`."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Optional
+
+import typer
+
+from pursue_gen.cli.console import count, guarded, quoted, suggest, tell, usage
+from pursue_gen.cli.options import (
+    CONTROLLERS,
+    ENDS,
+    JSON,
+    LIMIT,
+    MEMORY,
+    OPTIMIZE,
+    REACH_OBJ,
+    REACTION,
+    SCENARIO,
+    SLACK,
+    Controllers,
+    Ends,
+    Optimize,
+    value,
+)
+
+if TYPE_CHECKING:
+    from pursue_gen.simulation.runs import Case, Summary
+
+
+class OpponentKind(str, Enum):
+    """What the agents do that nobody controls."""
+
+    RANDOM = "random"
+    WORST = "worst"
+    STILL = "still"
+    MIXED = "mixed"
+
+
+OPPONENT = typer.Option(
+    OpponentKind.MIXED, help="What the agents do that nobody controls; mixed: one of the others in each mission."
+)
+
+
+@guarded
+def sim(
+    scenario: Path = SCENARIO,
+    runs: int = typer.Option(1000, metavar="N", min=1, help="So many missions."),
+    seed: int = typer.Option(1, metavar="S", min=0, help="The first mission's number; the next has the next."),
+    faults: str = typer.Option(
+        "none", metavar="NAMES", help="What goes wrong: names with commas between them, all, none; help: what there is."
+    ),
+    opponent: OpponentKind = OPPONENT,
+    until: Optional[float] = typer.Option(
+        None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
+    ),
+    jobs: int = typer.Option(1, metavar="N", min=1, help="So many processes; the outcome is the same."),
+    controllers: Controllers = CONTROLLERS,
+    reach_obj: str = REACH_OBJ,
+    ends: Optional[Ends] = ENDS,
+    reaction: Optional[str] = REACTION,
+    slack: List[str] = SLACK,
+    plan: Optional[Path] = typer.Option(None, metavar="FILE", help="Use this plan instead of solving."),
+    optimize: Optional[Optimize] = OPTIMIZE,
+    timeline: Optional[Path] = typer.Option(
+        None, metavar="OUT", help="Draw one mission (--runs 1): a timeline OUT.svg, or OUT.html with an animation too."
+    ),
+    limit: float = LIMIT,
+    memory: Optional[int] = MEMORY,
+    as_json_: bool = JSON,
+) -> None:
+    """Play many missions with the generated code in a simulated world, without ROS, and check each one.
+
+    The exit status is 1 where a mission did what must never be: without faults it did not reach the goal (or did not
+    stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
+    """
+    from pursue_gen.cli.mission_count import counting
+    from pursue_gen.language import load
+    from pursue_gen.simulation.faults import FAULTS, read_faults
+    from pursue_gen.simulation.make import check_until, make_case
+    from pursue_gen.simulation.runs import simulate
+    from pursue_gen.solving.options import asked_limits
+    from pursue_gen.solving.request import Asked
+
+    if faults == "help":
+        print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))
+        return
+    kinds = read_faults(faults)
+    check_until(until)
+    if timeline is not None:
+        _check_timeline(timeline, runs, seed)
+    read = load(scenario)
+    game = (controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan)
+    asked = Asked(*game, optimize=value(optimize), limits=asked_limits(limit, memory))
+    case = make_case(read, asked, opponent.value, kinds, until, as_json_)
+    with counting(runs, as_json_) as told:
+        summary = simulate(case, range(seed, seed + runs), jobs, told)
+    if timeline is not None:
+        _draw(case, seed, timeline)
+    facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}
+    _print(case, summary, facts, as_json_)
+    if summary.failed:
+        raise typer.Exit(1)
+    suggest(f"pursue-gen ws {quoted(scenario)}")
+
+
+def _check_timeline(timeline: Path, runs: int, seed: int) -> None:
+    from pursue_gen.report.animation import check_name
+
+    check_name(timeline)
+    if runs != 1:
+        raise usage("a timeline shows one mission", f"add --runs 1, and --seed {seed} or another")
+
+
+def _draw(case: Case, seed: int, timeline: Path) -> None:
+    from pursue_gen.report.animation import write
+    from pursue_gen.report.recording import simulated
+
+    write(simulated(case, seed), timeline)
+    tell(f"{timeline} shows the mission")
+
+
+def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
+    from pursue_gen.simulation.words import as_json, failure, table
+
+    if as_json_:
+        print(json.dumps(as_json(summary, facts), indent=1))
+    else:
+        print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
+    if summary.failed:
+        tell(f"{count(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
+        for outcome in summary.failures:
+            tell("\n".join(failure(outcome, _again(outcome.seed))))
+
+
+def _again(seed: int) -> str:
+    """The command line that plays this mission alone, with the same options."""
+    words = sys.argv[1:]
+    for option in ("--seed", "--runs", "--jobs"):
+        words = [w for k, w in enumerate(words) if w != option and words[k - 1] != option and w.split("=")[0] != option]
+    return shlex.join(["pursue-gen", *words, "--seed", str(seed), "--runs", "1"])

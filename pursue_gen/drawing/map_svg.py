@@ -1,0 +1,175 @@
+"""A picture of the map: places, connections with distances, who starts where, what happens where, who can do what."""
+
+from __future__ import annotations
+
+import math
+from typing import Dict, List, Mapping, Optional, Tuple
+
+from pursue_gen.drawing.look import AgentLook, agent_looks, mark, svg, tag, text
+from pursue_gen.language.scenario import Agent, Pose, Scenario
+from pursue_gen.report.floor import Floor
+from pursue_gen.report.words import kind_words, speed_words
+
+_WIDTH, _WIDEST = 640.0, 1600.0
+_MARGIN = 80.0
+_LINE = 19.0
+_LETTER = 7.8  # px, a generous guess at how wide a letter is
+_ROOMY = 14  # so many places fit the usual width
+
+Point = Tuple[float, float]
+
+
+def draw(
+    scenario: Scenario,
+    poses: Mapping[str, Pose],
+    computed: bool,
+    floor: Optional[Floor] = None,
+    ident: str = "",
+) -> str:
+    """The map as an SVG document; `computed` says under it that the poses were not given but computed.
+
+    `floor` is drawn under it, `ident` is the picture's id in a page.
+    """
+    width = min(_WIDEST, _WIDTH * math.sqrt(max(1.0, len(poses) / _ROOMY)))
+    paper = Paper(poses, floor, width)
+    places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
+    looks = agent_looks([agent.name for agent in scenario.agents])
+    body = [paper.floor(floor)] if floor else []
+    body += [_connection(places[c.a], places[c.b], c.distance) for c in scenario.connections]
+    body += [_poi(name, places[name]) for name in sorted(places)]
+    body += _happening(scenario, places)
+    body += _standing(scenario, places, looks)
+    above, below = _room(scenario, places, paper.height)
+    for agent in scenario.agents:
+        lines = _wrapped(_told(agent), width - 150)
+        body += _legend(agent, looks[agent.name], lines, below)
+        below += _LINE * len(lines) + 8
+    notes = [_anywhere(scenario)] if _anywhere(scenario) else []
+    notes += ["positions computed from the distances"] if computed else []
+    for note in notes:
+        for line in _wrapped(note, width - 40):
+            body.append(text(20, below + 12, line, "pg-small", "start"))
+            below += _LINE
+    title = f"Map of {scenario.name}"
+    told = f"{len(places)} places, {len(scenario.connections)} connections, {len(scenario.agents)} agents"
+    if above:  # many agents start at a place near the upper rim
+        body = [tag("g", "\n".join(body), transform=f"translate(0 {above:.2f})")]
+    return svg(width, above + below + 10, title, told, body, ident)
+
+
+class Paper:
+    """From metres to points on the picture (y downwards), one scale for both directions."""
+
+    def __init__(self, poses: Mapping[str, Pose], floor: Optional[Floor], width: float) -> None:
+        points = [(pose.x, pose.y) for pose in poses.values()] + list(floor.corners() if floor else ())
+        xs, ys = [x for x, _ in points] or [0.0], [y for _, y in points] or [0.0]
+        margin = 30.0 if floor else _MARGIN
+        self.scale = (width - 2 * margin) / max(max(xs) - min(xs), max(ys) - min(ys), 1e-6)
+        self._left = (width - self.scale * (max(xs) - min(xs))) / 2 - self.scale * min(xs)
+        self._top = margin + self.scale * max(ys)
+        self.height = 2 * margin + self.scale * (max(ys) - min(ys))
+
+    def point(self, x: float, y: float) -> Point:
+        """Where a point of the map is on the picture."""
+        return self._left + self.scale * x, self._top - self.scale * y
+
+    def floor(self, floor: Floor) -> str:
+        """The floor plan, pale, so that what is drawn on it can be read."""
+        x, y = self.point(floor.x, floor.y)
+        size = self.scale * floor.resolution
+        height = floor.height * size
+        turn = f"translate({x:.2f} {y:.2f}) rotate({-math.degrees(floor.yaw):.3f}) translate(0 {-height:.2f})"
+        picture = {"width": floor.width * size, "height": height, "href": floor.uri}
+        return tag("g", tag("image", opacity=0.6, preserveAspectRatio="none", **picture), transform=turn)
+
+
+def _connection(a: Point, b: Point, distance: int) -> str:
+    line = tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1])
+    return f"{line}\n{text((a[0] + b[0]) / 2, (a[1] + b[1]) / 2 + 5, distance, 'pg-small pg-halo')}"
+
+
+def _poi(name: str, at: Point) -> str:
+    """A circle with the name in it, or under it if it is long."""
+    circle = tag("circle", class_="pg-poi", cx=at[0], cy=at[1], r=16.0)
+    inside = len(name) <= 3
+    words = text(at[0], at[1] + (5 if inside else 31), name, "pg-strong" if inside else "pg-strong pg-halo")
+    return f"{circle}\n{words}"
+
+
+def _happening(scenario: Scenario, places: Mapping[str, Point]) -> List[str]:
+    """Under each place what happens there, and how long it takes."""
+    rows: Dict[str, int] = {}
+    parts = []
+    for event in scenario.events:
+        if event.location is None or event.location.name not in places:
+            continue
+        name = event.location.name
+        x, y = places[name]
+        first = 31 if len(name) <= 3 else 47
+        lasts = "" if event.duration is None else f" ({event.duration})"
+        parts.append(text(x, y + first + 15 * rows.get(name, 0), f"⚙ {event.name}{lasts}", "pg-small pg-halo"))
+        rows[name] = rows.get(name, 0) + 1
+    return parts
+
+
+def _room(scenario: Scenario, places: Mapping[str, Point], height: float) -> Point:
+    """How much is needed above the paper for agents' names, and where what stands below it may begin."""
+    above, below = 0.0, height
+    for name, (_, y) in places.items():
+        agents = sum(agent.location.name == name for agent in scenario.agents)
+        events = sum(event.location is not None and event.location.name == name for event in scenario.events)
+        above = max(above, 40 + 17 * (agents - 1) - y if agents else 0.0)
+        below = max(below, y + 60 + 15 * events)
+    return above, below
+
+
+def _standing(scenario: Scenario, places: Mapping[str, Point], looks: Mapping[str, AgentLook]) -> List[str]:
+    """The agents above the POI where they start, one above the other."""
+    parts = []
+    standing: Dict[str, int] = {}
+    for agent in scenario.agents:
+        if agent.location.name not in places:
+            continue
+        x, y = places[agent.location.name]
+        row = standing.get(agent.location.name, 0)
+        standing[agent.location.name] = row + 1
+        up, half = y - 26 - 17 * row, _LETTER * len(agent.name) / 2
+        parts.append(mark(looks[agent.name], x - half - 4, up - 5, 7.0))
+        parts.append(text(x + 8, up, agent.name, "pg-halo"))
+    return parts
+
+
+def _legend(agent: Agent, look: AgentLook, lines: List[str], top: float) -> List[str]:
+    """An agent's mark and line, its name, and what it is and can do."""
+    stroke = {"stroke": look.colour, "stroke_width": 2.5, "stroke_dasharray": look.dash}
+    line = tag("line", x1=34, y1=top + 7, x2=74, y2=top + 7, **stroke)
+    words = (text(84, top + 12 + _LINE * k, words, "", "start") for k, words in enumerate(lines))
+    return [mark(look, 20, top + 7, 7.0), line, *words]
+
+
+def _told(agent: Agent) -> str:
+    """What an agent is and can do, in a sentence."""
+    parts = [f"{agent.name}: {kind_words(agent)}, {speed_words(agent)}"]
+    if agent.can_do:
+        parts.append("can do " + ", ".join(ref.name for ref in agent.can_do))
+    if agent.reacts_to:
+        parts.append("takes part in " + ", ".join(ref.name for ref in agent.reacts_to))
+    return "; ".join(parts)
+
+
+def _anywhere(scenario: Scenario) -> str:
+    """Events that are bound to no place."""
+    free = [e.name + ("" if e.duration is None else f" ({e.duration})") for e in scenario.events if e.location is None]
+    return f"Anywhere: {', '.join(free)}" if free else ""
+
+
+def _wrapped(words: str, room: float) -> List[str]:
+    """The words in lines that fit so many pixels; a word that is longer than a line is cut into pieces."""
+    most = max(8, int(room / _LETTER))
+    lines = [""]
+    for word in words.split(" "):
+        for piece in [word[k : k + most] for k in range(0, len(word), most)] or [""]:
+            if lines[-1] and len(lines[-1]) + 1 + len(piece) > most:
+                lines.append("")
+            lines[-1] += (" " if lines[-1] else "") + piece
+    return lines

@@ -1,0 +1,260 @@
+"""Network and strategy put together: from the points at which a discrete state is entered, all that may follow."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from math import gcd
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.proof.clocks import Described, Horizon
+from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
+from pursue_gen.proof.moves import Arena, JointMove, Situation, State
+from pursue_gen.proof.zones import without
+from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
+from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
+
+INSTANTS = 4
+"""Into so many parts a time unit is cut when instants just after another are looked at (verify_time)."""
+
+Entry = Tuple[State, Dbm]
+"""A discrete state and the clocks' values just after the step into it."""
+
+
+class ClosedLoop:
+    """Network and strategy in one scale, and what has been learnt of the strategy's use."""
+
+    def __init__(
+        self,
+        network: Network,
+        objective: Objective,
+        strategy: Strategy,
+        reaction: Fraction,
+        ranks: Optional[Mapping[ZoneKey, int]],
+        instant: Fraction = Fraction(0),
+    ) -> None:
+        """`instant`, in time units: the strategy is played promptly, as `verify_time.Rules` has it."""
+        scale = _common_denominator(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
+        self.arena, self.strategy = Arena(network, scale), strategy
+        self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
+        self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
+        self.bad = None if objective.kind is Kind.REACH else _place(network, objective.bad)
+        self.used: Set[ZoneKey] = set()
+        self.ranks = None if objective.kind is Kind.SAFETY else ranks
+        self._blocks: Dict[State, List[int]] = {}
+        for b, block in enumerate(strategy.blocks):
+            state = self.arena.state_of(block.state)
+            if state is not None:
+                self._blocks.setdefault(state, []).append(b)
+        self._advice: Dict[State, Advice] = {}
+
+    @cached_property
+    def horizon(self) -> Horizon:
+        """What may be forgotten of the clocks."""
+        return Horizon(self.arena, self._described, self.rules.reaction)
+
+    def won(self, state: State) -> bool:
+        """True in the goal."""
+        return self.goal is not None and state[0][self.goal[0]] == self.goal[1]
+
+    def lost(self, state: State) -> bool:
+        """True in the bad location."""
+        return self.bad is not None and state[0][self.bad[0]] == self.bad[1]
+
+    def followers(self, entry: Entry) -> List[Tuple[JointMove, Entry]]:
+        """All next entries. Raises Broken where the strategy fails on the way to them."""
+        state, zone = entry
+        if self.won(state):
+            return []
+        if self.lost(state):
+            raise Broken("bad: the location that must be avoided is reached", zone)
+        if state not in self._blocks:
+            raise Broken("no block: the strategy does not know this discrete state", zone)
+        if self.ranks is None:
+            return self._steps(state, zone)
+        steps: List[Tuple[JointMove, Entry]] = []
+        for rank, part in self._ranked(state, zone):
+            for move, (target, after) in self._steps(state, part):
+                if not self.won(target) and not self._is_lower(target, after, rank):
+                    raise Broken(f"no progress: {in_words(move)} leads no nearer to the goal", part)
+                steps.append((move, (target, after)))
+        return steps
+
+    def _ranked(self, state: State, zone: Dbm) -> Iterator[Tuple[int, Dbm]]:
+        """The parts of the zone with their ranks; what the strategy does not cover fails when time passes there."""
+        assert self.ranks is not None
+        rest = [zone]
+        for other, key in self._advice_in(state, self.arena.situation(state)).zones():
+            common = zone.intersect(other)
+            if common is not None:
+                yield self.ranks.get(key, 0), common
+                rest = without(rest, other)
+        for part in rest:
+            yield 0, part
+
+    def _is_lower(self, state: State, zone: Dbm, rank: int) -> bool:
+        assert self.ranks is not None
+        rest = [zone]
+        if state in self._blocks:
+            for other, key in self._advice_in(state, self.arena.situation(state)).zones():
+                if self.ranks.get(key, 0) < rank:
+                    rest = [] if other.includes(zone) else without(rest, other)
+                    if not rest:
+                        return True
+        return False
+
+    def covered(self, state: State) -> Tuple[Dbm, ...]:
+        """The points of the discrete state for which there is advice; none where the game is lost."""
+        if self.lost(state) or state not in self._blocks:
+            return ()
+        return self._advice_in(state, self.arena.situation(state)).covered
+
+    def steps_from_all(self, state: State) -> List[Tuple[JointMove, Entry]]:
+        """All that may follow if each of the covered points may be entered. Raises Broken where the strategy fails."""
+        situation, covered = self.arena.situation(state), self.covered(state)
+        passage = self._passage(state, covered)
+        # Nobody waits or decides elsewhere.
+        flights = (part for _, part in passage.taken if not any(zone.includes(part) for zone in covered))
+        return self._entries(situation, passage, (*covered, *flights))
+
+    def _steps(self, state: State, zone: Dbm) -> List[Tuple[JointMove, Entry]]:
+        passage = self._passage(state, (zone,))
+        return self._entries(self.arena.situation(state), passage, passage.active)
+
+    def _passage(self, state: State, entries: Sequence[Dbm]) -> Passage:
+        situation = self.arena.situation(state)
+        passage = pass_time(entries, situation, self._advice_in(state, situation), self.rules)
+        self.used.update(passage.used)
+        return passage
+
+    @staticmethod
+    def _entries(
+        situation: Situation, passage: Passage, active: Sequence[Dbm]
+    ) -> List[Tuple[JointMove, Entry]]:
+        """Where commands lead that take effect, and what the environment may do at the active points."""
+        steps = list(passage.taken)
+        for move in situation.moves:
+            if not move.controllable and move.enabled is not None:
+                common = (part.intersect(move.enabled) for part in active)
+                steps += [(move, part) for part in common if part is not None]
+        return [(move, (move.target, part.reset(move.resets))) for move, part in steps]
+
+    def _advice_in(self, state: State, situation: Situation) -> Advice:
+        found = self._advice.get(state)
+        if found is None:
+            wait: List[Tuple[Dbm, ZoneKey]] = []
+            acts: List[Act] = []
+            for b in self._blocks[state]:
+                block = self.strategy.blocks[b]
+                wait += [(zone, (b, "wait", n)) for n, zone in self._zones(block.wait, situation)]
+                for k, command in enumerate(block.commands):
+                    move, fault = _joint_move(command, situation)
+                    acts += [Act(zone, (b, k, n), move, fault) for n, zone in self._zones(command.zones, situation)]
+            found = self._advice[state] = Advice.of(wait, acts, self.rules.reaction)
+        return found
+
+    def _zones(self, zones: Sequence[Zone], situation: Situation) -> Iterator[Tuple[int, Dbm]]:
+        """The zones within the invariant, those without a point left out, with their numbers."""
+        for n, zone in enumerate(zones):
+            dbm = situation.invariant
+            for c in zone:
+                if dbm is not None:
+                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), self._raw(c.bound, c.strict))
+            if dbm is not None:
+                yield n, dbm
+
+    def _index(self, clock: Optional[str]) -> int:
+        if clock is None:
+            return 0
+        if clock not in self.arena.clock:
+            hint = f"the clocks are {', '.join(self.arena.clock)}"
+            raise PursueError([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
+        return self.arena.clock[clock]
+
+    def _raw(self, bound: Fraction, strict: bool) -> int:
+        return raw(self._scaled(bound), strict)
+
+    def _scaled(self, bound: Fraction) -> int:
+        return bound.numerator * (self.arena.scale // bound.denominator)
+
+    def _described(self, state: State) -> Described:
+        """For the horizon: what may happen in a state, and which constants the strategy compares clocks with there."""
+        if self.won(state) or self.lost(state) or state not in self._blocks:
+            return (), ()
+        situation = self.arena.situation(state)
+        moves = {id(move): move for move in situation.moves if not move.controllable and move.enabled is not None}
+        compared: List[Tuple[int, int]] = []
+        for b in self._blocks[state]:
+            block = self.strategy.blocks[b]
+            commanded = (_joint_move(command, situation)[0] for command in block.commands)
+            moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
+            for c in (c for zone in _zones_of(block) for c in zone):
+                size = abs(self._scaled(c.bound))
+                compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
+        return tuple(moves.values()), compared
+
+
+def _joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
+    """The joint move that a command names, or None and why there is none."""
+    for move in situation.moves:
+        if move.moves[:1] == command.moves[:1] and _same(move.moves[1:], command.moves[1:]):
+            if move.controllable:
+                return move, ""
+            return None, "not controllable: the command takes an edge of the environment"
+    return None, "not a joint move: not exactly the sender and all who receive, or the integers do not allow it"
+
+
+def _same(some: Sequence[object], others: Sequence[object]) -> bool:
+    return len(some) == len(others) and all(one in others for one in some)
+
+
+def _place(network: Network, place: Optional[Tuple[str, str]]) -> Optional[Tuple[int, str]]:
+    """(automaton, location) with the number of the automaton."""
+    if place is None:
+        raise PursueError([error("SYN105", "the objective names no goal or no location to avoid")])
+    for k, automaton in enumerate(network.automata):
+        if automaton.name == place[0] and any(location.name == place[1] for location in automaton.locations):
+            return k, place[1]
+    problem = f"the objective speaks of {place[0]}.{place[1]}, which the network does not have"
+    raise PursueError([error("SYN105", problem)])
+
+
+def _zones_of(block: Block) -> Iterator[Zone]:
+    yield from block.wait
+    for command in block.commands:
+        yield from command.zones
+
+
+def _common_denominator(network: Network, strategy: Strategy, reaction: Fraction) -> int:
+    """What all bounds have to be multiplied by to be integers."""
+    zones = (zone for block in strategy.blocks for zone in _zones_of(block))
+    denominators = {reaction.denominator} | {c.bound.denominator for zone in zones for c in zone}
+    denominators |= {c.bound.denominator for c in network.start}
+    scale = 1
+    for d in denominators:
+        scale = scale * d // gcd(scale, d)
+    return scale
+
+def in_words(move: JointMove) -> str:
+    """The move as a step of a play: who, the event, the edges."""
+    who = "controller" if move.controllable else "environment"
+    sync = move.moves[0].edge.sync
+    event = "tau" if sync is None else sync.channel
+    edges = (f"{m.automaton}.{m.edge.source} -> {m.automaton}.{m.edge.target}" for m in move.moves)
+    return f"{who}: {event} ({', '.join(edges)})"
+
+
+def sample(zone: Dbm) -> Tuple[Fraction, ...]:
+    """A valuation in the zone, small and with small denominators."""
+    values: List[Fraction] = [Fraction(0)]
+    for i in range(1, zone.dim):
+        below = [(values[j], zone.m[j * zone.dim + i]) for j in range(i)]
+        above = [(values[j], zone.m[i * zone.dim + j]) for j in range(i)]
+        low, strict = max((value - constant(b), is_strict(b)) for value, b in below if b < INF)
+        tops = [value + constant(b) for value, b in above if b < INF]
+        if strict:
+            low = (low + min(tops)) / 2 if tops and min(tops) < low + 2 else low + 1
+        values.append(low)
+    return tuple(values[1:])

@@ -1,0 +1,145 @@
+"""How late commands may come: the margin of a strategy, and that of a game.
+
+The margin of a strategy is the largest delay with which it still wins, counted from the moment at which a command is
+due (the first one at which its zone holds), as the checker finds it. That of a game is the largest reaction with which
+there is a winning strategy at all; a strategy that was made for a smaller one need not stand it.
+
+Both are looked for on a grid of STEP time units, up to CAP. More delay only adds plays, so what wins with some delay
+wins with less.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Callable, Dict, Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Network, Objective, is_end
+
+STEP = Fraction(1, 20)
+"""The precision, in time units: the message of a busy robot takes about so long."""
+
+CAP = Fraction(10)
+"""Beyond this nobody looks: no machine is so late. It is a hundred times the reaction of the default game."""
+
+QUICK, USUAL = 1_000, 3_000
+"""States for `strategy_margin` that are not noticed when a workspace is made, and such that are worth a second."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+
+@dataclass(frozen=True)
+class Margin:
+    """It wins with a delay of `wins`, and not with one of `fails` (time units).
+
+    `fails` None: no such delay is known; either `wins` is CAP, or the search was ended before it found one.
+    """
+
+    wins: Fraction
+    fails: Optional[Fraction]
+
+
+def strategy_margin(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    states: int = LIMIT,
+    limits: Limits = NO_LIMITS,
+) -> Margin:
+    """The margin of a strategy that is proven for the reaction.
+
+    `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
+    depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found.
+    """
+    left = states
+
+    def wins(delay: Fraction) -> Optional[bool]:
+        nonlocal left
+        if left <= 0:
+            return None
+        report = verify(network, objective, strategy, delay, limit=left, prompt=True, limits=limits)
+        left -= report.states
+        return None if report.reason.startswith("limit") else report.ok
+
+    return _largest(wins, reaction)
+
+
+def game_margin(
+    network: Network, objective: Objective, reaction: Fraction, engine: Optional[str] = None, limits: Limits = NO_LIMITS
+) -> Margin:
+    """The margin of a game that is won with the reaction; `engine` and `limits` (of each look) as in `solve`."""
+    return _largest(lambda delay: solve(network, objective, delay, engine=engine, limits=limits).won, reaction)
+
+
+def _largest(wins: Callable[[Fraction], Optional[bool]], known: Fraction) -> Margin:
+    """The last point of the grid where `wins`, which says None where it does not know, and the first where not."""
+    wins = _unless_limited(wins)
+    if known >= CAP or wins(CAP):
+        return Margin(max(known, CAP), None)
+    low, high = known // STEP, None
+    best = known
+    stride = 1
+    while high is None or high - low > 1:
+        middle = low + stride if high is None else (low + high) // 2
+        outcome = wins(middle * STEP) if middle * STEP < CAP else False
+        if outcome is None:
+            return Margin(best, None if high is None else high * STEP)
+        if outcome:
+            low, best, stride = middle, middle * STEP, 2 * stride
+        else:
+            high = min(middle, int(CAP / STEP))
+    return Margin(best, high * STEP)
+
+
+def _unless_limited(wins: Callable[[Fraction], Optional[bool]]) -> Callable[[Fraction], Optional[bool]]:
+    """The same answers, and None instead of an error at a limit."""
+
+    def answer(delay: Fraction) -> Optional[bool]:
+        try:
+            return wins(delay)
+        except PursueError as problem:
+            if problem.exit_status != _LIMIT_HIT:
+                raise
+            return None
+
+    return answer
+
+
+def in_words(margin: Margin) -> str:
+    """The margin in few words."""
+    if margin.fails is None:
+        return f"at least {_decimal(margin.wins)}"
+    return f"{_decimal(margin.wins)}, not {_decimal(margin.fails)}"
+
+
+def told(margin: Margin, strategy: Strategy) -> str:
+    """What the margin of the strategy means, in one or two sentences; what no robot can play is called so."""
+    if margin.wins == 0 and margin.fails is not None:
+        late = f"Margin 0: it loses when a command takes effect {_decimal(margin.fails)} time units late"
+        return f"{late}; this is an ideal strategy that no real robot can play."
+    rest = "and perhaps later" if margin.fails is None else f"not {_decimal(margin.fails)}"
+    late = f"Margin: it still wins when commands take effect {_decimal(margin.wins)} time units late, {rest}."
+    if decides_ends(strategy):
+        return f"{late} But it decides when movements and actions end, which no real robot lets it do."
+    return late
+
+
+def decides_ends(strategy: Strategy) -> bool:
+    """True if it commands ends of movements or actions, as the original's do; a real robot reports them."""
+    return any(is_end(command.moves[0].edge) for block in strategy.blocks for command in block.commands)
+
+
+def as_json(margin: Margin) -> Dict[str, Any]:
+    """The margin as a JSON object: exact fractions as text, null where no failing delay is known."""
+    return {"wins": str(margin.wins), "fails": None if margin.fails is None else str(margin.fails)}
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):g}"

@@ -1,0 +1,192 @@
+"""The checker's own reading of a network: joint moves of a discrete state, with the zone in which each is enabled.
+
+Written from the rules of the game, not from the solver: the two must not share a mistake.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Dict, Iterable, List, Optional, Set, Tuple
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis.strategy import DiscreteState, Move
+from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
+from pursue_gen.zones.dbm import Dbm, raw
+
+State = Tuple[Tuple[str, ...], Tuple[int, ...]]
+"""The location of every automaton and the value of every variable, in the network's order."""
+
+Limit = Tuple[int, int, int]
+"""`x_i - x_j` within a raw bound."""
+
+Bound = Tuple[int, int, int]
+"""An invariant's bound: the number of the automaton, its clock's index, the raw upper bound."""
+
+
+@dataclass(frozen=True)
+class JointMove:
+    """Edges that are taken together: the sender's (or tau owner's) first, then the receivers' in system order."""
+
+    owner: int
+    moves: Tuple[Move, ...]
+    controllable: bool
+    target: State
+    resets: Tuple[int, ...]
+    enabled: Optional[Dbm]
+    """Where guard, the source's invariants and (after the resets) the target's invariants hold; None: nowhere."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """All about a discrete state that does not depend on the strategy."""
+
+    invariant: Optional[Dbm]
+    bounds: Tuple[Bound, ...]
+    moves: Tuple[JointMove, ...]
+
+
+class Arena:
+    """The discrete states of a network, worked out when they are asked for; constants are multiplied by `scale`.
+
+    Raises PursueError where the rules of the game do not cover the network.
+    """
+
+    def __init__(self, network: Network, scale: int) -> None:
+        self.network, self.scale = network, scale
+        self.dim = len(network.clocks) + 1
+        self.clock = {name: k + 1 for k, name in enumerate(network.clocks)}
+        self.variable = {name: k for k, (name, _) in enumerate(network.variables)}
+        self.initial: State = (tuple(a.initial for a in network.automata), tuple(v for _, v in network.variables))
+        self.start = self._start()
+        self._locations: List[Dict[str, Location]] = [{loc.name: loc for loc in a.locations} for a in network.automata]
+        self._edges: Dict[Tuple[int, str], List[Edge]] = {}
+        for k, automaton in enumerate(network.automata):
+            for edge in automaton.edges:
+                self._edges.setdefault((k, edge.source), []).append(edge)
+        self._situations: Dict[State, Situation] = {}
+        self._refuse()
+
+    def _start(self) -> Dbm:
+        """The clocks at the start: 0, or what the network says."""
+        if not self.network.start:
+            return Dbm.zero(self.dim)
+        zone: Optional[Dbm] = Dbm.universe(self.dim)
+        for c in self.network.start:
+            i, j = (0 if name is None else self.clock.get(name, -1) for name in (c.left, c.right))
+            zone = None if zone is None or min(i, j) < 0 else zone.constrained(i, j, self._raw(c))
+        if zone is None:
+            hint = f"give bounds that the clocks {', '.join(self.clock)} can have together, all of them 0 or more"
+            raise PursueError([error("SYN106", "no values of the clocks satisfy the bounds at the start", hint=hint)])
+        return zone
+
+    def _raw(self, constraint: Constraint) -> int:
+        return raw(int(constraint.bound * self.scale), constraint.strict)
+
+    def _refuse(self) -> None:
+        for automaton in self.network.automata:
+            for edge in automaton.edges:
+                if edge.sync is not None and not edge.sync.sends and edge.guard.clocks:
+                    raise PursueError([error(
+                        "SYN101",
+                        f"the receiving edge {edge.source} -> {edge.target} of {automaton.name} has a guard on a clock",
+                        hint="only senders may test clocks: move the guard to the sending edge",
+                    )])
+            for location in automaton.locations:
+                if any(bound.op not in ("<", "<=") for bound in location.invariant):
+                    raise PursueError([error(
+                        "SYN102",
+                        f"the invariant of {automaton.name}.{location.name} is not an upper bound",
+                        hint="an invariant may only say that a clock is < or <= a constant",
+                    )])
+
+    def state_of(self, state: DiscreteState) -> Optional[State]:
+        """A strategy's discrete state as the checker has it; None if it is not one of this network."""
+        if tuple(name for name, _ in state.locations) != tuple(a.name for a in self.network.automata):
+            return None
+        if tuple(name for name, _ in state.values) != tuple(name for name, _ in self.network.variables):
+            return None
+        return tuple(location for _, location in state.locations), tuple(value for _, value in state.values)
+
+    def situation(self, state: State) -> Situation:
+        """The invariant and the joint moves of a discrete state."""
+        found = self._situations.get(state)
+        if found is None:
+            found = self._situations[state] = self._worked_out(state)
+        return found
+
+    def limits(self, bounds: Iterable[ClockBound]) -> Iterable[Limit]:
+        """The bounds of a guard or an invariant as limits on differences, with scaled constants."""
+        for bound in bounds:
+            x, c = self.clock[bound.clock], bound.bound * self.scale
+            if bound.op in ("<", "<=", "=="):
+                yield x, 0, raw(c, bound.op == "<")
+            if bound.op in (">", ">=", "=="):
+                yield 0, x, raw(-c, bound.op == ">")
+
+    def _bounds(self, state: State) -> Tuple[Bound, ...]:
+        return tuple(
+            (k, i, bound)
+            for k, name in enumerate(state[0])
+            for i, _, bound in self.limits(self._locations[k][name].invariant)
+        )
+
+    def _worked_out(self, state: State) -> Situation:
+        bounds = self._bounds(state)
+        invariant = Dbm.of(self.dim, [(i, 0, bound) for _, i, bound in bounds])
+        moves: List[JointMove] = []
+        for k, location in enumerate(state[0]):
+            for edge in self._edges.get((k, location), ()):
+                if (edge.sync is None or edge.sync.sends) and self._integers_hold(edge.guard, state[1]):
+                    moves += [self._joint(state, invariant, k, edge, r) for r in self._receivers(state, k, edge)]
+        return Situation(invariant, bounds, tuple(moves))
+
+    def _integers_hold(self, guard: Guard, values: Tuple[int, ...]) -> bool:
+        return all(any(values[self.variable[t.variable]] == t.value for t in clause) for clause in guard.integers)
+
+    def _receivers(self, state: State, sender: int, edge: Edge) -> Iterable[Tuple[Tuple[int, Edge], ...]]:
+        """Every way in which all others that can receive take part."""
+        if edge.sync is None:
+            return [()]
+        choices: List[List[Tuple[int, Edge]]] = []
+        for k, location in enumerate(state[0]):
+            able = [
+                (k, other)
+                for other in self._edges.get((k, location), ())
+                if k != sender
+                and other.sync is not None
+                and not other.sync.sends
+                and other.sync.channel == edge.sync.channel
+                and self._integers_hold(other.guard, state[1])
+            ]
+            if able:
+                choices.append(able)
+        return product(*choices)
+
+    def _joint(
+        self, state: State, invariant: Optional[Dbm], owner: int, edge: Edge, receivers: Tuple[Tuple[int, Edge], ...]
+    ) -> JointMove:
+        parts = ((owner, edge),) + receivers
+        locations, values = list(state[0]), list(state[1])
+        resets: Set[int] = set()
+        for k, part in parts:
+            locations[k] = part.target
+            for name, value in part.assign:
+                values[self.variable[name]] = value
+            resets.update(self.clock[name] for name in part.resets)
+        target = (tuple(locations), tuple(values))
+        enabled = None if invariant is None else invariant.constrained_all(self.limits(edge.guard.clocks))
+        for _, i, bound in self._bounds(target):
+            if enabled is not None and i not in resets:
+                enabled = enabled.constrained(i, 0, bound)
+            elif bound < raw(0, strict=False):
+                enabled = None
+        names = self.network.automata
+        return JointMove(
+            owner,
+            tuple(Move(names[k].name, part) for k, part in parts),
+            all(part.controllable for _, part in parts),
+            target,
+            tuple(sorted(resets)),
+            enabled,
+        )

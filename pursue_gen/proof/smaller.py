@@ -1,0 +1,243 @@
+"""A strategy in fewer zones and bounds that is played just the same.
+
+In each discrete state zones with one action become one where their hull meets no other action, and bounds go that only
+keep out points of which the strategy says nothing. The points with an action keep it, so zones never shrink, and the
+plays do not change:
+
+- no point gets a second action;
+- time does not take a command's zone to new points of that command, so it is decided where it was decided before;
+- a command that is on its way does not meet new points of another one.
+
+A play that comes to a new point would have met none of the strategy's zones before, which a proven strategy rules out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy_from import minimal
+from pursue_gen.tga.network import Network
+from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
+
+Bound = Tuple[int, int, int]
+
+Action = Union[int, str]
+"""The number of a command in its block, or WAIT."""
+
+WAIT = "wait"
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A zone of an action within the invariant, and the bounds that make it there."""
+
+    zone: Dbm
+    bounds: Tuple[Bound, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Origin:
+    """A zone that the action had, and its rank if that is known."""
+
+    zone: Dbm
+    rank: Optional[int]
+
+    def leads_to(self, other: _Origin) -> bool:
+        """True if a command that is due here may as well be given there."""
+        return self is other or (self.rank is not None and other.rank is not None and other.rank <= self.rank)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A discrete state: its invariant, how late a command may come (scaled), and for each action the zones that it had
+    and the parts that it has."""
+
+    invariant: Dbm
+    late: int
+    origins: Dict[Action, Tuple[_Origin, ...]]
+    parts: Dict[Action, List[_Part]]
+
+    def may_have(self, action: Action, zone: Dbm) -> bool:
+        """True if the action may have this zone, too: no play notices."""
+        for other, parts in self.parts.items():
+            if other != action and any(zone.intersect(part.zone) is not None for part in parts):
+                return False
+        if action == WAIT:
+            return True
+        mine = self.origins[action]
+        in_zone = ((zone.intersect(origin.zone), origin) for origin in mine)
+        return all(
+            self._adds_nothing(zone, met.up(), [other.zone for other in mine if origin.leads_to(other)])
+            for met, origin in in_zone
+            if met is not None
+        ) and all(
+            self._adds_nothing(zone, origin.zone.up_within(self.late), [other.zone for other in mine])
+            for action_in_flight, origins in self.origins.items()
+            if action_in_flight not in (WAIT, action) and self.late
+            for origin in origins
+        )
+
+    def _adds_nothing(self, zone: Dbm, later: Dbm, known: Sequence[Dbm]) -> bool:
+        """True if all points of the zone that are met later are known ones."""
+        met = zone.intersect(later)
+        met = None if met is None else met.intersect(self.invariant)
+        return met is None or _covered(met, known)
+
+
+class _Units:
+    """Names and exact times on one side, indices and integers on the other."""
+
+    def __init__(self, network: Network, strategy: Strategy, reaction: Fraction) -> None:
+        self.names = (None, *network.clocks)
+        self._index = {name: k for k, name in enumerate(self.names)}
+        self.scale = reaction.denominator
+        for bound in {c.bound.denominator for block in strategy.blocks for zone in _zones(block) for c in zone}:
+            self.scale = self.scale * bound // gcd(self.scale, bound)
+        self.late = int(reaction * self.scale)
+        self._invariants = {
+            (automaton.name, location.name): tuple(
+                (self._index[b.clock], 0, raw(b.bound * self.scale, b.op == "<")) for b in location.invariant
+            )
+            for automaton in network.automata
+            for location in automaton.locations
+        }
+
+    def invariant(self, block: Block) -> Optional[Dbm]:
+        """Where the clocks may be in the block's discrete state."""
+        bounds = (bound for place in block.state.locations for bound in self._invariants.get(place, ()))
+        return Dbm.of(len(self.names), bounds)
+
+    def bounds(self, zone: Zone) -> Tuple[Bound, ...]:
+        """The zone's constraints as bounds of matrices."""
+        return tuple(
+            (self._index[c.left], self._index[c.right], raw(self._scaled(c.bound), c.strict)) for c in zone
+        )
+
+    def zone(self, bounds: Iterable[Bound]) -> Zone:
+        """The bounds as a strategy's zone."""
+        return tuple(
+            Constraint(self.names[i], self.names[j], Fraction(constant(bound), self.scale), is_strict(bound))
+            for i, j, bound in bounds
+        )
+
+    def _scaled(self, bound: Fraction) -> int:
+        return bound.numerator * (self.scale // bound.denominator)
+
+
+def smaller(
+    network: Network, strategy: Strategy, reaction: Fraction, ranks: Optional[Mapping[ZoneKey, int]] = None
+) -> Strategy:
+    """The strategy, proven for the network and the reaction, in fewer zones and bounds.
+
+    `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank.
+    """
+    units = _Units(network, strategy, reaction)
+    blocks = (_smaller_block(units, b, block, ranks or {}) for b, block in enumerate(strategy.blocks))
+    return replace(strategy, blocks=tuple(blocks))
+
+
+def _smaller_block(units: _Units, b: int, block: Block, ranks: Mapping[ZoneKey, int]) -> Block:
+    """The block, number b of the strategy, in fewer zones."""
+    invariant = units.invariant(block)
+    if invariant is None:
+        return block
+    zones: Dict[Action, Tuple[Zone, ...]] = {WAIT: block.wait}
+    zones.update((k, command.zones) for k, command in enumerate(block.commands))
+    origins: Dict[Action, Tuple[_Origin, ...]] = {}
+    for action, some in zones.items():
+        within = ((n, invariant.constrained_all(units.bounds(zone))) for n, zone in enumerate(some))
+        origins[action] = tuple(_Origin(zone, ranks.get((b, action, n))) for n, zone in within if zone is not None)
+    parts = {action: [_Part(origin.zone) for origin in some] for action, some in origins.items()}
+    place = _Place(invariant, units.late, origins, parts)
+    commands_first: List[Action] = [*range(len(block.commands)), WAIT]
+    for action in commands_first:
+        _merge(place, action)
+    for action in commands_first:
+        _relax(place, action)
+        _drop(place, action)
+    return Block(
+        block.state,
+        tuple(units.zone(part.bounds) for part in parts[WAIT]),
+        tuple(
+            Command(tuple(units.zone(part.bounds) for part in parts[k]), command.moves)
+            for k, command in enumerate(block.commands)
+            if parts[k]
+        ),
+    )
+
+
+def _merge(place: _Place, action: Action) -> None:
+    """Fewer zones for the action, where a hull of some will do."""
+    parts = place.parts[action]
+    together = _together(place, action, parts) if len(parts) > 2 else None
+    if together is not None:
+        parts[:] = [together]
+    k = 0
+    while k < len(parts):
+        n = k + 1
+        while n < len(parts):
+            together = _together(place, action, (parts[k], parts[n]))
+            if together is None:
+                n += 1
+            else:
+                parts[k] = together
+                del parts[n]
+                n = k + 1
+        k += 1
+
+
+def _together(place: _Place, action: Action, parts: Sequence[_Part]) -> Optional[_Part]:
+    """The parts of the action as one, or None."""
+    hull = parts[0].zone
+    for part in parts[1:]:
+        hull = hull.hull(part.zone)
+    return _Part(hull) if place.may_have(action, hull) else None
+
+
+def _relax(place: _Place, action: Action) -> None:
+    """Fewer bounds for each zone of the action; differences go first, then upper bounds, then lower ones."""
+    parts = place.parts[action]
+    for k, part in enumerate(parts):
+        kept, zone = minimal(part.zone.dim, part.zone.m), part.zone
+        for bound in sorted(kept, key=_worth):
+            fewer = [other for other in kept if other != bound]
+            larger = place.invariant.constrained_all(fewer)
+            if larger is not None and (larger == zone or place.may_have(action, larger)):
+                kept, zone = fewer, larger
+        parts[k] = _Part(zone, tuple(kept))
+
+
+def _worth(bound: Bound) -> Tuple[int, int, int]:
+    i, j, _ = bound
+    return (0 if i and j else 1 if i else 2, i, j)
+
+
+def _drop(place: _Place, action: Action) -> None:
+    """No zone of the action that the others cover."""
+    parts = place.parts[action]
+    for part in list(reversed(parts)):
+        rest = [other.zone for other in parts if other is not part]
+        # A command is decided before time leaves the zone in which it was met: only a zone in one other is idle.
+        idle = _covered(part.zone, rest) if action == WAIT else any(other.includes(part.zone) for other in rest)
+        if idle:
+            parts.remove(part)
+
+
+def _covered(zone: Dbm, others: Sequence[Dbm]) -> bool:
+    """True if every point of the zone is in one of the others."""
+    rest = [zone]
+    for other in others:
+        rest = [piece for part in rest for piece in part.minus(other)]
+        if not rest:
+            return True
+    return False
+
+
+def _zones(block: Block) -> Iterable[Zone]:
+    yield from block.wait
+    for command in block.commands:
+        yield from command.zones

@@ -1,0 +1,132 @@
+"""How long a strategy takes to the goal at worst, when whoever plays it acts as soon as it may.
+
+The closed loop of network and strategy is played as the checker plays it (see `verify`), with one more clock, that
+counts from the start and is never reset. What is told is the latest moment at which a play comes to the goal.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+from fractions import Fraction
+from typing import Deque, Dict, List, Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.closed_loop import ClosedLoop, Entry
+from pursue_gen.proof.delays import Broken
+from pursue_gen.proof.moves import State
+from pursue_gen.proof.zones import with_neighbours
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Watch
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
+from pursue_gen.zones.dbm import INF, Dbm, constant
+
+INSTANT = Fraction(1, 1000)
+"""Who may act as soon as a clock is past a bound acts within this time, in time units."""
+
+LIMIT = 20_000
+"""So many symbolic states are looked at."""
+
+LONGEST = 100_000
+"""Times above this number of time units are not told apart."""
+
+
+def counting_clock(network: Network) -> Optional[str]:
+    """A clock of the network that is 0 at the start and that no edge resets, so that it counts the time from there."""
+    other = {clock for automaton in network.automata for edge in automaton.edges for clock in edge.resets}
+    if network.start:
+        other |= {clock for clock in network.clocks if _is_zero(clock) not in network.start}
+    return next((clock for clock in network.clocks if clock not in other), None)
+
+
+def _is_zero(clock: str) -> Constraint:
+    return Constraint(clock, None, Fraction(0), False)
+
+
+def with_counter(network: Network) -> Network:
+    """The network, with a clock that counts from the start if it has none."""
+    if counting_clock(network) is not None:
+        return network
+    name = "elapsed"
+    while name in network.clocks:
+        name += "_"
+    start = (*network.start, _is_zero(name)) if network.start else ()
+    return replace(network, clocks=(*network.clocks, name), start=start)
+
+
+def with_deadline(network: Network, objective: Objective, bound: int) -> Network:
+    """The network in which the goal has to be reached while the counting clock is at most `bound` time units.
+
+    It must have such a clock (see `with_counter`).
+    """
+    clock = counting_clock(network)
+    assert clock is not None and objective.goal is not None
+    owner, goal = objective.goal
+
+    def limited(location: Location) -> Location:
+        if location.name != goal:
+            return location
+        return replace(location, invariant=(*location.invariant, ClockBound(clock, "<=", bound)))
+
+    automata = tuple(
+        replace(a, locations=tuple(map(limited, a.locations))) if a.name == owner else a for a in network.automata
+    )
+    return replace(network, automata=automata)
+
+
+def worst_case(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction = Fraction(0),
+    limit: int = LIMIT,
+    limits: Limits = NO_LIMITS,
+) -> Optional[Fraction]:
+    """The latest time at which the goal is reached, in time units, of a strategy that wins a reach game.
+
+    The controller decides as soon as it comes into the zone of a command, within INSTANT where that has no first
+    instant; a command takes effect up to `reaction` after its decision. None where that is not found out with `limit`
+    symbolic states or within the limits, where there is no bound, or where the strategy fails when it is played so.
+    """
+    if objective.kind is Kind.SAFETY:
+        return None
+    game = with_deadline(with_counter(network), objective, LONGEST)
+    loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
+    count = loop.arena.clock[counting_clock(game) or ""]
+    try:
+        latest = _latest(loop, count, limit, Watch(limits))
+    except (Broken, PursueError):
+        return None
+    return None if latest is None else Fraction(latest, loop.arena.scale)
+
+
+def _latest(loop: ClosedLoop, count: int, limit: int, watch: Watch) -> Optional[int]:
+    """The largest value of the counting clock at the goal, breadth first."""
+    latest = 0
+    start: Entry = (loop.arena.initial, loop.arena.start)
+    passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
+    pending: Deque[Entry] = deque([start])
+    met = 1
+    while pending:
+        state, zone = pending.popleft()
+        if not any(other is zone for other in passed[state]):
+            continue
+        if loop.won(state):
+            bound = zone.m[count * zone.dim]
+            if bound >= INF:
+                return None
+            latest = max(latest, constant(bound))
+            continue
+        watch.check(met, len(pending))
+        for _, (target, after) in loop.followers((state, zone)):
+            after = loop.horizon.forget(after, target)
+            known = passed.setdefault(target, [])
+            if any(other.includes(after) for other in known):
+                continue
+            met += 1
+            if met > limit:
+                return None
+            after = with_neighbours(after, known)
+            known[:] = [other for other in known if not after.includes(other)] + [after]
+            pending.append((target, after))
+    return latest

@@ -1,0 +1,55 @@
+"""The files that a person names, read: scenarios, whose warnings are told, and games."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Sequence, Tuple
+
+from pursue_gen import language
+from pursue_gen.cli.console import show, usage
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order
+from pursue_gen.files import read_text
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.parser import read
+from pursue_gen.language.parser import read_text as read_scenario
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.tga import scenario_objective, translate, translation_notes
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.uppaal import read_network, read_query
+
+
+def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
+    """Everything there is to say about a scenario file."""
+    try:
+        reading = read(read_scenario(str(file)), str(file))
+    except PursueError as problem:
+        return problem.diagnostics
+    findings = check_reading(reading)
+    if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
+        return findings
+    return in_order((*findings, *translation_notes(reading.scenario)))
+
+
+def scenario_in(file: Path) -> Scenario:
+    """The scenario in a file; its warnings are told. Raises PursueError."""
+    if file.suffix == ".xml":
+        raise usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
+    scenario = language.load(file)
+    show(findings_in(file))
+    return scenario
+
+
+def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
+    """The ideal game of a scenario."""
+    return translate(scenario), scenario_objective(scenario)
+
+
+def game_in(files: Sequence[Path]) -> Tuple[Network, Objective]:
+    """The ideal game of a scenario's file, or of UPPAAL's two files. Raises PursueError."""
+    if len(files) == 1 and files[0].suffix != ".xml":
+        return game_of(scenario_in(files[0]))
+    if len(files) != 2:
+        raise usage("expected one scenario, or a network and its query", "pursue-gen solve SCENARIO | TGA.xml TCTL.q")
+    model, query = files
+    network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
+    return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

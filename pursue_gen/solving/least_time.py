@@ -1,0 +1,255 @@
+"""The least worst-case time to the goal, and a strategy that keeps it (`--optimize time`).
+
+What is looked for is v, the infimum of the times that strategies guarantee. Guards are strict in most networks, so v
+itself is seldom kept, but every time above it is. Three things enclose it:
+
+- the goal cannot be reached sooner than against a lazy environment (`least_time`): a lower bound, at once; so is v of
+  the game without a reaction delay, which is smaller;
+- what a strategy at hand takes at worst (`worst_case`) is an upper bound;
+- the game with a deadline b, in which the goal may be entered only while a clock that nothing resets is at most b, is
+  won where v < b and lost where v > b.
+
+Let 1/k be the unit in which all constants and the reaction are integers. What wins a game is a union of zones with
+integer bounds in that unit, whatever value the counting clock starts from, so winning at the start ends at an integer:
+v is a multiple of 1/k. A deadline a little above such a multiple, by less than 1/k, therefore tells whether v is
+at most the multiple, and a bisection over the multiples finds v itself.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd
+from typing import Any, Dict, Mapping, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.worst_case import with_counter, with_deadline
+from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.time_bounds import least_time
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
+
+SECONDS = 120.0
+"""So long it is looked for where nobody sets a limit; then the best that was found counts."""
+
+TOLERANCE = Fraction(1, 10)
+"""A strategy that is made for a deadline keeps v and at most so many time units more."""
+
+_SHARE = 0.4
+"""The part of the time that is left which one game of the search may take."""
+
+_NEAR = 8
+"""A reaction delay that is the unit of the search costs so much or less, as a rule: once per command of a play."""
+
+_LEAST_SECONDS = 0.05
+"""With less time left no game is begun."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+
+@dataclass(frozen=True)
+class Guarantee:
+    """How long a strategy takes at worst, in time units, and v: `least` <= v <= `most` is proven.
+
+    `worst` None: not found out, but not more than `most`. `most` None: nothing is known.
+    """
+
+    worst: Optional[Fraction]
+    least: Fraction
+    most: Optional[Fraction]
+
+    @property
+    def exact(self) -> bool:
+        """True if v is known."""
+        return self.least == self.most
+
+    def in_words(self) -> str:
+        """A line for people."""
+        best = f"the least worst-case time is {_decimal(self.least)} (infimum)"
+        if not self.exact:
+            best = f"no strategy guarantees less than {_decimal(self.least)}"
+            best += ", better ones than this one may exist"
+        here = "not found out" if self.worst is None else f"at most {_decimal(self.worst)} time units"
+        return f"Time to the goal: {here}; {best}."
+
+    def as_json(self) -> Dict[str, Any]:
+        """For machines; numbers are exact, as fractions in texts."""
+        return {
+            "worst": None if self.worst is None else str(self.worst),
+            "least": str(self.least),
+            "most": None if self.most is None else str(self.most),
+            "optimal": self.exact,
+        }
+
+
+@dataclass(frozen=True)
+class Faster:
+    """A strategy that wins `game`, in which the deadline is kept and the time unit is 1/`fine` (not proven yet)."""
+
+    game: Network
+    fine: int
+    strategy: Strategy
+    ranks: Optional[Mapping[ZoneKey, int]]
+    kept: Fraction
+
+
+def bounds(
+    network: Network, objective: Objective, reaction: Fraction, worst: Optional[Fraction] = None
+) -> Guarantee:
+    """What is known of v at once, with a strategy that takes `worst`."""
+    game = compile_game(network, objective, reaction)
+    least = least_time(game)
+    unit, low = reaction.denominator, 0 if least is None else least
+    most = None if worst is None else Fraction(max(low, int(worst * unit)), unit)
+    return Guarantee(worst, Fraction(low, unit), most)
+
+
+def fastest(
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    known: Optional[Fraction],
+    limits: Limits = NO_LIMITS,
+    engine: Optional[str] = None,
+    progress: Optional[Listener] = None,
+) -> Tuple[Guarantee, Optional[Faster]]:
+    """Encloses v of a reach game that is won, as closely as the limits (`SECONDS` where they name none) allow.
+
+    `known`: what a strategy at hand takes at worst; `engine` and `progress` as in `solve`. With it the strategy that
+    takes v, or the best one that was found; None: the one at hand is as good.
+    """
+    start, unit = time.monotonic(), reaction.denominator
+    limits = limits if limits.seconds else replace(limits, seconds=SECONDS, spent=0.0)
+    first, counted = bounds(network, objective, reaction, known), with_counter(network)
+    low = int(first.least * unit)
+    if reaction and known is not None and not first.exact:
+        # Who may be late has no advantage of it, and commands that come at once make a smaller game.
+        prompt = bounds(network, objective, Fraction(0), known)
+        some = replace(limits, seconds=limits.spent + limits.left / 2)
+        search = _Search(counted, objective, Fraction(0), some, engine, progress)
+        search.run(int(prompt.least), None if prompt.most is None else int(prompt.most))
+        low = max(low, search.low * unit)
+    near = low > first.least * unit
+    search = _Search(counted, objective, reaction, limits.since(start), engine, progress)
+    search.run(low, None if first.most is None else int(first.most * unit), near)
+    search.leave_room()
+    most = None if search.high is None else Fraction(search.high, unit)
+    worst = known if search.faster is None else search.faster.kept
+    return Guarantee(worst, Fraction(search.low, unit), most), search.faster
+
+
+class _Search:
+    """The bisection: `low` <= k * v is proven, k * v <= `high` as well (None: nothing known)."""
+
+    def __init__(
+        self,
+        network: Network,
+        objective: Objective,
+        reaction: Fraction,
+        limits: Limits,
+        engine: Optional[str],
+        progress: Optional[Listener],
+    ) -> None:
+        self._objective, self._engine, self._progress = objective, engine, progress
+        self._limits, self._start = limits, time.monotonic()
+        self._unit = reaction.denominator
+        self._fine = _common_multiple(2 * self._unit, TOLERANCE.denominator)
+        self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
+        self.low = 0
+        self.high: Optional[int] = None
+        self.faster: Optional[Faster] = None
+
+    def run(self, low: int, high: Optional[int], near: bool = False) -> None:
+        """Narrows down what is known already, as far as the time allows.
+
+        The lower bound is tried first; `near`: what is not far above it, because v is likely to be there.
+        """
+        self.low, self.high = low, high
+        floor, leap = low, _NEAR if near else 1
+        while (self.high is None or floor < self.high) and self._left() > _LEAST_SECONDS:
+            at = floor + leap - 1
+            at = at if self.high is None else min(at, (floor + self.high) // 2)
+            won = self._won(at)
+            if won:
+                self.high = at
+            else:
+                floor = at + 1  # not lost for sure, if nobody knows; but what is larger is won sooner
+                self.low = self.low if won is None else floor
+            leap = 2 * max(leap, self._unit) if self.high is None or near else self.high
+
+    def leave_room(self) -> None:
+        """Makes the strategy that was found anew, for v and the whole tolerance: its windows are wider."""
+        deadline = 0 if self.high is None else self.high * self._fine // self._unit + int(TOLERANCE * self._fine)
+        if self.faster is not None and Fraction(deadline, self._fine) > self.faster.kept:
+            self._met(deadline)
+
+    def _left(self) -> float:
+        return self._limits.since(self._start).left
+
+    def _won(self, at: int) -> Optional[bool]:
+        """Whether v is at most `at`; None: not decided in its share of the time that is left."""
+        return self._met(at * self._fine // self._unit + 1)
+
+    def _met(self, deadline: int) -> Optional[bool]:
+        game = with_deadline(self._network, self._objective, deadline)
+        limits = Limits(self._left() * _SHARE, self._limits.memory)
+        try:
+            verdict = solve(game, self._objective, self._reaction, self._engine, limits, self._progress)
+        except PursueError as problem:
+            if problem.exit_status != _LIMIT_HIT:
+                raise
+            return None
+        if verdict.strategy is None:
+            return False
+        kept = Fraction(deadline, self._fine)
+        self.faster = Faster(game, self._fine, verdict.strategy, verdict.ranks, kept)
+        return True
+
+
+def scaled(network: Network, factor: int) -> Network:
+    """The same network with a time unit that is `factor` times shorter."""
+
+    def bounds(some: Tuple[ClockBound, ...]) -> Tuple[ClockBound, ...]:
+        return tuple(replace(bound, bound=bound.bound * factor) for bound in some)
+
+    def location(one: Location) -> Location:
+        return replace(one, invariant=bounds(one.invariant))
+
+    def edge(one: Edge) -> Edge:
+        return replace(one, guard=replace(one.guard, clocks=bounds(one.guard.clocks)))
+
+    def automaton(one: Automaton) -> Automaton:
+        return replace(one, locations=tuple(map(location, one.locations)), edges=tuple(map(edge, one.edges)))
+
+    start = tuple(replace(constraint, bound=constraint.bound * factor) for constraint in network.start)
+    return replace(network, automata=tuple(map(automaton, network.automata)), start=start)
+
+
+def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:
+    """A strategy for `scaled(network, factor)` as one for the network."""
+    pairs = zip(scaled(network, factor).automata, network.automata)
+    small = {own.name: dict(zip(fine.edges, own.edges)) for fine, own in pairs}
+
+    def zone(one: Zone) -> Zone:
+        return tuple(replace(constraint, bound=constraint.bound / factor) for constraint in one)
+
+    def command(one: Command) -> Command:
+        moves = tuple(replace(move, edge=small[move.automaton][move.edge]) for move in one.moves)
+        return replace(one, zones=tuple(map(zone, one.zones)), moves=moves)
+
+    def block(one: Block) -> Block:
+        return replace(one, wait=tuple(map(zone, one.wait)), commands=tuple(map(command, one.commands)))
+
+    return replace(strategy, blocks=tuple(map(block, strategy.blocks)))
+
+
+def _common_multiple(a: int, b: int) -> int:
+    return a * b // gcd(a, b)
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):.6g}"

@@ -1,0 +1,319 @@
+"""UPPAAL-TIGA's `verifytga` as a solver, for those who have it: its strategy is read, proven here, and then used.
+
+The tool gets the network and the query as files in a folder of its own and prints what `plan.read_plan` reads. It
+knows no reaction delay: it plays with a delay of 0, and the checker holds its strategy against the delay asked for.
+What is known of its output comes from recorded runs of the original tool chain. There `-t0` prints the strategy; the
+thesis found versions that want `-w0` instead.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Callable, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.solve import Stats, Verdict
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.uppaal import write_network, write_query
+
+TOOL = "verifytga"
+_OPTIONS = ("-t0", "-w0")
+_MODEL, _QUERY = "TGA.xml", "TCTL.q"
+_LAST_LINES, _LAST_COLUMNS = 6, 200
+
+_NOT_MET, _LIMIT, _UNUSABLE = 4, 5, 6
+"""The exit statuses of the failures: not met or not winning; time or memory; no tool, or one that does not work."""
+
+_ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+_HEADER = re.compile(r"^[ \t]*(?:Counter[ -])?strategy to [^\n:]*:", re.MULTILINE | re.IGNORECASE)
+_VERDICT = re.compile(r"(?:Property|Formula) is (NOT )?satisfied")
+_SIZE = re.compile(r"Size: (\d+) states")
+_PROGRESS = re.compile(r"Preparing: \d+%|Verifying property \d+ at line \d+")
+_MEMORY = re.compile(r"out of memory|memory (?:is )?exhausted|bad_alloc|cannot allocate memory", re.IGNORECASE)
+_LICENCE = re.compile(r"licen[cs]e|has expired|not registered", re.IGNORECASE)
+_OPTION = re.compile(r"(?:unknown|unrecogni[sz]ed|invalid|illegal) option", re.IGNORECASE)
+
+_LOST = (
+    "the agents that nobody controls can always prevent it, even where commands take effect at once: give the robots "
+    "more time or speed, or fewer duties"
+)
+_OURS = "without --solver the built-in solver is used"
+_GET_IT = (
+    "UPPAAL-TIGA is at https://uppaal.org (free for academic use, under a licence of its own); put verifytga on PATH, "
+    f"or name it with --verifytga PATH; {_OURS}"
+)
+_START_IT = f"try it by hand; a 32-bit program needs 32-bit libraries (Debian: libc6-i386 lib32stdc++6); {_OURS}"
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one run of the tool was: its command, all that it printed, and how it ended.
+
+    `status` is the exit status, negative for the signal that ended it; None where it did not start, or had to be ended
+    at the limit on time.
+    """
+
+    command: Tuple[str, ...]
+    output: str
+    messages: str
+    status: Optional[int]
+
+    @property
+    def before(self) -> str:
+        """What it printed before the strategy, on both of its streams: where it tells what went wrong."""
+        header = _HEADER.search(self.output)
+        return f"{self.output[: header.start()] if header else self.output}\n{self.messages}"
+
+    @property
+    def decided(self) -> bool:
+        """True where it ended by itself, with a verdict and with memory left to print a strategy."""
+        ended = self.status is not None and self.status >= 0
+        return ended and _VERDICT.search(self.output) is not None and not _MEMORY.search(self.before)
+
+
+class ToolError(PursueError):
+    """A run of the tool that gave no strategy to use.
+
+    `run` is that run; `counter` the counter-strategy, where the tool found that the objective cannot be met and why.
+    """
+
+    def __init__(
+        self, diagnostics: Sequence[Diagnostic], exit_status: int, run: Run, counter: Optional[Strategy] = None
+    ) -> None:
+        super().__init__(diagnostics, exit_status)
+        self.run = run
+        self.counter = counter
+
+
+def run_verifytga(
+    network: Network,
+    objective: Objective,
+    path: Optional[Path] = None,
+    limits: Limits = NO_LIMITS,
+    reaction: Fraction = Fraction(0),
+    progress: Optional[Listener] = None,
+) -> Verdict:
+    """The strategy of verifytga for the game on the network as it stands: proven, and without what no play reaches.
+
+    `path` is the program (default: the verifytga on PATH), `limits` hold for it and, with the time that is left, for
+    the proof, of which `progress` tells; `reaction` is the delay of commands, in time units, under which its strategy
+    has to win. In the statistics the discrete states are those of its plan, the zones those on its last line of
+    progress.
+
+    Raises PursueError with exit status 6 where there is no tool, and ToolError with status 4 where it finds that the
+    objective cannot be met or its strategy does not win, 5 where it runs out of time or memory, 6 where it fails.
+    """
+    tool = find_verifytga(path)
+    start = time.monotonic()
+    run = _first_with_strategy(tool, network, objective, limits)
+    taken = time.monotonic() - start
+    strategy = _strategy(run, network)
+    sizes = _SIZE.findall(run.before)
+    proven = _proven(run, network, objective, strategy, reaction, limits.since(start), progress)
+    return Verdict(True, proven, Stats(TOOL, len(strategy.blocks), int(sizes[-1]) if sizes else 0, taken))
+
+
+def find_verifytga(path: Optional[Path] = None) -> str:
+    """The program to start, as an absolute path: the one that is named, else the verifytga on PATH.
+
+    Raises PursueError (exit status 6).
+    """
+    if path is None:
+        found = shutil.which(TOOL)
+        problem = f"{TOOL}, the solver of UPPAAL-TIGA, is not on PATH"
+        hint = _GET_IT
+    else:
+        # which() does not look on PATH for what has a folder before it.
+        found = shutil.which(os.path.join(".", str(path)))
+        if not path.exists():
+            problem, hint = f"there is no {path}", _GET_IT
+        elif path.is_dir():
+            problem, hint = f"{path} is a folder", f"name the program in it, such as {path / TOOL}"
+        else:
+            problem, hint = f"{path} may not be started", f"chmod +x {path}, if that is the program"
+    if found is None:
+        raise PursueError([error("SYN030", problem, hint=hint)], exit_status=_UNUSABLE)
+    return os.path.abspath(found)
+
+
+def _first_with_strategy(tool: str, network: Network, objective: Objective, limits: Limits) -> Run:
+    """The first run, one per option, that prints a strategy. Raises ToolError where none does."""
+    start = time.monotonic()
+    runs = []
+    with tempfile.TemporaryDirectory(prefix="pursue-gen-") as name:
+        folder = Path(name)
+        (folder / _MODEL).write_text(write_network(_all_named(network), objective), encoding="utf-8")
+        (folder / _QUERY).write_text(write_query(objective), encoding="utf-8")
+        for option in _OPTIONS:
+            run = _run((tool, option, _MODEL, _QUERY), folder, limits.since(start))
+            if run.decided and _HEADER.search(run.output):
+                return run
+            runs.append(run)
+            if not (run.decided or _OPTION.search(run.before)):
+                break
+    raise _failure(next((run for run in runs if run.decided), runs[-1]), limits)
+
+
+def _all_named(network: Network) -> Network:
+    """The network with a name for each location, so that nothing depends on how a version prints ids."""
+    return replace(
+        network,
+        automata=tuple(
+            replace(automaton, locations=tuple(replace(location, named=True) for location in automaton.locations))
+            for automaton in network.automata
+        ),
+    )
+
+
+def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
+    """Runs the tool until it ends, or its time is up; then, and at Ctrl-C, it and all that it started is ended."""
+    outputs = (folder / "output", folder / "messages")
+    with contextlib.ExitStack() as stack:
+        out, err = (stack.enter_context(open(file, "wb")) for file in outputs)
+        try:
+            # In files, not pipes: plans are large. In a session of its own: its children can be ended with it.
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                start_new_session=True,
+                preexec_fn=_memory_setter(limits.memory),
+            )
+        except OSError as problem:
+            run = Run(command, "", "", None)
+            message = f"{command[0]} cannot be started: {problem.strerror or problem}"
+            raise ToolError([error("SYN031", message, hint=_START_IT)], _UNUSABLE, run) from None
+        try:
+            status: Optional[int] = process.wait(limits.left or None)
+        except subprocess.TimeoutExpired:
+            status = None
+        finally:
+            if process.poll() is None:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+    output, messages = (_ESCAPE.sub("", file.read_bytes().decode("utf-8", "replace")) for file in outputs)
+    return Run(command, output, messages, status)
+
+
+def _memory_setter(memory: int) -> Optional[Callable[[], None]]:
+    """What gives a new process at most so many MiB (0: None); it then gets no more, and says so itself."""
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    size = memory << 20
+    if not size or (hard != resource.RLIM_INFINITY and hard <= size):
+        return None
+    return lambda: resource.setrlimit(resource.RLIMIT_AS, (size, hard))
+
+
+def _failure(run: Run, limits: Limits) -> ToolError:
+    """What went wrong in a run that printed no strategy."""
+    told = run.before
+    verdict = _VERDICT.search(run.output)
+    code, exit_status = "SYN032", _UNUSABLE
+    hint = f"try it by hand with the files that `pursue-gen tga` writes; {_OURS}"
+    if run.status is None:
+        code, exit_status = "SYN010", _LIMIT
+        message, hint = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds", f"allow more; {_OURS}"
+    elif _MEMORY.search(told) or run.status == -signal.SIGKILL:
+        code, exit_status = "SYN010", _LIMIT
+        surely = "ran out of memory" if _MEMORY.search(told) else "was killed, most likely for want of memory"
+        of = f" (the limit is {limits.memory} MiB)" if limits.memory else ""
+        smaller = "make the scenario smaller: fewer agents, POIs or events"
+        message, hint = f"{TOOL} {surely}{of}", f"{'allow more (--memory), or ' if of else ''}{smaller}; {_OURS}"
+    elif run.status == -signal.SIGXCPU:
+        code, exit_status = "SYN010", _LIMIT
+        message, hint = f"{TOOL} reached the limit on time of this shell (ulimit -t)", f"allow more; {_OURS}"
+    elif not verdict and _LICENCE.search(told):
+        message, hint = f"{TOOL} asks for a licence", f"start it by hand once and do what it asks for; {_OURS}"
+    elif run.status < 0:
+        message = f"{TOOL} crashed"
+    elif verdict and verdict.group(1):
+        code, exit_status = "SYN033", _NOT_MET
+        message, hint = f"{TOOL} finds that the objective cannot be met, and prints no counter-strategy", _LOST
+    elif verdict:
+        message = f"{TOOL} finds that the objective can be met, but prints no strategy"
+    elif run.status:
+        message = f"{TOOL} failed"
+    else:
+        message = f"{TOOL} printed no verdict"
+    return ToolError([error(code, message, hint=hint + _particulars(run))], exit_status, run)
+
+
+def _strategy(run: Run, network: Network) -> Strategy:
+    """The strategy in the output. Raises ToolError for a counter-strategy, and for a text that cannot be read."""
+    try:
+        strategy = read_plan(run.output, network, f"output of {TOOL}")
+    except PursueError as problem:
+        message = f"{TOOL} printed a strategy that cannot be read"
+        hint = f"its output may be cut, or that version prints it otherwise; {_OURS}{_particulars(run)}"
+        raise ToolError([error("SYN034", message, hint=hint), *problem.diagnostics], _UNUSABLE, run) from None
+    if strategy.counter:
+        message = f"{TOOL} finds that the objective cannot be met"
+        hint = f"{_LOST}; solve -o FILE keeps its counter-strategy ({len(strategy.blocks)} states) beside that file"
+        raise ToolError([error("SYN033", message, hint=hint + _particulars(run))], _NOT_MET, run, strategy)
+    return strategy
+
+
+def _proven(
+    run: Run,
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    limits: Limits,
+    progress: Optional[Listener],
+) -> Strategy:
+    """The part of the strategy that plays reach, once the checker finds it winning. Raises ToolError."""
+    start = time.monotonic()
+    report = verify(network, objective, strategy, reaction, limits=limits, progress=progress)
+    if report.ok:
+        return pruned(strategy, report)
+    if report.reason.startswith("limit"):
+        message, hint = f"the strategy of {TOOL} is not proven: {report.reason}", f"it is too large; {_OURS}"
+        raise ToolError([error("SYN010", message, hint=hint)], _LIMIT, run)
+    if reaction and verify(network, objective, strategy, limits=limits.since(start), progress=progress).ok:
+        delay = f"{float(reaction):g} time units"
+        message = f"the strategy of {TOOL} wins only where commands take effect at once, not up to {delay} later"
+        hint = f"{TOOL} knows no reaction: --reaction 0 takes its strategy as it is; {_OURS}, which knows it"
+    else:
+        message, hint = f"the strategy of {TOOL} does not win: {report.reason}", _OURS
+    raise ToolError([error("SYN035", message, hint=hint + _play(report))], _NOT_MET, run)
+
+
+def _play(report: Report) -> str:
+    """The play that breaks a strategy, as more lines of a hint."""
+    return "; the play that shows it:" + "".join(f"\n      {step}" for step in report.play)
+
+
+def _particulars(run: Run) -> str:
+    """The command, its end and its last words, as more lines of a hint."""
+    ended = "ended at the limit on time" if run.status is None else f"exit status {run.status}"
+    if run.status is not None and run.status < 0:
+        ended = f"ended by signal {-run.status} ({signal.strsignal(-run.status)})"
+    lines = [f"      command: {' '.join(run.command)}", f"      {ended}; its last lines:"]
+    lines += [f"        {line}" for line in _last_lines(run.before)] or ["        (it said nothing)"]
+    return "\n" + "\n".join(lines)
+
+
+def _last_lines(text: str) -> Tuple[str, ...]:
+    """The last lines that say something, made fit for a terminal."""
+    printable = ("".join(c if c.isprintable() else " " for c in line).strip() for line in text.splitlines())
+    said = [line for line in printable if line and not _PROGRESS.fullmatch(line)]
+    return tuple(line[:_LAST_COLUMNS] for line in said[-_LAST_LINES:])

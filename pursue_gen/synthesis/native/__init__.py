@@ -1,0 +1,1 @@
+"""The native engine: C++17 behind pybind11."""

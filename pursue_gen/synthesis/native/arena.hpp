@@ -1,0 +1,288 @@
+// The arena of a game: discrete states with one hull of zones each, the moves that are followed, symbolic steps.
+#pragma once
+
+#include <limits>
+
+#include "zones/native/federation.hpp"
+#include "limits.hpp"
+#include "policy.hpp"
+
+namespace pursue {
+
+template <class Z>
+struct Action {
+    Z zone;
+    int joint;  // -1: wait
+    int rank;   // reach: every step from here leads to lower ranks
+};
+
+struct Step {
+    int joint, target;
+};
+
+// Whose moves a search keeps to a few at first; it opens the rest later.
+enum class Few { controllers, environments, nobodys };
+
+template <class Z>
+struct Node {
+    Z hull{};
+    bool won = false, lost = false;           // by its locations alone
+    bool reached = false, full = false, touched = false, waiting = false;
+    int travellers = 0;                       // automata that stop time here until the environment moves them
+    std::vector<wide_t> max;                  // the largest constants that matter here
+    std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
+    std::vector<Step> steps;                  // the moves that are followed
+    std::vector<Step> others;                 // uncontrollable moves that are not, but oblige the environment at a bound
+    std::vector<int> parents;
+    Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
+    Federation<Z> done, fresh;                // the others: gathered, and not gathered yet
+    std::vector<Action<Z>> plan;              // reach: in the order in which the points were won
+};
+
+template <class Z>
+class Arena {
+  public:
+    using R = typename Z::raw_t;
+
+    Arena(const Game& game, const Limits& limits, Few few)
+        : game_(game), few_(few), watch_(limits), policy_(game), horizon_(game), joints_(game),
+          states_(game.automata.size() + game.variables.size()) {}
+
+    const std::deque<Node<Z>>& nodes() const { return nodes_; }
+    Discrete state(int k) const { return states_[k]; }
+    const Joint& joint(int k) const { return joints_[k]; }
+    double seconds() const { return watch_.spent(); }
+    std::size_t symbolic_states() const { return symbolic_states_; }  // zones whose successors were computed
+    void look() { watch_.look(nodes_.size(), touched_.size()); }
+
+  protected:
+    // --- discrete states -------------------------------------------------------------------------------------------
+
+    // The clocks at the start.
+    Z beginning() const {
+        if (game_.start.empty()) return origin<Z>(game_.clocks);
+        Z z = universe<Z>();
+        for (const Bound& b : game_.start)
+            if (!within(b, z)) throw std::invalid_argument("no clock values satisfy the bounds at the start");
+        return z;
+    }
+
+    // Enters the initial state; false: its invariants do not hold for all clocks at the start.
+    bool start() {
+        Discrete d;
+        for (const auto& a : game_.automata) d.push_back(a.initial);
+        d.insert(d.end(), game_.variables.begin(), game_.variables.end());
+        Node<Z>& n = nodes_[node(d)];
+        const Z start = n.hull = beginning();
+        n.reached = invariant(n, n.hull) && includes(n.hull, start);
+        if (!n.reached) return false;
+        elapse(n, n.hull);
+        n.rest = {n.hull};
+        touch(0);
+        expand(0, false);
+        return true;
+    }
+
+    int node(const Discrete& d) {
+        const int k = states_.number(d);
+        if (k < static_cast<int>(nodes_.size())) return k;
+        watch_.admit(nodes_.size(), touched_.size());
+        Node<Z>& n = nodes_.emplace_back();
+        n.won = game_.kind != Kind::safety && at(d, game_.goal);
+        n.lost = !n.won && at(d, game_.bad);
+        n.max = horizon_.at(d, Z::size);
+        for (std::size_t a = 0; a < game_.automata.size(); ++a) {
+            const auto& bounds = game_.automata[a].invariants[d[a]];
+            for (const Bound& b : bounds) n.limits.emplace_back(static_cast<int>(a), b);
+            n.travellers += !bounds.empty() && policy_.comes_late(static_cast<int>(a), d[a]);
+        }
+        return k;
+    }
+
+    static bool within(const Bound& b, Z& z) { return constrain(z, b.i, b.j, static_cast<R>(b.raw)); }
+
+    static bool invariant(const Node<Z>& n, Z& z) {
+        for (const auto& [automaton, bound] : n.limits)
+            if (!within(bound, z)) return false;
+        return true;
+    }
+
+    static void elapse(const Node<Z>& n, Z& z) {
+        up(z);
+        invariant(n, z);
+        forget(n, z);
+    }
+
+    static void forget(const Node<Z>& n, Z& z) {
+        extrapolate(z, n.max);
+        invariant(n, z);
+    }
+
+    // Follows the moves of a state that the policy likes, or all.
+    void expand(int k, bool full) {
+        if (nodes_[k].full || nodes_[k].won || nodes_[k].lost) return;
+        nodes_[k].full = full;
+        nodes_[k].others.clear();
+        const Discrete d = states_[k];
+        joints_.enabled(d, enabled_);
+        const std::vector<int> wished = full ? std::vector<int>{} : wishes(d);
+        bool chosen = false;
+        for (const int j : enabled_) {
+            const Joint& joint = joints_[j];
+            if (full || follows(d, joint, wished, chosen)) follow(k, j, node(joint.target(d)));
+            else if (!joint.controllable) nodes_[k].others.push_back({j, node(joint.target(d))});
+        }
+        touch(k);
+    }
+
+    std::vector<int> wishes(const Discrete& d) const {
+        if (few_ == Few::nobodys) return {};
+        if (game_.kind != Kind::safety) return policy_.towards_goal(d);
+        return few_ == Few::controllers ? policy_.towards_rest(d) : policy_.towards_loss(d);
+    }
+
+    // Reach: one controllable move; safety: those that serve the side's wishes.
+    bool follows(const Discrete& d, const Joint& joint, const std::vector<int>& wished, bool& chosen) const {
+        if (few_ == Few::nobodys || joint.controllable != (few_ == Few::controllers)) return true;
+        if (game_.kind == Kind::safety && few_ == Few::controllers) return policy_.serves(d, joint, wished);
+        const bool liked = std::find(wished.begin(), wished.end(), joint.edges[0]) != wished.end();
+        if (few_ == Few::environments) return liked || policy_.ends(d, joint);
+        const bool first = liked && !chosen;
+        chosen = chosen || first;
+        return first;
+    }
+
+    void follow(int k, int joint, int target) {
+        for (const Step& step : nodes_[k].steps)
+            if (step.joint == joint) return;
+        nodes_[k].steps.push_back({joint, target});
+        if (nodes_[target].parents.empty() || nodes_[target].parents.back() != k) nodes_[target].parents.push_back(k);
+    }
+
+    void touch(int k) {
+        if (nodes_[k].touched) return;
+        nodes_[k].touched = true;
+        touched_.push_back(k);
+    }
+
+    // Grows the hulls until every followed move of every reached point leads into a hull, or there are `most` symbolic
+    // states. Returns the states that changed.
+    std::vector<int> explore(std::size_t most = std::numeric_limits<std::size_t>::max()) {
+        std::vector<int> changed;
+        while (!touched_.empty() && symbolic_states_ < most) {
+            watch_.look(nodes_.size(), touched_.size());
+            const int k = touched_.front();
+            touched_.pop_front();
+            nodes_[k].touched = false;
+            changed.push_back(k);
+            ++symbolic_states_;
+            for (std::size_t s = 0; s < nodes_[k].steps.size(); ++s) arrive(nodes_[k].hull, nodes_[k].steps[s]);
+        }
+        std::sort(changed.begin(), changed.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+        for (int k : changed) nodes_[k].rest = minus(Federation<Z>{nodes_[k].hull}, gathered(nodes_[k]));
+        return changed;
+    }
+
+    void arrive(Z z, const Step& step) {
+        const Joint& joint = joints_[step.joint];
+        Node<Z>& target = nodes_[step.target];
+        if (!guard(joint, z)) return;
+        for (int x : joint.resets) reset(z, x);
+        if (!invariant(target, z)) return;
+        elapse(target, z);
+        if (target.reached) {
+            if (includes(target.hull, z)) return;
+            z = hull(target.hull, z);
+            forget(target, z);
+        }
+        const bool fresh = !target.reached;
+        gathered(target);  // while the rest still is what this hull leaves
+        target.hull = z;
+        target.reached = true;
+        touch(step.target);
+        if (fresh) expand(step.target, all_);
+    }
+
+    // --- sets -------------------------------------------------------------------------------------------------------
+
+    // The points of a state that are decided, in few zones: gathered when somebody asks, which is seldom. Requires that
+    // they and the rest make up the hull.
+    static const Federation<Z>& gathered(Node<Z>& n) {
+        if (n.fresh.empty()) return n.done;
+        // A set in many zones is often the complement of a complement in fewer.
+        const bool turned = n.rest.size() <= n.done.size() + n.fresh.size();
+        if (turned && n.rest.size() <= 8) {
+            n.done = reduced(minus(Federation<Z>{n.hull}, n.rest));
+        } else {
+            for (const Z& z : n.fresh) absorb(n.done, z);
+            if (turned && n.done.size() > n.rest.size()) {
+                Federation<Z> again = reduced(minus(Federation<Z>{n.hull}, n.rest));
+                if (again.size() < n.done.size()) n.done = std::move(again);
+            }
+        }
+        n.fresh.clear();
+        return n.done;
+    }
+
+    // --- symbolic steps --------------------------------------------------------------------------------------------
+
+    static bool guard(const Joint& joint, Z& z) {
+        for (const Bound& b : joint.guard)
+            if (!within(b, z)) return false;
+        return true;
+    }
+
+    // Appends the points of n from which the move leads into `zones` of its target.
+    static void before(const Node<Z>& n, const Joint& joint, const Federation<Z>& zones, Federation<Z>& out) {
+        for (const Z& zone : zones) {
+            const auto late = [&](int x) { return zone.at(0, x) < LE_ZERO; };
+            if (std::any_of(joint.resets.begin(), joint.resets.end(), late)) continue;
+            out.push_back(zone);
+            Z& z = out.back();
+            for (int x : joint.resets) constrain(z, x, 0, LE_ZERO);
+            for (int x : joint.resets) free_clock(z, x);
+            if (!guard(joint, z) || !intersect(z, n.hull)) out.pop_back();
+        }
+    }
+
+    // The points where automaton a is at the bound of its invariant.
+    Federation<Z> at_bound(const Node<Z>& n, int a) const {
+        Federation<Z> out;
+        for (const auto& [automaton, b] : n.limits) {
+            Z z = n.hull;
+            if (automaton == a && (b.raw & 1) && constrain(z, b.j, b.i, static_cast<R>(2 - b.raw))) out.push_back(z);
+        }
+        return out;
+    }
+
+    // The points where automaton a can make an uncontrollable move of its own, followed or not.
+    Federation<Z> own_moves(const Node<Z>& n, int a) const {
+        Federation<Z> out;
+        for (const std::vector<Step>* steps : {&n.steps, &n.others})
+            for (const Step& step : *steps) {
+                const Joint& joint = joints_[step.joint];
+                if (joint.owner != a || joint.controllable) continue;
+                Z anywhere = universe<Z>();
+                if (invariant(nodes_[step.target], anywhere)) before(n, joint, {anywhere}, out);
+            }
+        return out;
+    }
+
+    const Game& game_;
+    const Few few_;
+    bool all_ = false;  // new states get all their moves at once
+    Watch watch_;
+    Policy policy_;
+    Horizon horizon_;
+    Joints joints_;
+    States states_;
+    std::deque<Node<Z>> nodes_;
+    std::deque<int> touched_;  // hulls that grew, moves that came
+
+  private:
+    std::vector<int> enabled_;
+    std::size_t symbolic_states_ = 0;
+};
+
+}  // namespace pursue

@@ -1,0 +1,1 @@
+"""The readable engine, in Python: the native one's twin."""

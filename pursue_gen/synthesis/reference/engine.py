@@ -1,0 +1,306 @@
+"""The readable solver: what the rules of the game say, as fixpoints over one federation per discrete state.
+
+With X the positions won so far, `cPre` and `uPre` the discrete predecessors by the controller's and by uncontrollable
+moves, and Predt the timed predecessor (a tie is lost):
+
+- reach: the least X with X = Goal + Predt(X + cPre(X) + F, uPre(not X)), F where an automaton at its bound must move
+  and the environment can move it, into X whatever it does;
+- safety: the complement of the least L with L = Bad + (past(E) - Predt(cPre(not L), E)), E = L + uPre(L) + Stuck, Stuck
+  where an automaton is at its bound, the environment cannot move it and the controller has no safe move.
+
+A command may take effect late by up to the reaction delay, so cPre holds the positions from which the move is right at
+every time of the delay and no uncontrollable move spoils it meanwhile.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Deque, Dict, Iterable, List, Optional, Set, Tuple
+
+from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener, Watch
+from pursue_gen.synthesis.reference.arena import Arena, Move, Node
+from pursue_gen.synthesis.reference.directed import RelaxedPlanner
+from pursue_gen.tga.network import Kind
+from pursue_gen.zones.dbm import Dbm
+from pursue_gen.zones.federation import Federation, predt
+
+Piece = Tuple[Dbm, Action]
+
+
+@dataclass(frozen=True)
+class Stats:
+    """What it took: discrete states looked at, zones of the result, evaluations of a state, rounds of widening."""
+
+    states: int
+    zones: int
+    evaluations: int
+    rounds: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The verdict, and of a won game a strategy: for each discrete state disjoint zones with what to do there."""
+
+    won: bool
+    blocks: Tuple[Tuple[State, Tuple[Piece, ...]], ...]
+    stats: Stats
+
+    def raw_blocks(self) -> Tuple[RawBlock, ...]:
+        """The strategy as plain tuples, as `to_strategy` takes it."""
+        return tuple(
+            (state.locations, state.values, tuple((zone.m, action) for zone, action in pieces))
+            for state, pieces in self.blocks
+        )
+
+
+def solve_reference(
+    game: Game, directed: bool = True, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None
+) -> Outcome:
+    """Who wins from the initial position, and how. Raises PursueError with exit status 5 at a limit.
+
+    `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan,
+    or none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
+    """
+    watch = Watch(limits, progress)
+    try:
+        if game.kind is Kind.SAFETY:
+            return _Safety(game, watch).solve()
+        return _Reach(game, watch, directed).solve()
+    except MemoryError:
+        raise watch.stopped("memory") from None
+
+
+class _Fixpoint:
+    """A federation per node that only grows, and a FIFO of the nodes to look at again."""
+
+    def __init__(self, arena: Arena) -> None:
+        self.arena = arena
+        self.evaluations = 0
+        self.rounds = 0
+        self.found: List[Federation] = []
+        self.rest: List[Federation] = []
+        self._queue: Deque[int] = deque()
+        self._queued: Set[int] = set()
+
+    def push(self, numbers: Iterable[int]) -> None:
+        """Look at these nodes (again)."""
+        for number in numbers:
+            if number not in self._queued and self.rest[number]:
+                self._queued.add(number)
+                self._queue.append(number)
+
+    def pop(self) -> Optional[int]:
+        """The next node; None: a fixpoint."""
+        if not self._queue:
+            return None
+        self.check()
+        number = self._queue.popleft()
+        self._queued.discard(number)
+        self.evaluations += 1
+        return number
+
+    def check(self) -> None:
+        """Raises PursueError at a limit."""
+        self.arena.watch.check(len(self.arena.nodes), len(self._queue))
+
+    def grow(self, number: int, new: Federation) -> None:
+        """Add the new positions (disjoint from what was found), and look again at what leads to the node."""
+        self.found[number] = self.found[number].union(new).reduced()
+        self.rest[number] = self.rest[number].minus(new).reduced()
+        self.push(self.arena.nodes[number].sources | {number})
+
+    def usable(self, number: int, targets: List[Federation], spoilt: Federation) -> List[Tuple[Move, Federation]]:
+        """Of each of the controller's moves, from where it leads into the targets however late within the delay.
+
+        Not where an uncontrollable move may spoil it (`spoilt`) while the command is on its way.
+        """
+        delay, arena = self.arena.game.delta, self.arena
+        result: List[Tuple[Move, Federation]] = []
+        for move in arena.nodes[number].controllable:
+            if move.target >= 0 and targets[move.target]:
+                before = arena.pre(number, move, targets[move.target])
+                if delay:
+                    before = before.minus(spoilt).reduced().lasting(delay, arena.nodes[number].reach)
+                if before:
+                    result.append((move, before))
+        return result
+
+    def spoilt(self, number: int, targets: List[Federation]) -> Federation:
+        """Where an uncontrollable move leads into the targets."""
+        result = Federation()
+        for move in self.arena.nodes[number].uncontrollable:
+            if move.target >= 0 and targets[move.target]:
+                result = result.union(self.arena.pre(number, move, targets[move.target]))
+        return result.reduced()
+
+    def stats(self) -> Stats:
+        """What it took so far."""
+        zones = sum(len(federation.zones) for federation in self.found)
+        return Stats(len(self.arena.nodes), zones, self.evaluations, self.rounds)
+
+
+def _union(parts: Iterable[Federation]) -> Federation:
+    result = Federation()
+    for part in parts:
+        result = result.union(part)
+    return result
+
+
+def _assign(region: Federation, usable: Iterable[Tuple[Move, Federation]]) -> List[Piece]:
+    """Disjoint pieces of the region with the first move that is usable there; where none is: wait."""
+    pieces: List[Piece] = []
+    for move, before in usable:
+        part = region.intersect(before)
+        if part:
+            pieces += [(zone, move.joint.edges) for zone in part.disjoint()]
+            region = region.minus(part)
+    return pieces + [(zone, None) for zone in region.disjoint()]
+
+
+def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
+    """The same advice with fewer zones to wait in.
+
+    Commands stay as they were found: time may take a command's zone into one that was found later, and a controller
+    that is slow to act must not drift there and lose what it had gained.
+    """
+    commands = tuple(piece for piece in pieces if piece[1] is not None)
+    waits = Federation(tuple(zone for zone, action in pieces if action is None))
+    return commands + tuple((zone, None) for zone in waits.disjoint())
+
+
+class _Reach(_Fixpoint):
+    """`found` is what is won, `rest` what is reached and not won (yet)."""
+
+    def __init__(self, game: Game, watch: Watch, directed: bool) -> None:
+        super().__init__(Arena(game, watch, RelaxedPlanner(game).choose if directed else None))
+        self._pieces: Dict[int, List[Piece]] = {}
+        self._forced: Dict[int, Tuple[Dbm, Federation]] = {}
+
+    def solve(self) -> Outcome:
+        """The fixpoint; after each round without a win, nodes that are not won get all their moves."""
+        self._refresh(self.arena.explore())
+        self._run()
+        while not self._won():
+            narrow = [k for k, node in enumerate(self.arena.nodes) if node.omitted and self.rest[k]]
+            if not narrow:
+                break
+            self.rounds += 1
+            for number in narrow:
+                self.arena.widen(number)
+            self._refresh(self.arena.explore())
+            self.push(narrow)
+            self._run()
+        won = self._won()
+        found = sorted(self._pieces.items()) if won else []
+        return Outcome(won, tuple((self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in found), self.stats())
+
+    def _won(self) -> bool:
+        """True if all of the start is won."""
+        return bool(self.found) and self.found[0].includes_zone(self.arena.start)
+
+    def _refresh(self, changed: Set[int]) -> None:
+        """Take in new nodes, and those in which more is reached: what was won there stays won."""
+        nodes = self.arena.nodes
+        for _ in range(len(self.found), len(nodes)):
+            self.found.append(Federation())
+            self.rest.append(Federation())
+        for number in sorted(changed):
+            reach = Federation.of(nodes[number].reach)
+            if is_goal(self.arena.game, nodes[number].state):
+                self.found[number] = reach
+            else:
+                self.rest[number] = reach.minus(self.found[number])
+        for number in sorted(changed):
+            self.push([number])
+            if self.found[number]:
+                self.push(sorted(nodes[number].sources))
+
+    def _run(self) -> None:
+        number = self.pop()
+        while number is not None and not self._won():
+            if not is_bad(self.arena.game, self.arena.nodes[number].state):
+                self._evaluate(number)
+            number = self.pop()
+        # Left early: what was taken out is looked at if the search goes on.
+        if number is not None:
+            self.push([number])
+
+    def _evaluate(self, number: int) -> None:
+        node = self.arena.nodes[number]
+        moves = node.controllable + node.uncontrollable
+        if not any(move.target >= 0 and self.found[move.target] for move in moves):
+            return
+        spoilt = self.spoilt(number, self.rest)
+        usable = self.usable(number, self.found, spoilt)
+        targets = _union([self.found[number], self._forced_moves(number, node), *(before for _, before in usable)])
+        new = predt(targets, spoilt).intersect(self.rest[number]).reduced()
+        if new:
+            self._pieces.setdefault(number, []).extend(_assign(new, usable))
+            self.grow(number, new)
+
+    def _forced_moves(self, number: int, node: Node) -> Federation:
+        """Where an automaton is at its bound and the environment, that can move it, has to."""
+        known = self._forced.get(number)
+        if known is None or known[0] is not node.reach:
+            owners = self.arena.limited(number)
+            forced = _union(self.arena.expiring(number, k).intersect(self.arena.own(number, k)) for k in owners)
+            known = self._forced[number] = (node.reach, forced)
+        return known[1]
+
+
+class _Safety(_Fixpoint):
+    """`found` is what is lost, `rest` what is reached and not lost (yet)."""
+
+    def __init__(self, game: Game, watch: Watch) -> None:
+        super().__init__(Arena(game, watch))
+        self._unforced: List[Federation] = []
+
+    def solve(self) -> Outcome:
+        """The fixpoint, given up as soon as some of the start is lost."""
+        arena = self.arena
+        arena.explore()
+        for k, node in enumerate(arena.nodes):
+            self.check()
+            reach, bad = Federation.of(node.reach), is_bad(arena.game, node.state)
+            self.found.append(reach if bad else Federation())
+            self.rest.append(Federation() if bad else reach)
+            unforced = (arena.expiring(k, owner).minus(arena.own(k, owner)) for owner in arena.limited(k))
+            self._unforced.append(_union(unforced))
+        # What can be lost first is found from the end.
+        self.push(reversed(range(len(arena.nodes))))
+        number = self.pop()
+        while number is not None and not self._lost():
+            danger, usable = self._look(number)
+            lost = danger.down().minus(predt(_union(before for _, before in usable), danger))
+            new = lost.intersect(self.rest[number]).reduced()
+            if new:
+                self.grow(number, new)
+            number = self.pop()
+        won = not self._lost()
+        return Outcome(won, self._blocks() if won else (), self.stats())
+
+    def _lost(self) -> bool:
+        return not self.rest or not self.rest[0].includes_zone(self.arena.start)
+
+    def _look(self, number: int) -> Tuple[Federation, List[Tuple[Move, Federation]]]:
+        """E, where something bad is at hand, and where each of the controller's moves is safe."""
+        spoilt = self.spoilt(number, self.found)
+        usable = self.usable(number, self.rest, spoilt)
+        stuck = self._unforced[number].minus(_union(before for _, before in usable))
+        return _union([self.found[number], spoilt, stuck]).reduced(), usable
+
+    def _blocks(self) -> Tuple[Tuple[State, Tuple[Piece, ...]], ...]:
+        """Wait where that may go on for ever; else take a safe move where there is one; else wait for one."""
+        blocks: List[Tuple[State, Tuple[Piece, ...]]] = []
+        for number, node in enumerate(self.arena.nodes):
+            self.check()
+            safe = self.rest[number]
+            if safe:
+                danger, usable = self._look(number)
+                # At a bound that only the controller can leave, waiting on is not possible.
+                threatened = safe.intersect(danger.union(self._unforced[number]).down())
+                pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
+                blocks.append((node.state, (*pieces, *_assign(threatened, usable))))
+        return tuple(blocks)

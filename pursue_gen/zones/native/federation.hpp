@@ -1,0 +1,183 @@
+// Federations: finite unions of zones, as vectors (they may overlap unless said otherwise).
+#pragma once
+
+#include <utility>
+
+#include "zones/native/dbm.hpp"
+
+namespace pursue {
+
+template <class Z>
+using Federation = std::vector<Z>;
+
+template <class Z>
+Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
+    Federation<Z> out;
+    out.reserve(fed.size() + 2);
+    for (const auto& z : fed) subtract(z, zone, out);
+    return out;
+}
+
+template <class Z>
+bool touches(const Federation<Z>& fed, const Z& zone) {
+    for (const auto& z : fed)
+        if (!clearly_disjoint(z, zone)) return true;
+    return false;
+}
+
+template <class Z>
+Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
+    for (const auto& zone : other) {
+        if (fed.empty()) break;
+        if (touches(fed, zone)) fed = minus(fed, zone);
+    }
+    return fed;
+}
+
+template <class Z>
+Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
+    Federation<Z> out;
+    for (const auto& zone : b)
+        for (const auto& other : a) {
+            out.push_back(other);
+            if (!intersect(out.back(), zone)) out.pop_back();
+        }
+    return out;
+}
+
+template <class Z>
+void append(Federation<Z>& a, const Federation<Z>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+}
+
+// Adds a zone unless one that is there includes it; drops those that it includes.
+template <class Z>
+void insert(Federation<Z>& fed, const Z& zone) {
+    for (const auto& z : fed)
+        if (includes(z, zone)) return;
+    fed.erase(std::remove_if(fed.begin(), fed.end(), [&](const Z& z) { return includes(zone, z); }), fed.end());
+    fed.push_back(zone);
+}
+
+// True when a and b together are exactly their hull.
+//
+// What the hull h has beyond them is the union, over each bound (i, j) that is tighter in a and (k, l) that is tighter in
+// b, of the points of h that break both. As h is canonical, such a part is empty iff the one cycle through both is negative.
+template <class Z>
+bool joins(const Z& a, const Z& b) {
+    const auto gap = [&](int i, int j, int k, int l) {
+        const int p = complement(a.at(i, j)), q = complement(b.at(k, l));
+        const int r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
+        return (p >> 1) + (q >> 1) + (r >> 1) + (s >> 1) + (p & q & r & s & 1) > 0;
+    };
+    std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];
+    int count_a = 0, count_b = 0;
+    for (int i = 0; i < Z::size; ++i)
+        for (int j = 0; j < Z::size; ++j) {
+            if (a.at(i, j) < b.at(i, j)) {
+                for (int k = 0; k < count_b; ++k)
+                    if (gap(i, j, tighter_b[k].first, tighter_b[k].second)) return false;
+                tighter_a[count_a++] = {i, j};
+            } else if (b.at(i, j) < a.at(i, j)) {
+                for (int k = 0; k < count_a; ++k)
+                    if (gap(tighter_a[k].first, tighter_a[k].second, i, j)) return false;
+                tighter_b[count_b++] = {i, j};
+            }
+        }
+    return true;
+}
+
+// Adds a zone, merged with all that it forms a convex union with.
+template <class Z>
+void absorb(Federation<Z>& fed, Z zone) {
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t k = 0; k < fed.size();) {
+            if (!joins(fed[k], zone)) {
+                ++k;
+                continue;
+            }
+            zone = hull(zone, fed[k]);
+            fed[k] = fed.back();
+            fed.pop_back();
+            again = true;
+        }
+    }
+    fed.push_back(zone);
+}
+
+// The same set in fewer zones: drops what is included, merges pairs whose union is convex.
+template <class Z>
+Federation<Z> reduced(const Federation<Z>& fed) {
+    Federation<Z> out;
+    out.reserve(fed.size());
+    for (const auto& zone : fed) absorb(out, zone);
+    return out;
+}
+
+// The same set in pairwise disjoint zones.
+template <class Z>
+Federation<Z> disjoint(const Federation<Z>& fed) {
+    Federation<Z> out;
+    for (const Z& zone : reduced(fed)) append(out, minus(Federation<Z>{zone}, out));
+    return out;
+}
+
+template <class Z>
+bool contains(const Federation<Z>& big, const Z& zone) {
+    for (const auto& z : big)
+        if (includes(z, zone)) return true;
+    return minus(Federation<Z>{zone}, big).empty();
+}
+
+// { q | some t >= 0: q+t in good, and q+t' not in bad for all t' in [0, t] } (Cassez et al. 2005).
+template <class Z>
+Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
+    constexpr std::size_t many = 4;
+    Federation<Z> out;
+    for (const auto& g : good) {
+        Z past = g;
+        down(past);
+        Federation<Z> safe{past};
+        for (const auto& b : bad) {
+            if (safe.empty()) break;
+            if (clearly_disjoint(past, b)) continue;
+            Z before = b;
+            down(before);
+            Federation<Z> part = minus(Federation<Z>{past}, before);
+            Z in = g;
+            if (intersect(in, before)) {
+                Federation<Z> early;
+                subtract(in, b, early);
+                for (auto& z : early) {
+                    down(z);
+                    part.push_back(z);
+                }
+            }
+            safe = intersection(safe, part);
+            if (safe.size() > many) safe = reduced(safe);
+        }
+        append(out, safe);
+    }
+    return out;
+}
+
+// { q | q+t' in fed for all t' in [0, delay] }.
+template <class Z>
+Federation<Z> lasting(const Federation<Z>& fed, int delay) {
+    if (delay == 0) return fed;
+    Federation<Z> out;
+    for (const auto& zone : fed) {
+        Z later = zone;
+        up_within(later, delay);
+        Federation<Z> good{zone};
+        for (auto z : minus(Federation<Z>{later}, fed)) {
+            if (down_within(z, delay)) good = minus(good, z);
+            if (good.empty()) break;
+        }
+        append(out, good);
+    }
+    return out;
+}
+
+}  // namespace pursue
