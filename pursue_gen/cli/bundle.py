@@ -96,7 +96,7 @@ def _tell_bundle(file: Path, folder: Path) -> None:
     from pursue_gen.cli.console import show
     from pursue_gen.transport.bundles import read_bundle
     from pursue_gen.transport.keys import public_keys
-    from pursue_gen.transport.mission_bundle import fingerprint, mission_id
+    from pursue_runtime.bundle import fingerprint, mission_id
 
     known, findings = public_keys(folder)
     show(findings)

@@ -47,7 +47,7 @@ def new(
 def list_(folder: Optional[Path] = FOLDER) -> None:
     """List the keys: name, fingerprint, and whether missions can be signed with it here."""
     from pursue_gen.transport.keys import key_names, keys_folder, public_keys
-    from pursue_gen.transport.mission_bundle import fingerprint
+    from pursue_runtime.bundle import fingerprint
 
     place = folder or keys_folder()
     found, findings = public_keys(place)
@@ -67,7 +67,7 @@ def show_(
 ) -> None:
     """Print a key's public half: one line, which is what NAME.pub holds."""
     from pursue_gen.transport.keys import keys_folder, load_public
-    from pursue_gen.transport.mission_bundle import fingerprint, write_public_key
+    from pursue_runtime.bundle import fingerprint, write_public_key
 
     key = load_public(name, folder or keys_folder())
     print(write_public_key(key, name), end="")

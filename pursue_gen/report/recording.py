@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.record import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, Record, State, read_state
@@ -12,6 +12,7 @@ from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.runs import Case
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.tga.network import Network
+from pursue_runtime.state import SystemState, format_state
 
 
 @dataclass(frozen=True)
@@ -132,11 +133,10 @@ class _Recorded(Play):
     def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
         super().__init__(stage, settings, seed, remaining)
         self.states: List[State] = []
-        self._format = stage.pursue_library.format_state
 
-    def publish(self, state: Any) -> None:
+    def publish(self, state: SystemState) -> None:
         """A state of the mission."""
-        read = read_state(self._format(state))
+        read = read_state(format_state(state))
         if read is not None:
             self.states.append(read)
         super().publish(state)

@@ -1,4 +1,4 @@
-"""Who watches the mission: by the network and the strategy as the solver had them, not by the generated code.
+"""Who watches the mission: by the network and the strategy as the solver had them, not by the run time.
 
 Each state that the observer publishes must follow from the one before by one joint move of the network, at clocks that
 allow it; what is not so may be a report that a fault has put off the model, but never a command. A command must be
@@ -15,6 +15,7 @@ from pursue_gen.simulation.commands import EPSILON, Commands, commands_in
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
+from pursue_runtime.state import SystemState
 
 BUSY = ("going_", "doing_")
 
@@ -42,7 +43,7 @@ class Judge:
         self._names = [automaton.name for automaton in arena.network.automata]
         self._plans: Dict[int, Commands] = {0: commands}
         self._reaction, self._faults, self._offset = reaction, faults, offset
-        self._before: Any = None
+        self._before: Optional[SystemState] = None
         self._entered = 0.0
         self._zeros: Dict[str, float] = {}
         self._told: Set[Tuple[str, int]] = set()
@@ -54,7 +55,7 @@ class Judge:
 
     # States -----------------------------------------------------------------------------------------------------------
 
-    def saw(self, state: Any, now: float) -> None:
+    def saw(self, state: SystemState, now: float) -> None:
         """The observer publishes a state, at this moment (seconds)."""
         before, self._before = self._before, state
         if before is None or before.seq == 0:
@@ -73,14 +74,14 @@ class Judge:
         if state.status != "waiting":
             self._check_clocks(state, now)
 
-    def _starts(self, state: Any, now: float) -> None:
+    def _starts(self, state: SystemState, now: float) -> None:
         self._zeros = dict.fromkeys(self._arena.network.clocks, now)
         self._entered = now
         if (state.seq, self._key(state)) != (1, self._arena.initial):
             self._problem(f"the mission starts with state {state.seq}, not where the network starts")
         self._check_clocks(state, now)
 
-    def _stepped(self, before: Any, state: Any, now: float) -> None:
+    def _stepped(self, before: SystemState, state: SystemState, now: float) -> None:
         clocks = {clock: (now - zero) / state.unit for clock, zero in self._zeros.items()}
         what = f"{state.event} by {state.agent} (state {state.seq})"
         matching = [
@@ -116,7 +117,9 @@ class Judge:
         first = move.moves[0]
         return self._bad == (first.automaton, first.edge.target)
 
-    def _check_command(self, before: Any, state: Any, clocks: Mapping[str, float], what: str, now: float) -> None:
+    def _check_command(
+        self, before: SystemState, state: SystemState, clocks: Mapping[str, float], what: str, now: float
+    ) -> None:
         if before.status != "running":
             self._problem(f"{what} is a command, but the mission was {before.status}")
         plan = self._plans.get(before.plan)
@@ -132,7 +135,7 @@ class Judge:
         if not any(command.due_between(clocks, -back, self._offset) for command in held):
             self._problem(f"wrong command: {what} was not due there")
 
-    def _check_clocks(self, state: Any, now: float) -> None:
+    def _check_clocks(self, state: SystemState, now: float) -> None:
         for clock, zero in self._zeros.items():
             told, value = state.clocks.get(clock, -1.0), (now - zero) / state.unit
             if abs(told - value) > EPSILON:
@@ -153,7 +156,8 @@ class Judge:
         elif last is None or (last.target, True) != (target, last.commanded):
             self._problem(f"wrong order: {what}, which is not what was last commanded")
         elif target.startswith(BUSY):
-            if self._before.locations.get(agent) != target and not again:
+            here = self._before.locations.get(agent) if self._before is not None else None
+            if here != target and not again:
                 self._problem(f"wrong order: {what}, which is over already")
         elif (agent, last.seq) in self._told:
             self._problem(f"wrong order: {what}, for the second time")
@@ -165,7 +169,7 @@ class Judge:
     def _problem(self, text: str) -> None:
         self.problems.append(text)
 
-    def _key(self, state: Any) -> State:
+    def _key(self, state: SystemState) -> State:
         variables = (name for name, _ in self._arena.network.variables)
         locations = tuple(state.locations.get(name, "") for name in self._names)
         return locations, tuple(state.values.get(name, -1) for name in variables)

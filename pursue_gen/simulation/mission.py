@@ -17,13 +17,29 @@ from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.wires import Wires
 from pursue_gen.simulation.world import Mover
 from pursue_gen.tga.network import Kind
+from pursue_runtime.controller.player import Order
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.state import (
+    ENDED,
+    HOLDING,
+    LIVE,
+    LOST,
+    RUNNING,
+    STOPPED,
+    WON,
+    SystemState,
+    format_state,
+    parse_state,
+)
+from pursue_runtime.words import Word, format_word, parse_word
 
 START = 1000.0
 """The moment at which missions start, in seconds of ROS time."""
 
-GOAL, SAFE, STOPPED, HELD, LOST, FAILED = "goal", "safe", "stopped", "held", "lost", "failed"
-"""How missions end: goal reached; safe to the end; safe stop; still holding at the end; lost because a fault broke what
-the strategy was promised; and what must never be."""
+GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
+"""How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these
+STOPPED, a safe stop, and LOST, because a fault broke what the strategy was promised."""
 
 JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "nobody:nothing@3", "_plan_@1", "@@", ":_failed_")
 """Words on pursue/events that change nothing."""
@@ -91,7 +107,7 @@ class Play:
             agent: Mover(stage, agent, self.clockwork, self.trouble, name, self._report, stage.reaction)
             for agent in stage.reports
         }
-        self._latched: Any = None
+        self._latched: Optional[SystemState] = None
         self._plan: Optional[Dict[str, Any]] = None
         self._reachable = dict.fromkeys(stage.strategies, START)
         self._seen: Tuple[int, str] = (-1, "")
@@ -104,8 +120,7 @@ class Play:
         self._observer.beat()
         self._trouble_ahead()
         clockwork.at(START, lambda: self._observer.call("hear", "_start_"))
-        ended = self._stage.pursue_library.ENDED
-        while self._observer.mission.status not in ended and not (self._judge.problems or self._complaints):
+        while self._observer.mission.status not in ENDED and not (self._judge.problems or self._complaints):
             moment = clockwork.next()
             if moment is None or moment > end:
                 clockwork.now = end
@@ -140,28 +155,27 @@ class Play:
             tuple(problems), happened, tuple(self.lines),
         )
 
-    def _end(self, mission: Any) -> Tuple[str, str]:
+    def _end(self, mission: Mission) -> Tuple[str, str]:
         """How it ended, before the judge's problems are looked at."""
-        library = self._stage.pursue_library
         safety = self._stage.solution.objective.kind is Kind.SAFETY
-        ends = {library.STOPPED: STOPPED, library.LOST: LOST, library.HOLDING: HELD}
-        if mission.status == library.WON:
+        ends = {STOPPED: STOPPED, LOST: LOST, HOLDING: HELD}
+        if mission.status == WON:
             return GOAL, ""
         if mission.status in ends and self.trouble.excuses:
             return ends[mission.status], mission.reason
-        if mission.status == library.RUNNING and safety:
+        if mission.status == RUNNING and safety:
             return SAFE, ""
-        if mission.status == library.RUNNING:
+        if mission.status == RUNNING:
             return FAILED, "it neither reached the goal nor stopped"
         return FAILED, f"the mission is {mission.status}: {mission.reason}"
 
     # What the nodes do (Outside) --------------------------------------------------------------------------------------
 
-    def publish(self, state: Any) -> None:
+    def publish(self, state: SystemState) -> None:
         """The observer says a state: all subscribers get its text."""
-        text = self._stage.pursue_library.format_state(state)
-        state = self._stage.pursue_library.parse_state(text)
-        self._latched = state
+        read = parse_state(format_state(state))
+        assert read is not None, "every state that is written can be read"
+        state = self._latched = read
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:
@@ -176,7 +190,7 @@ class Play:
         if self._people is not None:
             self._people.see(state)
 
-    def _tell(self, node: ControllerNode, state: Any, latest: float) -> None:
+    def _tell(self, node: ControllerNode, state: SystemState, latest: float) -> None:
         """Sends a state to a controller: to the process that listens now."""
         self._wires.send(f"state:{node.name}", latest, _to(node, lambda: node.see(state)), node.name)
 
@@ -197,18 +211,18 @@ class Play:
         if self._people is not None:
             self._people.learn(plan)
 
-    def want(self, request: Optional[Any]) -> None:
+    def want(self, request: Optional[PlanRequest]) -> None:
         """The observer wants another plan, or none any longer."""
         self._planner.want(request)
 
-    def say(self, node: str, word: Any, latest: float) -> None:
+    def say(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI says a word."""
-        text = self._stage.pursue_library.format_word(word)
+        text = format_word(word)
         self._note(f"{node} says {text}")
         self._said.append(text)
         self._hear(f"word:{node}", text, max(0.0, latest - self.clockwork.now), node)
 
-    def order(self, node: str, order: Any, seq: int, newest: int, again: bool) -> None:
+    def order(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do."""
         self._note(f"{node} tells {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
         self._judge.told(order.agent, order.trigger, order.target, seq, newest, again)
@@ -223,10 +237,10 @@ class Play:
         machine = self._stage.controller_of(agent) or ""
         self._hear(f"report:{agent}", text, 0.0, machine)
 
-    def _look(self, state: Any) -> None:
+    def _look(self, state: SystemState) -> None:
         """The agents that nobody controls look at the state."""
         deed = None
-        if state.status in self._stage.pursue_library.LIVE:
+        if state.status in LIVE:
             network, clocks = self._stage.arena.network, state.clocks_at(self.clockwork.now)
             locations = tuple(state.locations[automaton.name] for automaton in network.automata)
             key = locations, tuple(state.values[name] for name, _ in network.variables)
@@ -237,7 +251,7 @@ class Play:
     def _act(self) -> None:
         if self._word:
             self._report(self._word.partition(":")[0], self._word)
-        else:
+        elif self._latched is not None:
             self._look(self._latched)
 
     # Faults -----------------------------------------------------------------------------------------------------------
@@ -245,7 +259,7 @@ class Play:
     def _beat(self) -> None:
         """Once a second: the observer says its state again, and notices who is silent."""
         clockwork, observer = self.clockwork, self._observer
-        live = observer.mission.status in self._stage.pursue_library.LIVE
+        live = observer.mission.status in LIVE
         clockwork.at(clockwork.now + HEARTBEAT, self._beat)
         observer.beat()
         for name, node in self._controllers.items():
@@ -275,20 +289,21 @@ class Play:
         node.start_again()
         if name == "observer":
             return
-        if self._observer.alive:  # what is latched comes at once
+        if self._observer.alive and self._latched is not None:  # what is latched comes at once
             self._tell(node, self._latched, 0.3)
             if self._plan is not None:
                 self._teach(node, self._plan)
 
     def _junk(self, draw: random.Random) -> None:
         """A word that must change nothing."""
-        library, mission = self._stage.pursue_library, self._observer.mission
+        mission = self._observer.mission
         words = [*JUNK, "x" * 3000]
         words += [text for text in self._said if not text.endswith(f"@{mission.seq}")]
         possible = set(mission.model.possible(mission.position(self.clockwork.now), timed=False))
         words += [e.word for a in mission.model.automata for e in a.edges if e.word not in possible]
         text = draw.choice(words)
-        if library.parse_word(text) is not None and library.parse_word(text).seq == mission.seq:
+        word = parse_word(text)
+        if word is not None and word.seq == mission.seq:
             return
         self.trouble.count("junk")
         self._note(f"somebody says {text[:40]!r}")
@@ -338,7 +353,7 @@ def _opponent(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
     return "random" if rare else chosen
 
 
-def _told(state: Any) -> str:
+def _told(state: SystemState) -> str:
     """A state as a line of a play."""
     what = f"{state.event} by {state.agent}" if state.event else state.status
     more = f" ({state.status})" if state.event and state.status != "running" else ""

@@ -1,12 +1,21 @@
-"""The nodes of a workspace on simulated wires: what their thin ROS parts do, around the generated cores."""
+"""The nodes of a workspace on simulated wires: what their thin ROS parts do, around the run time."""
 
 from __future__ import annotations
 
 import json
-from typing import Any, Callable, Dict, List, Optional, Protocol
+from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
 from pursue_gen.simulation.clockwork import Alarm, Clockwork
 from pursue_gen.simulation.stage import Stage
+from pursue_runtime.controller.player import Order, Player
+from pursue_runtime.observer.journal import replay
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Strategy
+from pursue_runtime.ui import mission as ui
+from pursue_runtime.ui.players import StandStill
+from pursue_runtime.words import Word, parse_word
 
 TICK = 1e-9
 """Seconds by which an alarm rings after its moment, so that its moment has come by any clock."""
@@ -18,19 +27,19 @@ class Outside(Protocol):
     clockwork: Clockwork
     faulty: bool
 
-    def publish(self, state: Any) -> None:
+    def publish(self, state: SystemState) -> None:
         """The observer says a state."""
 
     def propose(self, plan: Dict[str, Any]) -> None:
         """The observer has another plan for everybody."""
 
-    def want(self, request: Optional[Any]) -> None:
+    def want(self, request: Optional[PlanRequest]) -> None:
         """The observer wants another plan (None: no longer)."""
 
-    def say(self, node: str, word: Any, latest: float) -> None:
+    def say(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI says a word, which is promised to be heard by the moment `latest`."""
 
-    def order(self, node: str, order: Any, seq: int, newest: int, again: bool) -> None:
+    def order(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do, because of state `seq`; `newest` is the last one that it knows,
         `again`: it was started again since it has told it anything."""
 
@@ -47,9 +56,9 @@ class ObserverNode:
         self._proposed = 0
         self.mission = self._mission()
 
-    def _mission(self) -> Any:
+    def _mission(self) -> Mission:
         stage = self._stage
-        return stage.observer_core.Mission(
+        return Mission(
             stage.model, stage.cover, self._log, on_uncovered="plan", controllers=tuple(stage.strategies)
         )
 
@@ -77,7 +86,7 @@ class ObserverNode:
         self.alive = True
         self.life += 1
         self.mission = self._mission()
-        self._stage.observer_journal.replay(self.mission, [json.loads(entry) for entry in self._entries])
+        replay(self.mission, [json.loads(entry) for entry in self._entries])
         self._proposed = 0
         self.beat()
 
@@ -86,7 +95,7 @@ class ObserverNode:
         self.alive = False
         self._alarm.set()
 
-    def _say(self, states: List[Any]) -> None:
+    def _say(self, states: Sequence[SystemState]) -> None:
         outside, mission = self._outside, self.mission
         for state in states:
             outside.publish(state)
@@ -108,14 +117,14 @@ class ControllerNode:
         self._alarm = Alarm(outside.clockwork, self._ring)
         self._player = self._new()
 
-    def _new(self) -> Any:
-        return self._stage.controller_core.Player(self._stage.strategies[self.name], self.name)
+    def _new(self) -> Player:
+        return Player(self._stage.strategies[self.name], self.name)
 
     @property
     def _now(self) -> float:
         return self._outside.clockwork.now + self._offset
 
-    def see(self, state: Any) -> None:
+    def see(self, state: SystemState) -> None:
         """A state has come."""
         if not self.alive:
             return
@@ -134,7 +143,7 @@ class ControllerNode:
     def learn(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
         if self.alive:
-            strategy = self._stage.pursue_strategy.Strategy(plan["strategies"][self.name])
+            strategy = Strategy(plan["strategies"][self.name])
             word = self._player.learn(plan["plan"], strategy, self._now)
             self._outside.say(self.name, word, self._outside.clockwork.now)
             self._set()
@@ -173,10 +182,10 @@ class PeopleNode:
 
     def __init__(self, stage: Stage, outside: Outside) -> None:
         self._stage, self._outside = stage, outside
-        self._ui = stage.ui_core.Mission(stage.model, stage.ui_players.StandStill(), stage.people)
+        self._ui = ui.Mission(stage.model, StandStill(), stage.people)
         self._alarm = Alarm(outside.clockwork, self._ring)
 
-    def see(self, state: Any) -> None:
+    def see(self, state: SystemState) -> None:
         """A state has come."""
         self._ui.on_state(state, self._outside.clockwork.now)
         self._ring()
@@ -184,18 +193,20 @@ class PeopleNode:
     def learn(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
         if plan["people"]:
-            self._ui.learn(plan["plan"], self._stage.pursue_strategy.Strategy(plan["people"]))
+            self._ui.learn(plan["plan"], Strategy(plan["people"]))
             self._ring()
 
     def _ring(self) -> None:
         now, stage = self._outside.clockwork.now, self._stage
         for text in self._ui.due(now, now):
-            self._outside.say("UI", stage.pursue_library.parse_word(text), now + stage.reaction)
+            word = parse_word(text)
+            assert word is not None, f"the user interface published {text!r}"
+            self._outside.say("UI", word, now + stage.reaction)
         self._alarm.set(*self._ui.next_moments(now))
 
 
-def _is_for_robots(order: Any) -> bool:
+def _is_for_robots(order: Order) -> bool:
     """What the exeggutor sends: goals and actions, not ends."""
     if order.target.startswith("going_"):
-        return bool(order.target != order.origin)
-    return bool(order.target == order.origin or order.target.startswith("doing_"))
+        return order.target != order.origin
+    return order.target == order.origin or order.target.startswith("doing_")

@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.simulation.clockwork import Clockwork
 from pursue_gen.simulation.stage import Stage
+from pursue_runtime.observer.planning import PlanRequest
 
 SHORTEST, LONGEST = 0.2, 3.0
 """Seconds between which the planner answers."""
@@ -23,7 +24,7 @@ class Planner:
         self._draw = random.Random(f"{seed}/planner")
         self._number = 0
 
-    def want(self, request: Optional[Any]) -> None:
+    def want(self, request: Optional[PlanRequest]) -> None:
         """This plan is wanted now (None: none is)."""
         number = request.number if request else 0
         if number == self._number:
@@ -33,7 +34,7 @@ class Planner:
             delay = self._draw.uniform(SHORTEST, LONGEST)
             self._clockwork.at(self._clockwork.now + delay, lambda: self._look(request))
 
-    def _look(self, request: Any) -> None:
+    def _look(self, request: PlanRequest) -> None:
         if request.number != self._number:
             return
         found = self._ask(request)
@@ -42,7 +43,7 @@ class Planner:
         else:
             self._answer("unplanned", request.number, str(found["why"]))
 
-    def _ask(self, request: Any) -> Dict[str, Any]:
+    def _ask(self, request: PlanRequest) -> Dict[str, Any]:
         if self._stage.request is None:
             return {"won": False, "why": "the workspace has no planner"}
         from pursue_gen.replanning import replan

@@ -13,11 +13,12 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Outcome, Settings, play
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome, Settings, play
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options
+from pursue_runtime.state import LOST, STOPPED
 
 ENDS = (GOAL, SAFE, STOPPED, HELD, LOST, FAILED)
 """In the order of tables."""

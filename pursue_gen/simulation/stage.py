@@ -1,24 +1,24 @@
-"""What all simulated missions of a scenario have in common: the generated code and its data, and the game they play."""
+"""What all simulated missions of a scenario have in common: the data of its nodes, and the game they play."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.moves import Arena
-from pursue_gen.simulation.code import load, sources
 from pursue_gen.simulation.commands import Commands, commands_of
 from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, generate
-
-_MODULES = ("observer_core", "controller_core", "observer_journal", "simulator_core", "ui_core", "ui_players")
+from pursue_runtime.data import parse_data
+from pursue_runtime.model import Model
+from pursue_runtime.observer.planning import Cover
+from pursue_runtime.strategy import Strategy, read_cover
 
 
 @dataclass(frozen=True)
 class Stage:
-    """The workspace's modules and their data as its nodes have them, and the game and strategy they were made from.
+    """A workspace's data as its nodes have them, and the game and strategy they were made from.
 
     `strategies`: each controller's, by the controller's name; `people`: what human allies are told. `reaction` is in
     time units. `arena`: the joint moves of the network, as the checker reads it; `commands`: those of the strategy
@@ -28,18 +28,10 @@ class Stage:
 
     scenario: Scenario
     solution: Solution
-    pursue_library: Any
-    pursue_strategy: Any
-    observer_core: Any
-    controller_core: Any
-    simulator_core: Any
-    ui_core: Any
-    ui_players: Any
-    observer_journal: Any
-    model: Any
-    cover: Any
-    strategies: Mapping[str, Any]
-    people: Optional[Any]
+    model: Model
+    cover: Cover
+    strategies: Mapping[str, Strategy]
+    people: Optional[Strategy]
     reports: Tuple[str, ...]
     request: Optional[Mapping[str, Any]]
     reaction: float
@@ -67,31 +59,16 @@ def stage_of(scenario: Scenario, won: Solution, options: Options) -> Stage:
 
 
 def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) -> Stage:
-    """The stage of these files of a workspace. Raises PursueError (exit status 6) where a Python module is missing."""
-    try:
-        texts = sources(files)
-        modules = load(texts, _MODULES)
-        data = _data(files)
-    except ImportError as problem:
-        hint = "install it for the Python that runs pursue-gen: pip install pyyaml transitions"
-        raise PursueError([error("SIM001", f"the generated code cannot run here: {problem}", hint=hint)], 6) from None
-    strategies = modules["pursue_strategy"]
+    """The stage of these files of a workspace."""
+    data = _data(files)
     people = data.get("UI/people.yaml")
     return Stage(
         scenario=scenario,
         solution=won,
-        pursue_library=modules["pursue_library"],
-        pursue_strategy=strategies,
-        observer_core=modules["observer_core"],
-        controller_core=modules["controller_core"],
-        simulator_core=modules["simulator_core"],
-        ui_core=modules["ui_core"],
-        ui_players=modules["ui_players"],
-        observer_journal=modules["observer_journal"],
-        model=modules["pursue_model"].Model(data["observer/model.yaml"]),
-        cover=strategies.read_cover(data["observer/cover.yaml"]),
-        strategies={name: strategies.Strategy(data[f"{name}/strategy.yaml"]) for name in _controllers(data)},
-        people=None if people is None else strategies.Strategy(people),
+        model=Model(data["observer/model.yaml"]),
+        cover=read_cover(data["observer/cover.yaml"]),
+        strategies={name: Strategy(data[f"{name}/strategy.yaml"]) for name in _controllers(data)},
+        people=None if people is None else Strategy(people),
         reports=tuple(data["UI/ui.yaml"]["reports"]),
         request=data.get("observer/game.yaml"),
         reaction=float(won.reaction),
@@ -106,12 +83,10 @@ def _controllers(data: Mapping[str, Any]) -> List[str]:
 
 def _data(files: Mapping[str, bytes]) -> Dict[str, Any]:
     """package/file → content, of the data files that the nodes read."""
-    import yaml
-
     wanted = ("strategy.yaml", "model.yaml", "cover.yaml", "people.yaml", "game.yaml", "ui.yaml")
     found = {}
     for path, content in sorted(files.items()):
         parts = path.split("/")
         if len(parts) == 4 and parts[2] == "config" and parts[3] in wanted:
-            found[f"{parts[1]}/{parts[3]}"] = yaml.load(content, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            found[f"{parts[1]}/{parts[3]}"] = parse_data(content, path)
     return found

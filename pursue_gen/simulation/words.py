@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Sequence
 
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Outcome
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.simulation.runs import Summary
+from pursue_runtime.state import LOST, STOPPED
 
 WORDS = {
     GOAL: "goal reached",

@@ -1,17 +1,19 @@
 """The simulated world: robots, people and other agents end what they do, early and late in the model's window alike.
 
-The generated simulator tells the ends, one for each agent; here is drawn when, and what breaks.
+The run time's simulator tells the ends, one for each agent; here is drawn when, and what breaks.
 """
 
 from __future__ import annotations
 
 import random
-from typing import Any, Callable
+from typing import Callable
 
 from pursue_gen.simulation.clockwork import Alarm, Clockwork
 from pursue_gen.simulation.faults import Breakdown, Trouble
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.wires import share
+from pursue_runtime.simulator.simulator import Simulator, Window, spoken, window_at
+from pursue_runtime.state import SystemState
 
 INSIDE = 1e-3
 """Time units by which the earliest end is inside its window, which opens with a strict bound."""
@@ -23,7 +25,7 @@ class Durations:
     def __init__(self, trouble: Trouble, seed: str) -> None:
         self._trouble, self._seed = trouble, seed
 
-    def draw(self, window: Any, agent: str, number: int) -> float:
+    def draw(self, window: Window, agent: str, number: int) -> float:
         """Time units from the start of the agent's `number`-th activity to its end: each end of the window with
         probability 1/4."""
         part = share(random.Random(f"{self._seed}/{agent}/{number}"))
@@ -41,7 +43,7 @@ class Mover:
         self.agent = agent
         self._stage = stage
         self._clockwork, self._trouble, self._say, self._promised = clockwork, trouble, say, promised
-        self._simulator = stage.simulator_core.Simulator(stage.model, [agent], Durations(trouble, seed))
+        self._simulator = Simulator(stage.model, [agent], Durations(trouble, seed))
         self._alarm = Alarm(clockwork, self._act)
         self._breakdown = trouble.breakdown if trouble.breakdown and trouble.breakdown.robot == agent else None
         self._place = ""
@@ -49,7 +51,7 @@ class Mover:
         self._broken = False
         self._stamp = 0.0
 
-    def see(self, state: Any) -> None:
+    def see(self, state: SystemState) -> None:
         """A state of the mission: it is what the world is like, for robots move by orders only."""
         place = state.locations.get(self.agent, "")
         if place != self._place:
@@ -97,7 +99,7 @@ class Mover:
     def _mend(self) -> None:
         """It can go on: what it was at ends now, if that is still to end."""
         self._broken = False
-        core, model = self._stage.simulator_core, self._stage.model
-        window = core.window_at(model.automaton(self.agent), self._place)
+        model = self._stage.model
+        window = window_at(model.automaton(self.agent), self._place)
         if window is not None:
-            self._say(self.agent, core.spoken(model, self.agent, window.event))
+            self._say(self.agent, spoken(model, self.agent, window.event))

@@ -13,10 +13,10 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.request import Asked, told_solution
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.transport.keys import Ed25519PrivateKey, public_keys  # first: it says what to do without cryptography
-from pursue_gen.transport.mission_bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
 from pursue_gen.transport.poses_file import with_poses
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.generate import generate, mission_of
+from pursue_runtime.bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
 
 SUFFIX = ".pursue"
 _SHOWN = 5  # points that a message names

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Tuple
 
-from pursue_gen.workspace.mission_manifest import OWN, is_digest
+from pursue_runtime.manifest import OWN, is_digest
 
 PORT = 13000
 """Where communication_manager listens (thesis: Rest2Ros)."""

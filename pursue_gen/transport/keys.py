@@ -32,7 +32,7 @@ except ImportError:
     _MISSING = "the Python package cryptography is missing, which signs missions"
     raise PursueError([error("TRN001", _MISSING, hint=_HINT)], exit_status=6) from None
 
-from pursue_gen.transport.mission_bundle import Refused, fingerprint, read_public_key, write_public_key
+from pursue_runtime.bundle import Refused, fingerprint, read_public_key, write_public_key
 
 PRIVATE, PUBLIC = ".key", ".pub"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)

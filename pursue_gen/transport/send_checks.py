@@ -7,7 +7,7 @@ from typing import Collection, List, Sequence, Set
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.transport.client import Status
 from pursue_gen.transport.sender import Check
-from pursue_gen.workspace.mission_manifest import OWN, is_digest, mission_id
+from pursue_runtime.manifest import OWN, is_digest, mission_id
 
 UNCHANGED, DIFFERENT = 7, 8
 """Exit statuses: nothing has changed; the robots differ, or it is not known how they stand."""

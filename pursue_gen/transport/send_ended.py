@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.transport.client import Status
 from pursue_gen.transport.send_checks import DIFFERENT, UNCHANGED
 from pursue_gen.transport.sender import Row, Sent
-from pursue_gen.workspace.mission_manifest import mission_id
+from pursue_runtime.manifest import mission_id
 
 _ONCE_MORE = (
     "see the table; pursue-gen explain TRN034 tells for each reason what to do. Once that is mended, say the same again"

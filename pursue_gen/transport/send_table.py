@@ -13,7 +13,7 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, TextIO, Tuple
 
 from pursue_gen.transport.client import Robot, Status
 from pursue_gen.transport.sender import Progress, Row
-from pursue_gen.workspace.mission_manifest import mission_id
+from pursue_runtime.manifest import mission_id
 
 _HEAD = ("robot", "address", "now", "before", "prepared", "outcome")
 _REDRAW = 0.1

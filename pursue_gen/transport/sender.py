@@ -17,7 +17,7 @@ from typing import Callable, Dict, Optional, Sequence, Tuple
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_gen.transport.client import Listener, Robot, Status, Unreached, health, send_order
-from pursue_gen.transport.mission_bundle import ABORT, COMMIT, PREPARE, Order, write_order
+from pursue_runtime.bundle import ABORT, COMMIT, PREPARE, Order, write_order
 
 PAUSES = (0.3, 0.7, 1.5)
 """Seconds between one try and the next; one try more than these."""

@@ -15,8 +15,8 @@ A template that asks for anything else is an error (jinja2's StrictUndefined). E
 - `docker`, `systemd`: whether the workspace has files for containers, for services;
 - `plays`: the arguments of each launch test.
 
-The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` and `modules` (files of `scripts/`),
-and the `folders` beside it.
+The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` (files of `scripts/`),
+`python_packages` (in `src/`) and the `folders` that are installed as they are.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple
 import jinja2
 
 from pursue_gen.workspace.machines import Machines
+from pursue_gen.workspace.packages import SHARED
 
 BASE = "base"
 """The machine with observer and UI, as the desk calls it; each controller has a machine of its own."""
@@ -78,6 +79,11 @@ class Service:
         """For compose: `${NAME:-value}` where a variable may set it."""
         arguments = [one.argument(_compose(one)) for one in self.settings]
         return ["rosrun", self.package, self.node, *arguments, *([f"__ns:={self.namespace}"] if self.namespace else [])]
+
+    @property
+    def built(self) -> Tuple[str, ...]:
+        """The packages that its image is built from: its own, and those that all nodes share."""
+        return (*SHARED, *self.packages)
 
     @property
     def health(self) -> List[str]:

@@ -25,8 +25,17 @@ from pursue_gen.tga.uppaal import write_network, write_query
 from pursue_gen.tga.words import event_word
 from pursue_gen.workspace import context, deploy, expected, game_file, model_file
 from pursue_gen.workspace.context import Options
-from pursue_gen.workspace.mission_manifest import MISSION, Manifest, make_manifest, mission_file
-from pursue_gen.workspace.packages import RECEIVING, TEST_DEPENDS, Package, environment, files_of, templates_dir
+from pursue_gen.workspace.packages import (
+    RECEIVING,
+    RUNTIME,
+    TEST_DEPENDS,
+    Package,
+    environment,
+    files_of,
+    runtime_package,
+    templates_dir,
+)
+from pursue_runtime.manifest import MISSION, Manifest, make_manifest, mission_file
 
 _UI = "UI"
 _PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
@@ -152,6 +161,7 @@ def _packages(
     ui["config/ui.yaml"], ui["config/game.yaml"] = data["ui"], data["game"]
     packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
     packages += [Package(name, name, summary, {}) for name, summary in RECEIVING.items()]
+    packages.append(runtime_package())
     tests = {"test/expected.json": data["expected"], "test/trace.yaml": data["trace"]}
     names = tuple(package.name for package in packages)
     bringup = context.bringup_of(scenario)
@@ -228,7 +238,7 @@ def _readme(
     packages: Sequence[Package],
     computed: bool,
 ) -> bytes:
-    nodes = [package.name for package in packages if package.kind not in ("bringup", *RECEIVING)]
+    nodes = [package.name for package in packages if package.kind not in ("bringup", RUNTIME, *RECEIVING)]
     told = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
     return jinja.get_template("workspace/README.md.j2").render({**values, **told}).encode()
 

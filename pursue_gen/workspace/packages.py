@@ -1,41 +1,36 @@
-"""The files of one catkin package: its kind's templates, the modules it imports from the common ones, and its data.
+"""The files of one catkin package: its kind's templates, a script for each of its nodes, and its data.
 
-Templates stand file for file as they will in the workspace. Those of a kind come before those in `common/`; of
-`common/scripts`, and of the desk's own modules (DESK), a package gets what its scripts import, and what that
-imports. `.j2` files are rendered (see context.py), others are copied; a script that is called like the kind gets the
-package's name.
+Templates stand file for file as they will in the workspace. Those of a kind come before those in `common/`. `.j2` files
+are rendered (see context.py), others are copied. What the nodes do is in the package `pursue_runtime`, which holds the
+run time verbatim.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Tuple
+from typing import Any, Dict, List, Mapping, Tuple
 
 import jinja2
 
+import pursue_runtime
+
+RUNTIME = "pursue_runtime"
+"""The package with the run time, and its kind."""
+
+SHARED = (RUNTIME,)
+"""The packages that each machine needs beside those of its nodes."""
+
 _COMMON = "common"
-_IMPORT = re.compile(r"^(?:from|import) +(\w+)", re.MULTILINE)
-_DESK_IMPORT = re.compile(r"^from pursue_gen\.\w+\.(\w+) import ", re.MULTILINE)
+_NODE_SCRIPT = "common/node.j2"
 
 DEPENDS: Mapping[str, Tuple[str, ...]] = {
-    "controller": (
-        "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml",
-        "actionlib_msgs", "move_base_msgs", "tf2_ros",
-    ),
-    "observer": ("rospy", "std_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml", "python3-transitions"),
-    "UI": (
-        "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "rosbag", "python3-yaml",
-        "python3-tornado",
-    ),
-    "communication_manager": (
-        "rospy", "std_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml", "python3-cryptography",
-        "python3-tornado",
-    ),
-    "pursue_reader": (
-        "rospy", "std_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml", "python3-cryptography",
-    ),
+    RUNTIME: ("rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml"),
+    "controller": (RUNTIME, "actionlib_msgs", "move_base_msgs", "tf2_ros"),
+    "observer": (RUNTIME, "python3-transitions"),
+    "UI": (RUNTIME, "rosbag", "python3-tornado"),
+    "communication_manager": (RUNTIME, "python3-cryptography", "python3-tornado"),
+    "pursue_reader": (RUNTIME, "python3-cryptography"),
     "bringup": ("roslaunch",),
 }
 """What the nodes of each kind of package need where they run: ROS packages, and rosdep keys."""
@@ -46,10 +41,34 @@ RECEIVING: Mapping[str, str] = {
 }
 """The packages of a robot that gets its missions from the desk, their names are their kinds; what each is for."""
 
-DESK = ("transport/mission_bundle.py", "workspace/mission_manifest.py")
-"""Modules of pursue_gen that robots have as well, in scripts/ like the common ones."""
+TEST_DEPENDS = (RUNTIME, "rostest", "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs")
 
-TEST_DEPENDS = ("rostest", "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs")
+
+@dataclass(frozen=True)
+class Node:
+    """A node of a package: the module of the run time that it runs, and what it is, in a sentence."""
+
+    module: str
+    summary: str
+
+
+NODES: Mapping[str, Mapping[str, Node]] = {
+    "controller": {"": Node("nodes.controller", "")},
+    "observer": {"": Node("nodes.observer", "")},
+    "UI": {
+        "": Node("nodes.ui", ""),
+        "simulator": Node("nodes.simulator", "The simulated robots, people and other agents."),
+        "sim_clock": Node("nodes.sim_clock", "Simulated time, for missions that run faster than life."),
+        "recorder": Node("nodes.recorder", "Records a mission in a bag."),
+    },
+    "communication_manager": {"": Node("nodes.communication_manager", "")},
+    "pursue_reader": {
+        "": Node("nodes.pursue_reader", ""),
+        "missions": Node("reader.listing", "Lists the missions that this machine keeps."),
+    },
+}
+"""The nodes of each kind of package by the name of their script, "" for the one that is called like the package and
+does what that is for."""
 
 
 @dataclass(frozen=True)
@@ -82,100 +101,66 @@ def environment(templates: Path) -> jinja2.Environment:
     )
 
 
+def runtime_package() -> Package:
+    """The package that holds the run time, byte for byte as it is imported here."""
+    root = Path(pursue_runtime.__file__).resolve().parent
+    files = {f"src/{RUNTIME}/{path}": content for path, content in _tree(root).items()}
+    return Package(RUNTIME, RUNTIME, "What the nodes of a mission do: the same in every workspace.", files)
+
+
 def files_of(
     package: Package, values: Mapping[str, Any], jinja: jinja2.Environment, templates: Path
 ) -> Dict[str, bytes]:
     """path within the package → content."""
     context = {**values, "package": package.name, "summary": package.summary}
-    if package.kind == "controller":
-        context["controller"] = package.name
     context["exec_depends"] = (*DEPENDS[package.kind], *package.depends)
     context["test_depends"] = package.test_depends
-    own, shared = _folder(templates / package.kind), {**_folder(templates / _COMMON), **_desk()}
-    if package.kind == "bringup":  # no nodes of its own
-        shared = {}
-    late = ("package.xml", "CMakeLists.txt")  # they list what the others are
-    files = {
-        _renamed(path, package): _content(template, context, jinja, templates)
-        for path, template in own.items()
-        if path not in late
-    }
-    files.update(_imported(files, shared, context, jinja, templates))
+    nodes = {name or package.name: node for name, node in NODES.get(package.kind, {}).items()}
+    files = {f"scripts/{name}": _script(node, context, jinja) for name, node in nodes.items()}
     files.update(package.data)
-    context.update(_lists(files))
-    for path in late:
-        files[path] = _content({**shared, **own}[path], context, jinja, templates)
+    context.update(nodes=sorted(nodes), python_packages=_python_packages(package), folders=_folders(files))
+    own = _templates_of(templates / package.kind)
+    context["folders"] = sorted({*context["folders"], *_folders(own)})
+    for path, template in {**_templates_of(templates / _COMMON), **own}.items():
+        files[path] = _content(template, context, jinja, templates)
     return files
 
 
-def _folder(folder: Path) -> Dict[str, Path]:
+def _tree(folder: Path) -> Dict[str, bytes]:
+    """path below the folder → content, without what Python keeps there."""
+    places = (place for place in sorted(folder.rglob("*")) if place.is_file() and "__pycache__" not in place.parts)
+    return {place.relative_to(folder).as_posix(): place.read_bytes() for place in places}
+
+
+def _templates_of(folder: Path) -> Dict[str, Path]:
     """path in the package → template."""
     found = {}
     for place in sorted(folder.rglob("*")):
-        if place.is_file() and "__pycache__" not in place.parts:
+        if place.is_file() and "__pycache__" not in place.parts and place.name != Path(_NODE_SCRIPT).name:
             path = place.relative_to(folder).as_posix()
             found[path[:-3] if path.endswith(".j2") else path] = place
     return found
 
 
-def _desk() -> Dict[str, Path]:
-    """path in the package → the desk's own module."""
-    generator = Path(__file__).resolve().parent.parent
-    return {f"scripts/{Path(path).name}": generator / path for path in DESK}
-
-
-def desk_modules(context: Mapping[str, Any]) -> Dict[str, bytes]:
-    """file name → content of the modules that desk and robots share, as they stand in a package."""
-    return {path.name: _desk_module(path, context) for path in _desk().values()}
-
-
-def _desk_module(path: Path, context: Mapping[str, Any]) -> bytes:
-    head = f"# Generated by pursue-gen {context['generator']} from {context['scenario']}.pur\n"
-    return (head + _DESK_IMPORT.sub(r"from \1 import ", path.read_text(encoding="utf-8"))).encode()
-
-
-def _renamed(path: str, package: Package) -> str:
-    """`scripts/controller` is `scripts/controller_bot1` in the package controller_bot1."""
-    return f"scripts/{package.name}" if path == f"scripts/{package.kind}" else path
+def _script(node: Node, context: Mapping[str, Any], jinja: jinja2.Environment) -> bytes:
+    """The script that starts a node."""
+    folder, _, module = node.module.rpartition(".")
+    names = {"folder": f"{RUNTIME}.{folder}", "module": module, "does": node.summary or context["summary"]}
+    return jinja.get_template(_NODE_SCRIPT).render({**context, **names}).encode()
 
 
 def _content(template: Path, context: Mapping[str, Any], jinja: jinja2.Environment, templates: Path) -> bytes:
-    if template in _desk().values():
-        return _desk_module(template, context)
     if template.suffix != ".j2":
         return template.read_bytes()
     return jinja.get_template(template.relative_to(templates).as_posix()).render(context).encode()
 
 
-def _imported(
-    files: Mapping[str, bytes],
-    shared: Mapping[str, Path],
-    context: Mapping[str, Any],
-    jinja: jinja2.Environment,
-    templates: Path,
-) -> Dict[str, bytes]:
-    """The modules of the common ones and of the desk's that these scripts import, with those that these import."""
-    found: Dict[str, bytes] = {}
-    waiting: List[bytes] = [content for path, content in sorted(files.items()) if path.startswith("scripts/")]
-    while waiting:
-        for module in _IMPORT.findall(waiting.pop().decode()):
-            path = f"scripts/{module}.py"
-            if path in shared and path not in found and path not in files:
-                found[path] = _content(shared[path], context, jinja, templates)
-                waiting.append(found[path])
-    return found
+def _python_packages(package: Package) -> List[str]:
+    """The Python packages in `src/`, by their dotted names."""
+    found = (path.split("/")[1:-1] for path in package.data if path.startswith("src/") and path.endswith("__init__.py"))
+    return sorted(".".join(parts) for parts in found)
 
 
-def _lists(files: Mapping[str, bytes]) -> Dict[str, List[str]]:
-    """What CMakeLists.txt installs and tests."""
-    scripts = [path for path in sorted(files) if path.startswith("scripts/")]
-    nodes = [path for path in scripts if files[path].startswith(b"#!")]
-    return {
-        "nodes": list(_names(nodes)),
-        "modules": list(_names(path for path in scripts if path not in nodes)),
-        "folders": sorted({path.split("/")[0] for path in files if "/" in path} - {"scripts"}),
-    }
-
-
-def _names(paths: Any) -> Iterator[str]:
-    return (path.split("/", 1)[1] for path in paths)
+def _folders(files: Mapping[str, object]) -> List[str]:
+    """The folders that are installed as they are."""
+    return sorted({path.split("/")[0] for path in files if "/" in path} - {"scripts", "src"})

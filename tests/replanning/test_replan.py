@@ -15,6 +15,9 @@ from pursue_gen.partition.strategy_file import render
 from pursue_gen.replanning import replan
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga.network import Network
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Strategy, read_cover
+from pursue_runtime.zones import holds
 from tests.replanning.plays import asked, beginning, busy, ended, game_of, solved, walk
 
 pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
@@ -63,17 +66,16 @@ def test_from_every_place_where_somebody_was_early_or_late_there_is_a_plan(name:
 @pytest.mark.parametrize("name", THESIS)
 def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
     sys.path.append(str(Path(__file__).resolve().parent.parent / "runtime"))
-    from node_modules import library, pursue_strategy
 
     for state, clocks in walk(name, 3, 8):
         request = asked(name, state, clocks, ahead=0.0)
         answer = won(request)
-        there = library.SystemState(5, 0.0, request["locations"], request["values"], request["clocks"])
-        zones = [zone for some in pursue_strategy.read_cover(answer["cover"]).find(there) for zone in some]
+        there = SystemState(5, 0.0, request["locations"], request["values"], request["clocks"])
+        zones = [zone for some in read_cover(answer["cover"]).find(there) for zone in some]
         at_goal = request["locations"].get("reachObj") == "win"
-        assert at_goal or any(pursue_strategy.holds(zone, request["clocks"], 1e-6) for zone in zones)
+        assert at_goal or any(holds(zone, request["clocks"], 1e-6) for zone in zones)
         for data in answer["strategies"].values():
-            pursue_strategy.Strategy(data)
+            Strategy(data)
 
 
 def test_the_answer_holds_what_the_files_of_a_workspace_hold() -> None:

@@ -52,11 +52,12 @@ def test_the_nodes_are_those_of_the_launch_file(files: Dict[str, bytes], some: "
 
 
 def calls(files: Dict[str, bytes], package: str, script: str, call: str) -> Set[str]:
-    """The fixed topics that a node's code names in such calls: its script, and the modules that it shares."""
-    texts = [files[f"src/{package}/scripts/{script}"], files[f"src/{package}/scripts/pursue_node.py"]]
-    if script.startswith("controller"):
-        texts.append(files[f"src/{package}/scripts/exeggutor.py"])
-    code = "\n".join(text.decode() for text in texts)
+    """The fixed topics that a node's code names in such calls: its own module, and those that it shares."""
+    found = re.search(r"from pursue_runtime.nodes import (\w+)", files[f"src/{package}/scripts/{script}"].decode())
+    assert found is not None
+    modules = [found.group(1), "node", *(["exeggutor"] if found.group(1) == "controller" else [])]
+    paths = [f"src/pursue_runtime/src/pursue_runtime/nodes/{module}.py" for module in modules]
+    code = "\n".join(files[path].decode() for path in paths)
     return {
         NAMES[name] for name in re.findall(rf"rospy\.{call}\(\s*([A-Z_]+|\"/diagnostics\"),", code) if name in NAMES
     }

@@ -18,7 +18,8 @@ import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from ros_world import Ros, end, free_port
 
-from pursue_gen.transport.mission_bundle import (
+from pursue_gen.workspace.generate import mission_of
+from pursue_runtime.bundle import (
     COMMIT,
     OWN,
     PREPARE,
@@ -28,7 +29,6 @@ from pursue_gen.transport.mission_bundle import (
     write_order,
     write_public_key,
 )
-from pursue_gen.workspace.generate import mission_of
 from tests.waiting import PATIENCE
 from tests.workspace.worlds import files
 

@@ -17,7 +17,7 @@ from pursue_gen.language import load
 from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options, generate, write_workspace
 from pursue_gen.workspace.generate import mission_of
-from pursue_gen.workspace.mission_manifest import mission_file, mission_id
+from pursue_runtime.manifest import mission_file, mission_id
 
 pytestmark = pytest.mark.ros
 

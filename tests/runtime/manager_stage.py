@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 import json
 import ssl
 import threading
@@ -12,20 +11,16 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional
 
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-from rendered_scripts import importable
 
-from pursue_gen.transport import mission_bundle
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.manager.manager import Manager, Record
+from pursue_runtime.manager.server import Limits, Server
+from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE, connected, may_close, rest
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 
-importable("communication_manager")
-
-pursue_guard: Any = importlib.import_module("pursue_guard")
-manager_core: Any = importlib.import_module("manager_core")
-manager_loop: Any = importlib.import_module("manager_loop")
-manager_http: Any = importlib.import_module("manager_http")
-forwarder: Any = importlib.import_module("forwarder")
 
 ROBOT = "bot1"
 FILES = {"observer/model.yaml": b"format: 1\n", "controller_bot1/strategy.yaml": b"format: 1\nstrategy: []\n"}
@@ -97,17 +92,17 @@ class Robot:
         self.keys = folder / "keys"
         self.lines: List[str] = []
         self.notes: List[str] = []
-        self.record = manager_core.Record(self.lines.append, self.notes.append)
+        self.record = Record(self.lines.append, self.notes.append)
         self.reader = (reader or Reader)(self.keys, self.say)
         exposed, limit = options.pop("exposed", False), options.pop("limit", mission_bundle.LIMIT)
         there = options.pop("there", lambda: bool(self.reader.there))
-        self.manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(self.keys)), there, limit, exposed)
-        sockets = manager_loop.bind("127.0.0.1", 0, "~port")
+        self.manager = Manager(ROBOT, KeyFolder(str(self.keys)), there, limit, exposed)
+        sockets = bind("127.0.0.1", 0, "~port")
         context = options.pop("context", None)
         patient = dict.fromkeys(("patience", "header", "window"), PATIENCE)
-        limits = manager_http.Limits(**{**patient, **options})
-        self.server = manager_http.Server(self.manager, sockets, self.publish, self.record, limits, context)
-        self.background = manager_loop.Background((self.server,), self.record.count)
+        limits = Limits(**{**patient, **options})
+        self.server = Server(self.manager, sockets, self.publish, self.record, limits, context)
+        self.background = Background((self.server,), self.record.count)
         self.background.start()
         self.say(self.reader.status())
 

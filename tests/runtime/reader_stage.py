@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import errno
 import hashlib
-import importlib
 import json
 import os
 import shutil
@@ -13,17 +12,13 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-from node_modules import library
-from rendered_scripts import importable
 
-from pursue_gen.transport import mission_bundle as desk_bundle
-
-SCRIPTS = importable("pursue_reader")
-
-mission_bundle: Any = importlib.import_module("mission_bundle")
-mission_store: Any = importlib.import_module("mission_store")
-pursue_guard: Any = importlib.import_module("pursue_guard")
-reader_core: Any = importlib.import_module("reader_core")
+from pursue_runtime import bundle as desk_bundle
+from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader.reader import Reader
+from pursue_runtime.reader.store import State, Store, read_state
+from pursue_runtime.state import SystemState
+from pursue_runtime.trusted_keys import KeyFolder
 
 OWN = ""
 PATIENCE = 5.0
@@ -95,11 +90,11 @@ class Robot:
         """Starts the reader; whatever has run before is dead."""
         keep, packages = self._make
         folder = self.folder / "missions"
-        self.store = mission_store.Store(str(folder), keep, lambda *line: self.log.append(line))
+        self.store = Store(str(folder), keep, lambda *line: self.log.append(line))
         facts = reader_core.Robot("bot1", "own_scenario", packages, 10**6)
-        keys = pursue_guard.KeyFolder(str(self.folder / "keys"))
+        keys = KeyFolder(str(self.folder / "keys"))
         log: Callable[..., None] = lambda *line: self.log.append(line)  # noqa: E731
-        self.reader = reader_core.Reader(facts, self.store, keys, self.now, log, PATIENCE)
+        self.reader = Reader(facts, self.store, keys, self.now, log, PATIENCE)
 
     def restart(self) -> None:
         """As after kill -9: nothing is left but the files."""
@@ -121,14 +116,14 @@ class Robot:
 
     def state(self, status: str, seq: int = 1, stamp: float = 0.0) -> bool:
         """A system state is heard."""
-        return bool(self.reader.see(library.SystemState(seq, stamp or self.now, {}, {}, {}, status=status), self.now))
+        return bool(self.reader.see(SystemState(seq, stamp or self.now, {}, {}, {}, status=status), self.now))
 
     # What is there ----------------------------------------------------------------------------------------------------
 
     @property
     def current(self) -> str:
         """The mission that nodes would start with, as the disk says."""
-        return str((mission_store.read_state(str(self.folder / "missions")) or mission_store.State()).current)
+        return str((read_state(str(self.folder / "missions")) or State()).current)
 
     @property
     def places(self) -> List[str]:

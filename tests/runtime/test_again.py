@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import List
 
 import pytest
-from rendered_scripts import NAMES, TEMPLATES
 
+from pursue_gen.workspace import templates_dir
 from tests.waiting import PATIENCE, until
 
 ONCE_KILLED = 'echo $$ >>"$0"; [[ $(wc -l <"$0") == 2 ]] && exit 5; kill -9 $$'
@@ -35,9 +35,8 @@ sys.exit(3)
 @pytest.fixture
 def again(tmp_path: Path) -> List[str]:
     """The words before the program's."""
-    text = (TEMPLATES / "bringup" / "launch" / "again.sh.j2").read_text()
-    for name, value in NAMES.items():
-        text = text.replace("{{ " + name + " }}", value)
+    text = (templates_dir() / "bringup" / "launch" / "again.sh.j2").read_text()
+    text = text.replace("{{ scenario }}", "example").replace("{{ generator }}", "0")
     script = tmp_path / "again.sh"
     script.write_text(text)
     return ["bash", str(script)]

@@ -5,7 +5,11 @@ from __future__ import annotations
 from typing import Any, List, Optional
 
 import pytest
-from node_modules import controller_core, library, pursue_strategy, read
+from texts import read
+
+from pursue_runtime.controller.player import Player
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Strategy
 
 STRATEGY = """
 format: 1
@@ -23,12 +27,12 @@ strategy:
 
 
 def player(text: str = STRATEGY) -> Any:
-    return controller_core.Player(pursue_strategy.Strategy(read(text)))
+    return Player(Strategy(read(text)))
 
 
 def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running") -> Any:
     agent = "bot" if event else ""
-    return library.SystemState(seq, stamp, {"bot": bot}, {}, {"Cbot": clock}, event, agent, status)
+    return SystemState(seq, stamp, {"bot": bot}, {}, {"Cbot": clock}, event, agent, status)
 
 
 def test_it_waits_for_the_moment_and_speaks_for_the_state_it_knows() -> None:

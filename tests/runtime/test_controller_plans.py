@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from node_modules import controller_core, pursue_strategy, read
 from test_controller import STRATEGY, state
+from texts import read
+
+from pursue_runtime.controller.player import Player
+from pursue_runtime.strategy import Plans, Strategy
 
 LATER = STRATEGY.replace("5 <= Cbot && Cbot <= 6", "8 <= Cbot")
 
 
 def player() -> Any:
-    return controller_core.Player(pursue_strategy.Strategy(read(STRATEGY)), "controller_bot")
+    return Player(Strategy(read(STRATEGY)), "controller_bot")
 
 
 def plan(text: str = LATER) -> Any:
-    return pursue_strategy.Strategy(read(text))
+    return Strategy(read(text))
 
 
 def test_it_says_that_it_has_a_plan_and_plays_on_until_a_state_names_it() -> None:
@@ -63,7 +66,7 @@ def test_it_says_again_that_it_has_the_plan_while_the_mission_may_wait_for_that(
 
 
 def test_the_plan_in_force_is_kept_however_many_are_made_and_dropped() -> None:
-    plans = pursue_strategy.Plans("own")
+    plans = Plans("own")
     at = lambda number: plans.at(state(1, 0.0)._replace(plan=number))  # noqa: E731
     for number in (1, 2, 3):
         plans.learn(number, f"plan {number}")
@@ -74,7 +77,7 @@ def test_the_plan_in_force_is_kept_however_many_are_made_and_dropped() -> None:
 
 
 def test_an_older_plan_than_the_one_in_force_is_forgotten() -> None:
-    plans = pursue_strategy.Plans("own")
+    plans = Plans("own")
     at = lambda number: plans.at(state(1, 0.0)._replace(plan=number))  # noqa: E731
     plans.learn(1, "plan 1")
     assert at(1) == "plan 1"

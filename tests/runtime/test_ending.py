@@ -9,7 +9,6 @@ import tempfile
 from typing import List
 
 import pytest
-from node_modules import SCRIPTS
 
 from tests.waiting import PATIENCE
 
@@ -17,9 +16,8 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 
 PROGRAM = """
 import os, signal, sys, time
-sys.path.insert(0, sys.argv[1])
 import rospy
-from pursue_node import Ending
+from pursue_runtime.nodes.node import Ending
 
 shutdowns, deep = [], []
 
@@ -42,7 +40,7 @@ assert not ending.called
 
 
 def run(rest: str) -> List[str]:
-    command = [sys.executable, "-c", PROGRAM + rest, str(SCRIPTS)]
+    command = [sys.executable, "-c", PROGRAM + rest]
     done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
@@ -60,19 +58,19 @@ def test_signals_that_come_while_it_ends_change_nothing() -> None:
 
 def test_a_node_that_begins_anew_is_the_same_process_with_its_signals_as_they_were() -> None:
     program = """
-import pursue_node
-if pursue_node.ANEW in os.environ:
+from pursue_runtime.nodes import node
+if node.ANEW in os.environ:
     before = signal.getsignal(signal.SIGTERM)
-    pursue_node.give_way()
+    node.give_way()
     print("again", os.getpid(), os.nice(0), before == signal.SIG_DFL)
 else:
-    pursue_node.give_way()
-    ending = pursue_node.Ending()
+    node.give_way()
+    ending = node.Ending()
     ending.renew()
     assert ending.wait(linger=1000) == 0 and ending.renewed
     print("first", os.getpid(), os.nice(0), flush=True)
-    sys.argv = [sys.argv[2], *sys.argv[1:]]
-    pursue_node.begin_anew()
+    sys.argv = [sys.argv[1], *sys.argv[1:]]
+    node.begin_anew()
 """
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "node.py")
@@ -80,7 +78,7 @@ else:
             out.write(PROGRAM.split("shutdowns, deep")[0])
             out.write("rospy.is_shutdown, rospy.signal_shutdown = lambda: False, lambda _: None\n" + program)
         environment = {name: value for name, value in os.environ.items() if name != "PURSUE_ANEW"}
-        command = [sys.executable, file, str(SCRIPTS), file]
+        command = [sys.executable, file, file]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 0, done.stderr
     (first, *one), (again, *two) = (line.split() for line in done.stdout.splitlines())

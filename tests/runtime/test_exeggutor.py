@@ -8,10 +8,12 @@ from typing import Any, List, NamedTuple, Optional, Tuple
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from node_modules import library, robot_ends
 
-WAY = robot_ends.Way("going_c_to_b", "b", 3.0, 4.0)
-BACK = robot_ends.Way("going_b_to_c", "c", 0.0, 0.0)
+from pursue_runtime.controller.robot import ENDS, GOALS, Robot, Way, settings_of
+from pursue_runtime.data import DataError
+
+WAY = Way("going_c_to_b", "b", 3.0, 4.0)
+BACK = Way("going_b_to_c", "c", 0.0, 0.0)
 END, FAILED = "bot1_going_c_to_b2b", "bot1:_failed_"
 PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 2, 3, 4, 5, 8, 9
 
@@ -22,8 +24,8 @@ class World:
     def __init__(self, **settings: object) -> None:
         self.now = 100.0
         self.said: List[Tuple[str, str]] = []
-        self.robot = robot_ends.Robot(
-            "bot1", robot_ends.settings_of("bot1", settings), lambda level, text: self.said.append((level, text))
+        self.robot = Robot(
+            "bot1", settings_of("bot1", settings), lambda level, text: self.said.append((level, text))
         )
         self.goals: List[Any] = []
         self.words: List[str] = []
@@ -375,7 +377,7 @@ STEPS = st.one_of(
 )
 
 
-@given(st.sampled_from(robot_ends.GOALS), st.sampled_from(robot_ends.ENDS), st.lists(STEPS, max_size=30))
+@given(st.sampled_from(GOALS), st.sampled_from(ENDS), st.lists(STEPS, max_size=30))
 def test_whatever_comes_it_speaks_of_the_present_way_alone(goals: str, ends: str, steps: List[Step]) -> None:
     world = World(goals=goals, ends=ends)
     way, running, sent = None, True, 0
@@ -408,7 +410,7 @@ def test_whatever_comes_it_speaks_of_the_present_way_alone(goals: str, ends: str
 def test_a_robots_own_settings_win_over_the_nodes() -> None:
     own_ones = {"ends": "tf", "base_frame": "{robot}/base"}
     given_here = {"config": "", "ends": "pose", "end_tolerance": 1, "bot1": own_ones}
-    own, other = (robot_ends.settings_of(robot, given_here) for robot in ("bot1", "bot2"))
+    own, other = (settings_of(robot, given_here) for robot in ("bot1", "bot2"))
     assert (own.ends, own.end_tolerance, own.base_frame) == ("tf", 1.0, "bot1/base")
     assert (other.ends, other.base_frame, other.goals) == ("pose", "bot2/base_link", "simple")
 
@@ -431,6 +433,6 @@ def test_a_robots_own_settings_win_over_the_nodes() -> None:
     ],
 )
 def test_settings_that_cannot_be_are_told(given_here: Any, message: str) -> None:
-    with pytest.raises(library.DataError) as told:
-        robot_ends.settings_of("bot1", given_here)
+    with pytest.raises(DataError) as told:
+        settings_of("bot1", given_here)
     assert message in str(told.value)

@@ -18,11 +18,20 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from node_modules import controller_part, library, pursue_missions
-from reader_stage import DESK, OWN, POSES, STRATEGY, mission_store, pursue_guard, reader_core
+from reader_stage import DESK, OWN, POSES, STRATEGY
 
-from pursue_gen.transport import mission_bundle, sender
+from pursue_gen.transport import sender
 from pursue_gen.transport.client import Answer, Robot, Status, Unreached
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.controller.follower import Follower
+from pursue_runtime.data import DataError
+from pursue_runtime.missions import Missions, Source
+from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader import store as mission_store
+from pursue_runtime.reader.reader import Reader
+from pursue_runtime.reader.store import Store, damage
+from pursue_runtime.state import LIVE, SystemState
+from pursue_runtime.trusted_keys import KeyFolder
 
 PACKAGES = {"base": ("observer",), "bot1": ("controller_bot1",), "bot2": ("controller_bot2",)}
 BOTS = ("bot1", "bot2")
@@ -71,10 +80,10 @@ class Machine:
 
     def start(self) -> None:
         """The reader starts."""
-        self.store = mission_store.Store(str(self.folder / "pursue" / "missions"), KEEP, lambda *_: None)
+        self.store = Store(str(self.folder / "pursue" / "missions"), KEEP, lambda *_: None)
         facts = reader_core.Robot(self.name, "own", PACKAGES[self.name], 10**6)
-        keys = pursue_guard.KeyFolder(str(self.folder / "keys"))
-        self.reader = reader_core.Reader(facts, self.store, keys, self.world.now, lambda *_: None, 5.0)
+        keys = KeyFolder(str(self.folder / "keys"))
+        self.reader = Reader(facts, self.store, keys, self.world.now, lambda *_: None, 5.0)
         self.reader._check = lambda folder, files: None  # data is looked at elsewhere
 
     def start_controller(self) -> None:
@@ -83,14 +92,14 @@ class Machine:
         own.mkdir(exist_ok=True)
         for name, text in (("strategy.yaml", STRATEGY), ("poses.yaml", POSES)):
             (own / name).write_bytes(text)
-        missions = pursue_missions.Missions(
-            pursue_missions.Source("0" * 12, str(own)), PACKAGES[self.name][0], str(self.folder)
+        missions = Missions(
+            Source("0" * 12, str(own)), PACKAGES[self.name][0], str(self.folder)
         )
         clock: Callable[[], float] = lambda: self.world.now  # noqa: E731
-        self.follower = controller_part.Follower(missions, "c", "controller", lambda *_: None, True, clock)
+        self.follower = Follower(missions, "c", "controller", lambda *_: None, True, clock)
         self.missions = missions
         if self.name in BOTS:
-            with contextlib.suppress(library.DataError):
+            with contextlib.suppress(DataError):
                 self.follower.begin()
 
     def take(self, text: str, bundle: bytes) -> Any:
@@ -108,7 +117,7 @@ class Machine:
 
     def whole(self, mission: str) -> bool:
         """It has this mission, unharmed."""
-        return mission == OWN or not mission_store.damage(self.store.folder, mission)
+        return mission == OWN or not damage(self.store.folder, mission)
 
 
 class Desk(threading.Thread):
@@ -210,7 +219,7 @@ class World:
         """The observer says its state; who is not cut off hears it."""
         self.now += 0.1
         mission = self.playing[:12] or "0" * 12
-        state = library.SystemState(self.seq, self.now, {}, {}, {}, status=self.status, mission=mission)
+        state = SystemState(self.seq, self.now, {}, {}, {}, status=self.status, mission=mission)
         for machine in self.machines.values():
             if machine.name not in self.cut:
                 self.hear(machine, state)
@@ -228,7 +237,7 @@ class World:
         """Does it; what is current stays while the machine knows that a mission runs."""
         ran, before = machine.reader.mission_runs, machine.store.state.current
         done = act()
-        over = state is not None and state.status not in library.LIVE
+        over = state is not None and state.status not in LIVE
         assert not ran or over or machine.store.state.current == before
         return done
 

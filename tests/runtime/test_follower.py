@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import Any, Dict, List, Optional, Tuple
 
 import pytest
-from node_modules import controller_part, library, pursue_missions, pursue_strategy, read
+from texts import read
+
+from pursue_runtime import missions as pursue_missions
+from pursue_runtime.controller.follower import Follower
+from pursue_runtime.data import DataError
+from pursue_runtime.missions import Missions
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Strategy
+from pursue_runtime.words import format_word
 
 A, B, C = "a" * 12, "b" * 12, "c" * 12
 POSES = {"x": [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]}
@@ -70,11 +78,11 @@ class Controller:
         self.real = 0.0
         log = lambda level, text: self.logs.append((level, text))  # noqa: E731
         clock = lambda: self.real  # noqa: E731
-        self.follower = controller_part.Follower(shelf, "controller_bot", "controller_bot", log, again, clock)
+        self.follower = Follower(shelf, "controller_bot", "controller_bot", log, again, clock)
 
     def see(self, seq: int, stamp: float, mission: str, status: str = "running", plan: int = 0) -> str:
         """A state; what it was."""
-        here = library.SystemState(
+        here = SystemState(
             seq, stamp, {"bot": "x"}, {}, {"Cbot": 2.0}, status=status, plan=plan, mission=mission
         )
         verdict: str = self.follower.follow(here)
@@ -86,7 +94,7 @@ class Controller:
         """The word of the command that is due."""
         player = self.follower.player
         word = player.ring(now) if player else None
-        return library.format_word(word) if word else ""
+        return format_word(word) if word else ""
 
     @property
     def mission(self) -> Optional[str]:
@@ -193,8 +201,8 @@ def test_an_empty_strategy_is_a_part_all_the_same() -> None:
     {"strategy": {"format": 1}, "poses": {"poses": POSES}},
     {"strategy": strategy("b"), "poses": {"poses": {"x": [1.0]}}},
     {"strategy": strategy("b"), "poses": {"poses": {"x": "there"}}},
-    {"strategy": strategy("b"), "poses": library.DataError("damaged")},
-    {"strategy": library.DataError("damaged"), "poses": {"poses": POSES}},
+    {"strategy": strategy("b"), "poses": DataError("damaged")},
+    {"strategy": DataError("damaged"), "poses": {"poses": POSES}},
 ])
 def test_a_mission_that_cannot_be_read_is_not_played_in_part(broken: Any) -> None:
     bot = begun(Source(B, **broken))
@@ -205,9 +213,9 @@ def test_a_mission_that_cannot_be_read_is_not_played_in_part(broken: Any) -> Non
 
 def test_a_damaged_current_mission_is_said_and_the_next_one_is_played() -> None:
     shelf = Shelf(SECOND)
-    shelf.first = library.DataError("damaged")
+    shelf.first = DataError("damaged")
     bot = Controller(shelf)
-    with pytest.raises(library.DataError):
+    with pytest.raises(DataError):
         bot.follower.begin()
     bot.follower.refuse("damaged")
     assert bot.follower.report()[3] == "damaged"
@@ -264,7 +272,7 @@ def test_a_plan_that_waits_for_its_mission_is_forgotten_where_that_begins() -> N
 
 @pytest.mark.parametrize("data", [{"strategies": {}}, {"strategies": 7}, {}])
 def test_a_plan_that_cannot_be_read_is_refused(data: Any) -> None:
-    with pytest.raises(library.DataError):
+    with pytest.raises(DataError):
         learn(begun(), {"format": 1, "plan": 1, **data}, 10.0)
 
 
@@ -277,5 +285,5 @@ def test_who_begins_anew_after_the_end_waits_for_the_next_mission() -> None:
 
 def test_the_doubles_of_this_test_are_like_what_they_stand_for() -> None:
     assert hasattr(pursue_missions.Source, "read") and hasattr(pursue_missions.Source, "empty")
-    assert {"current", "find", "moved"} <= set(dir(pursue_missions.Missions))
-    assert pursue_strategy.Strategy(strategy("a"))
+    assert {"current", "find", "moved"} <= set(dir(Missions))
+    assert Strategy(strategy("a"))

@@ -7,8 +7,10 @@ import socket
 from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
-from manager_stage import forwarder, manager_core, manager_loop
 
+from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.manager.forwarder import LONGEST, Forwarder
+from pursue_runtime.manager.manager import Record
 from tests.waiting import PATIENCE, connected, until
 
 
@@ -17,9 +19,9 @@ class Stage:
 
     def __init__(self, **options: int) -> None:
         self.lines: List[str] = []
-        self.record = manager_core.Record(self.lines.append, self.lines.append)
-        self.forwarder = forwarder.Forwarder(manager_loop.bind("127.0.0.1", 0, "~pubsubport"), self.record, **options)
-        self.background = manager_loop.Background((self.forwarder,), self.record.count)
+        self.record = Record(self.lines.append, self.lines.append)
+        self.forwarder = Forwarder(bind("127.0.0.1", 0, "~pubsubport"), self.record, **options)
+        self.background = Background((self.forwarder,), self.record.count)
         self.background.start()
         self.held: List[socket.socket] = []
 
@@ -131,7 +133,7 @@ def test_a_message_that_is_too_long_is_not_forwarded_and_said(stage: Callable[..
     here = stage()
     there = here.connect()
     here.wait(1)
-    here.send("t", "x" * forwarder.LONGEST, latched=True)
+    here.send("t", "x" * LONGEST, latched=True)
     here.send("t", "short")
     assert lines(there, 1) == [{"topic": "t", "data": "short"}]
     assert "too long" in here.lines[0] and "xxx" not in here.lines[0]
@@ -144,5 +146,5 @@ def test_the_end_closes_all_and_the_port_is_free(stage: Callable[..., Stage]) ->
     here.background.close()
     assert there.recv(10) == b""
     here.send("t", "nobody hears this, and nothing happens")
-    for taken in manager_loop.bind("127.0.0.1", here.forwarder.port, "~pubsubport"):
+    for taken in bind("127.0.0.1", here.forwarder.port, "~pubsubport"):
         taken.close()

@@ -21,9 +21,13 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Se
 
 import pytest
 from manager_stage import ROBOT, Desk, Robot, Sent, ask, head, send
-from reader_stage import POSES, STRATEGY, mission_store, pursue_guard, reader_core
+from reader_stage import POSES, STRATEGY
 
-from pursue_gen.transport import mission_bundle
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader.reader import Reader
+from pursue_runtime.reader.store import Store
+from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 REQUESTS = 10_000
@@ -44,9 +48,9 @@ class RealReader:
         self.lines: List[str] = []
         self.folder, self.there, self.say = keys.parent / "missions", True, say
         log = lambda level, text: self.lines.append(text)  # noqa: E731
-        self.store = mission_store.Store(str(self.folder), 5, log)
+        self.store = Store(str(self.folder), 5, log)
         facts = reader_core.Robot(ROBOT, "own", ("controller_bot1",), 1 << 20)
-        self.core = reader_core.Reader(facts, self.store, pursue_guard.KeyFolder(str(keys)), 0.0, log)
+        self.core = Reader(facts, self.store, KeyFolder(str(keys)), 0.0, log)
 
     @property
     def ticket(self) -> str:

@@ -6,7 +6,6 @@ import subprocess
 import sys
 
 import pytest
-from node_modules import SCRIPTS
 
 from tests.waiting import PATIENCE
 
@@ -14,13 +13,12 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 
 PROGRAM = """
 import sys
-sys.path.insert(0, sys.argv[1])
 import rospy
-from pursue_node import Ending
+from pursue_runtime.nodes.node import Ending
 
 def get_param(name, default=None):
     assert name == "/run_id"
-    return sys.argv[2] or default
+    return sys.argv[1] or default
 
 rospy.get_param, rospy.logfatal = get_param, print
 Ending()
@@ -31,7 +29,7 @@ MINE, OTHER = "79520a94-e607-11f1-81c8-3acae0bbc432", "1f6f86da-e604-11f1-a6c6-0
 
 def begun(run_id: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
     """A node with these arguments, at a master with this /run_id."""
-    command = [sys.executable, "-c", PROGRAM, str(SCRIPTS), run_id, *arguments]
+    command = [sys.executable, "-c", PROGRAM, run_id, *arguments]
     return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
 
 

@@ -9,7 +9,14 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from node_modules import library, pursue_strategy, read
+from texts import read
+
+from pursue_runtime import zones as runtime_zones
+from pursue_runtime.data import DataError, Package, data_file, read_data
+from pursue_runtime.state import SystemState, format_state, older, parse_state
+from pursue_runtime.strategy import Strategy
+from pursue_runtime.words import Word, format_word, parse_word
+from pursue_runtime.zones import due, parse_zone
 
 MARGIN = 0.02
 CLOCKS = ("Cx", "Cy", "Cz")
@@ -54,14 +61,14 @@ def true_at(text: str, clocks: dict, delay: float) -> bool:
 @settings(deadline=None)
 @given(zone_texts, valuations)
 def test_a_zone_holds_where_its_text_says(text: str, clocks: dict) -> None:
-    assert pursue_strategy.holds(pursue_strategy.parse_zone(text), clocks) == true_at(text, clocks, 0.0)
+    assert runtime_zones.holds(parse_zone(text), clocks) == true_at(text, clocks, 0.0)
 
 
 @settings(deadline=None)  # a busy machine is no failure
 @given(st.lists(zone_texts, min_size=1, max_size=3), valuations)
 def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> None:
-    zones = [pursue_strategy.parse_zone(text) for text in texts]
-    delay = pursue_strategy.due(zones, clocks, MARGIN)
+    zones = [parse_zone(text) for text in texts]
+    delay = due(zones, clocks, MARGIN)
     # Bounds and clocks are quarters: between two quarters nothing changes, so quarters and what lies between suffice.
     steps = [step / 8 for step in range(8 * 13)]
     first = next((s for s in steps if any(true_at(text, clocks, s) for text in texts)), None)
@@ -77,47 +84,47 @@ def test_due_agrees_with_stepping_through_time(texts: list, clocks: dict) -> Non
 @settings(deadline=None)
 @given(zone_texts, valuations, quarters)
 def test_what_is_due_stays_due_while_time_passes(text: str, clocks: dict, passed: float) -> None:
-    zones = [pursue_strategy.parse_zone(text)]
-    delay = pursue_strategy.due(zones, clocks, MARGIN)
+    zones = [parse_zone(text)]
+    delay = due(zones, clocks, MARGIN)
     assume(delay is not None and passed <= delay)
-    later = pursue_strategy.due(zones, {clock: value + passed for clock, value in clocks.items()}, MARGIN)
+    later = due(zones, {clock: value + passed for clock, value in clocks.items()}, MARGIN)
     assert later is not None and passed + later <= delay + MARGIN + 1e-9
 
 
 def test_a_command_is_due_inside_a_window_that_opens_strictly_and_is_narrow() -> None:
-    zone = pursue_strategy.parse_zone("1 < Cx && Cx < 1.01")
-    assert pursue_strategy.due([zone], {"Cx": 0.0}, MARGIN) == pytest.approx(1.005)
-    assert pursue_strategy.due([zone], {"Cx": 1.0}, MARGIN) == pytest.approx(0.005)
-    assert pursue_strategy.due([zone], {"Cx": 1.01}, MARGIN) is None
+    zone = parse_zone("1 < Cx && Cx < 1.01")
+    assert due([zone], {"Cx": 0.0}, MARGIN) == pytest.approx(1.005)
+    assert due([zone], {"Cx": 1.0}, MARGIN) == pytest.approx(0.005)
+    assert due([zone], {"Cx": 1.01}, MARGIN) is None
 
 
 def test_always_is_due_now() -> None:
-    assert pursue_strategy.due([pursue_strategy.parse_zone("always")], {"Cx": 3.0}) == 0.0
-    assert pursue_strategy.due([], {"Cx": 3.0}) is None
+    assert due([parse_zone("always")], {"Cx": 3.0}) == 0.0
+    assert due([], {"Cx": 3.0}) is None
 
 
 def test_fractions_are_bounds() -> None:
-    assert pursue_strategy.due([pursue_strategy.parse_zone("4/3 <= Cx")], {"Cx": 1.0}) == pytest.approx(1 / 3)
+    assert due([parse_zone("4/3 <= Cx")], {"Cx": 1.0}) == pytest.approx(1 / 3)
 
 
 def test_the_decimals_of_a_message_do_not_break_an_equality() -> None:
-    zone = pursue_strategy.parse_zone("Cx - Cy == 3 && Cx == 5")
-    assert pursue_strategy.due([zone], {"Cx": 4.123456789, "Cy": 1.123456788}) == pytest.approx(0.876543211)
+    zone = parse_zone("Cx - Cy == 3 && Cx == 5")
+    assert due([zone], {"Cx": 4.123456789, "Cy": 1.123456788}) == pytest.approx(0.876543211)
 
 
 @pytest.mark.parametrize(
     "text", ["", "Cx", "Cx < ", "1 < 2", "Cx - Cy < Cz", "1 < Cx <= 2", "Cx = 3", "Cx < 1 || Cy < 1"]
 )
 def test_what_is_no_zone_is_told(text: str) -> None:
-    with pytest.raises(library.DataError):
-        pursue_strategy.parse_zone(text)
+    with pytest.raises(DataError):
+        parse_zone(text)
 
 
 def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
-    zone = pursue_strategy.parse_zone("1 < Cx && Cx - Cy <= 3")
-    assert pursue_strategy.holds(zone, {"Cx": 0.95, "Cy": 0.0}, slack=0.1)
-    assert pursue_strategy.holds(zone, {"Cx": 3.05, "Cy": 0.0}, slack=0.1)
-    assert not pursue_strategy.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
+    zone = parse_zone("1 < Cx && Cx - Cy <= 3")
+    assert runtime_zones.holds(zone, {"Cx": 0.95, "Cy": 0.0}, slack=0.1)
+    assert runtime_zones.holds(zone, {"Cx": 3.05, "Cy": 0.0}, slack=0.1)
+    assert not runtime_zones.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
 
 
 # Words and states
@@ -126,8 +133,8 @@ def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
 @settings(deadline=None)
 @given(st.one_of(st.just(""), names), names, st.none() | st.integers(0, 10**6))
 def test_words_come_back(agent: str, event: str, seq: object) -> None:
-    word = library.Word(agent, event, seq)
-    assert library.parse_word(library.format_word(word)) == word
+    word = Word(agent, event, seq)
+    assert parse_word(format_word(word)) == word
 
 
 @pytest.mark.parametrize(
@@ -140,12 +147,12 @@ def test_words_come_back(agent: str, event: str, seq: object) -> None:
     ],
 )
 def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: object) -> None:
-    assert library.parse_word(text) == (agent, event, seq)
+    assert parse_word(text) == (agent, event, seq)
 
 
 @pytest.mark.parametrize("text", ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…"])
 def test_what_is_no_word_is_none(text: str) -> None:
-    assert library.parse_word(text) is None
+    assert parse_word(text) is None
 
 
 @settings(deadline=None)
@@ -163,16 +170,16 @@ def test_states_come_back(  # type: ignore[no-untyped-def]
     seq, stamp, locations, values, clocks, event, status, reason
 ) -> None:
     assume(not set(locations) & set(values))
-    state = library.SystemState(seq, stamp, locations, values, clocks, event, event, status, reason, 0.1)
-    back = library.parse_state(library.format_state(state))
+    state = SystemState(seq, stamp, locations, values, clocks, event, event, status, reason, 0.1)
+    back = parse_state(format_state(state))
     assert back._replace(stamp=0, clocks={}) == state._replace(stamp=0, clocks={})
     assert back.stamp == pytest.approx(stamp, abs=1e-6)
     assert back.clocks == pytest.approx(clocks, abs=1e-9)
 
 
 def test_a_state_is_the_thesiss_text_under_one_line_of_ours() -> None:
-    state = library.SystemState(7, 12.25, {"bot1": "going_c_to_b"}, {"Pbot1": -32}, {"Cbot1": 0.5}, "bot1_c2b", "bot1")
-    assert library.format_state(state).splitlines() == [
+    state = SystemState(7, 12.25, {"bot1": "going_c_to_b"}, {"Pbot1": -32}, {"Cbot1": 0.5}, "bot1_c2b", "bot1")
+    assert format_state(state).splitlines() == [
         "seq=7 stamp=12.250000 unit=1.0 event=bot1_c2b agent=bot1 status=running",
         "bot1=going_c_to_b",
         "Pbot1=-32",
@@ -182,22 +189,22 @@ def test_a_state_is_the_thesiss_text_under_one_line_of_ours() -> None:
 
 
 def test_a_reason_takes_the_rest_of_its_line() -> None:
-    state = library.SystemState(3, 1.0, {}, {}, {}, status="stopped", reason="no strategy: a=b\nCx=1")
-    assert library.parse_state(library.format_state(state)).reason == "no strategy: a=b Cx=1"
+    state = SystemState(3, 1.0, {}, {}, {}, status="stopped", reason="no strategy: a=b\nCx=1")
+    assert parse_state(format_state(state)).reason == "no strategy: a=b Cx=1"
 
 
 def test_lines_that_nobody_knows_are_skipped() -> None:
-    state = library.parse_state("seq=2 stamp=1 colour=red\nbot=a\nwhat is this\nPbot=1\n\nCbot=1.5\nCother=soon")
+    state = parse_state("seq=2 stamp=1 colour=red\nbot=a\nwhat is this\nPbot=1\n\nCbot=1.5\nCother=soon")
     assert (state.seq, state.locations, state.values, state.clocks) == (2, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 1.5})
 
 
 @pytest.mark.parametrize("text", ["", "hello", "seq=x stamp=1", "bot=a\n\nCbot=1"])
 def test_what_is_no_state_is_none(text: str) -> None:
-    assert library.parse_state(text) is None
+    assert parse_state(text) is None
 
 
 def test_clocks_go_on_from_the_stamp_in_the_states_own_unit() -> None:
-    state = library.SystemState(1, 100.0, {}, {}, {"Cx": 2.0}, unit=0.5)
+    state = SystemState(1, 100.0, {}, {}, {"Cx": 2.0}, unit=0.5)
     assert state.clocks_at(101.0) == {"Cx": 4.0}
     assert state.clocks_at(99.0) == {"Cx": 2.0}
 
@@ -221,11 +228,11 @@ def state(seq: int = 1, stamp: float = 10.0, clocks=(0.0, 0.0), **holds: object)
     everything = {"bot1": "c", "rule1": "start", "Sopen": 1, "Pbot1": 3, **holds}
     locations = {name: value for name, value in everything.items() if isinstance(value, str)}
     values = {name: value for name, value in everything.items() if isinstance(value, int)}
-    return library.SystemState(seq, stamp, locations, values, {"Cx": clocks[0], "Cy": clocks[1]}, unit=2.0)
+    return SystemState(seq, stamp, locations, values, {"Cx": clocks[0], "Cy": clocks[1]}, unit=2.0)
 
 
 def test_the_first_of_several_commands_is_next() -> None:
-    strategy = pursue_strategy.Strategy(read(STRATEGY))
+    strategy = Strategy(read(STRATEGY))
     moment, command = strategy.next_command(state(), now=10.0)
     assert (moment, command.event) == (10.0 + 2.0 * 3, "bot1_c2a")
     moment, command = strategy.next_command(state(clocks=(1.0, 0.0)), now=10.0)
@@ -233,22 +240,22 @@ def test_the_first_of_several_commands_is_next() -> None:
 
 
 def test_a_state_without_commands_has_no_next_one() -> None:
-    strategy = pursue_strategy.Strategy(read(STRATEGY))
+    strategy = Strategy(read(STRATEGY))
     assert strategy.next_command(state(Sopen=0), now=10.0) is None
     assert strategy.next_command(state(bot1="a"), now=10.0) is None
 
 
 def test_a_strategy_with_something_amiss_is_told() -> None:
     for broken in (STRATEGY.replace("Cx < 6", "Cx ~ 6"), STRATEGY.replace("do:", "doo:"), "format: 1\nstrategy: []"):
-        with pytest.raises(library.DataError):
-            pursue_strategy.Strategy(read(broken))
+        with pytest.raises(DataError):
+            Strategy(read(broken))
 
 
 def test_a_file_of_another_format_is_told(tmp_path: Path) -> None:
     for text in ("format: 2", "[1, 2]", "format: [", "{"):
         (tmp_path / "strategy.yaml").write_text(text)
-        with pytest.raises(library.DataError, match=r"strategy\.yaml"):
-            library.read_data(str(tmp_path / "strategy.yaml"))
+        with pytest.raises(DataError, match=r"strategy\.yaml"):
+            read_data(str(tmp_path / "strategy.yaml"))
 
 
 def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) -> None:
@@ -258,10 +265,11 @@ def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) ->
         for folder in (script.parent, place):
             folder.mkdir(parents=True)
         (place / "model.yaml").write_text("format: 1")
-        assert library.data_file(str(script), "bot", "model.yaml") == str(place / "model.yaml")
-    assert library.data_file(str(source), "bot", "model.yaml", str(places[1])) == str(places[1] / "model.yaml")
-    with pytest.raises(library.DataError, match="~config"):
-        library.data_file(str(source), "bot", "nothing.yaml")
+        assert data_file(Package("bot", "example", str(script)), "model.yaml") == str(place / "model.yaml")
+    package = Package("bot", "example", str(source))
+    assert data_file(package, "model.yaml", str(places[1])) == str(places[1] / "model.yaml")
+    with pytest.raises(DataError, match="~config"):
+        data_file(package, "nothing.yaml")
 
 
 @pytest.mark.parametrize(
@@ -270,5 +278,5 @@ def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) ->
      (5, 11.0, False), (7, 9.0, False)],
 )  # fmt: skip
 def test_a_state_that_was_published_before_the_known_one_is_older(seq: int, stamp: float, late: bool) -> None:
-    known = library.SystemState(6, 10.0, {}, {}, {})
-    assert library.older(known._replace(seq=seq, stamp=stamp), known) is late
+    known = SystemState(6, 10.0, {}, {}, {})
+    assert older(known._replace(seq=seq, stamp=stamp), known) is late

@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 import pytest
-from node_modules import links_core
+
+from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, TROUBLES, MasterWatch, Peers
 
 KNOWN, STRANGER, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
 
@@ -21,13 +22,13 @@ def spoken(peers: Any, until: float, since: float = 0.0, name: str = "/bot", fir
 
 
 def test_who_speaks_is_left_alone() -> None:
-    peers = links_core.Peers()
+    peers = Peers()
     spoken(peers, until=500.0)
     assert peers.silent(500.0) == [] == peers.due()
 
 
 def test_who_was_silent_gets_new_connections_even_if_heard_again_before() -> None:
-    peers = links_core.Peers(silence=3.0)
+    peers = Peers(silence=3.0)
     count = spoken(peers, until=10.0)
     peers.update({"/bot": count}, 11.5)
     assert peers.due() == [], "not yet"
@@ -41,7 +42,7 @@ def test_who_was_silent_gets_new_connections_even_if_heard_again_before() -> Non
 
 
 def test_it_is_due_until_it_could_be_done() -> None:
-    peers = links_core.Peers()
+    peers = Peers()
     spoken(peers, until=3.0)
     for now in range(5, 200):
         peers.update({"/bot": 3}, float(now))
@@ -49,14 +50,14 @@ def test_it_is_due_until_it_could_be_done() -> None:
 
 
 def test_only_the_silent_one_is_due() -> None:
-    peers = links_core.Peers()
+    peers = Peers()
     for now in range(10):
         peers.update({"/bot1": now, "/bot2": min(now, 2)}, float(now))
     assert peers.due() == ["/bot2"] and len(peers) == 2
 
 
 def test_who_stays_silent_on_new_connections_is_tried_ever_more_rarely() -> None:
-    peers = links_core.Peers()
+    peers = Peers()
     peers.update({"/bot": 7}, 0.0)
     tries: List[float] = []
     for now in range(1, 600):
@@ -65,14 +66,14 @@ def test_who_stays_silent_on_new_connections_is_tried_ever_more_rarely() -> None
             tries.append(float(now))
             peers.renewed("/bot", float(now))
     pauses = [later - earlier for earlier, later in zip(tries, tries[1:])]
-    assert pauses == sorted(pauses) and pauses[0] == links_core.FIRST_WAIT and pauses[-1] == links_core.LAST_WAIT
+    assert pauses == sorted(pauses) and pauses[0] == FIRST_WAIT and pauses[-1] == LAST_WAIT
     peers.update({"/bot": 1}, 600.0)
     again = next(now for now in range(601, 700) if peers.update({"/bot": 1}, float(now)) or peers.due())
-    assert again <= 604 + links_core.LAST_WAIT, "once heard, it is not forgotten"
+    assert again <= 604 + LAST_WAIT, "once heard, it is not forgotten"
 
 
 def test_connections_that_rospy_itself_made_anew_count_from_zero() -> None:
-    peers = links_core.Peers(silence=3.0)
+    peers = Peers(silence=3.0)
     count = spoken(peers, until=100.0)
     assert count == 100
     peers.update({}, 100.0)
@@ -81,7 +82,7 @@ def test_connections_that_rospy_itself_made_anew_count_from_zero() -> None:
 
 
 def test_who_is_gone_is_forgotten() -> None:
-    peers = links_core.Peers()
+    peers = Peers()
     spoken(peers, until=5.0)
     peers.update({}, 10.0)
     assert len(peers) == 1
@@ -91,7 +92,7 @@ def test_who_is_gone_is_forgotten() -> None:
 
 def verdicts(*answers: str) -> Dict[int, bool]:
     """second → is the master lost? It is asked every second."""
-    watch = links_core.MasterWatch(patience=10.0)
+    watch = MasterWatch(patience=10.0)
     found = {}
     for second, answer in enumerate(answers):
         watch.hear(answer, float(second))
@@ -116,7 +117,7 @@ def test_patience_starts_anew_when_it_was_back_or_out_of_reach() -> None:
 
 
 def test_what_the_master_is_like_is_news_once() -> None:
-    watch = links_core.MasterWatch()
+    watch = MasterWatch()
     news = [watch.hear(answer, 0.0) for answer in (KNOWN, REFUSED, REFUSED, KNOWN, UNREACHABLE, UNREACHABLE)]
     assert news == [False, True, False, True, True, False]
-    assert set(links_core.TROUBLES) == {KNOWN, STRANGER, REFUSED, UNREACHABLE} and links_core.TROUBLES[KNOWN] == ""
+    assert set(TROUBLES) == {KNOWN, STRANGER, REFUSED, UNREACHABLE} and TROUBLES[KNOWN] == ""

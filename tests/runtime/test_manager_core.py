@@ -10,9 +10,22 @@ from typing import Any, Dict, List
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from manager_stage import ROBOT, Desk, manager_core, pursue_guard
+from manager_stage import ROBOT, Desk
 
-from pursue_gen.transport import mission_bundle
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.manager import manager as manager_core
+from pursue_runtime.manager.manager import (
+    HTTP,
+    Manager,
+    NotNow,
+    Record,
+    check_bundle,
+    is_loopback,
+    mission_message,
+    parse_length,
+    topic_names,
+)
+from pursue_runtime.trusted_keys import KeyFolder
 
 TICKET = "0" * 31 + "1"
 MISSION = "a" * 64
@@ -26,13 +39,13 @@ def status(**more: object) -> str:
 def manager(tmp_path: Path) -> Any:
     """One that trusts desk 1 and hears its reader."""
     Desk().trusted_by(tmp_path)
-    made = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(tmp_path)), lambda: True)
+    made = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True)
     made.hear(status())
     return made
 
 
 def refused(manager: Any, text: Any, length: Any = 0, chunked: bool = False) -> Any:
-    with pytest.raises(manager_core.NotNow) as caught:
+    with pytest.raises(NotNow) as caught:
         manager.check_order(text, length, chunked)
     return caught.value.answer.http, caught.value.answer.code
 
@@ -65,7 +78,7 @@ def test_each_reason_to_refuse_has_its_word(manager: Any) -> None:
 
 def test_the_smaller_limit_counts(tmp_path: Path) -> None:
     Desk().trusted_by(tmp_path)
-    manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(tmp_path)), lambda: True, limit=10)
+    manager = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True, limit=10)
     manager.hear(status())
     assert refused(manager, Desk().order(TICKET, body=b"x" * 11), 11) == (413, "too_large")
 
@@ -73,7 +86,7 @@ def test_the_smaller_limit_counts(tmp_path: Path) -> None:
 def test_without_a_reader_nothing_is_taken(tmp_path: Path) -> None:
     Desk().trusted_by(tmp_path)
     there: List[bool] = []
-    manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(tmp_path)), lambda: bool(there))
+    manager = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: bool(there))
     order = Desk().order(TICKET)
     assert refused(manager, order) == (503, "no_reader")
     there.append(True)
@@ -100,7 +113,7 @@ def test_what_is_no_status_of_our_reader_changes_nothing(manager: Any, text: str
 @given(st.text(max_size=60) | st.binary(max_size=40).map(lambda b: b.decode("latin1")), st.integers(0, 2**70))
 def test_junk_is_refused_and_nothing_else(tmp_path_factory: pytest.TempPathFactory, text: str, length: int) -> None:
     keys = tmp_path_factory.getbasetemp() / "no_keys"
-    manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(keys)), lambda: True)
+    manager = Manager(ROBOT, KeyFolder(str(keys)), lambda: True)
     manager.hear(status())
     assert refused(manager, text, length)[0] in (400, 401)
 
@@ -108,8 +121,8 @@ def test_junk_is_refused_and_nothing_else(tmp_path_factory: pytest.TempPathFacto
 # Keys
 
 def test_keys_count_from_the_moment_they_are_there_until_they_are_taken_away(tmp_path: Path) -> None:
-    folder = pursue_guard.KeyFolder(str(tmp_path / "keys"))
-    manager = manager_core.Manager(ROBOT, folder, lambda: True)
+    folder = KeyFolder(str(tmp_path / "keys"))
+    manager = Manager(ROBOT, folder, lambda: True)
     manager.hear(status())
     assert refused(manager, Desk().order(TICKET)) == (401, "unknown_key")
     assert manager.condition()[0] == "warn" and str(tmp_path / "keys") in manager.condition()[1]
@@ -122,7 +135,7 @@ def test_keys_count_from_the_moment_they_are_there_until_they_are_taken_away(tmp
 
 
 def test_a_key_that_is_replaced_by_one_of_the_same_size_is_read_again(tmp_path: Path) -> None:
-    folder = pursue_guard.KeyFolder(str(tmp_path))
+    folder = KeyFolder(str(tmp_path))
     for seed in (1, 2):
         text = mission_bundle.write_public_key(Desk(seed).key.public_key(), "desk")
         (tmp_path / "new").write_text(text)
@@ -133,17 +146,17 @@ def test_a_key_that_is_replaced_by_one_of_the_same_size_is_read_again(tmp_path: 
 def test_files_that_hold_no_key_are_told(tmp_path: Path) -> None:
     Desk().trusted_by(tmp_path)
     (tmp_path / "junk.pub").write_bytes(b"\xff")
-    folder = pursue_guard.KeyFolder(str(tmp_path))
-    manager = manager_core.Manager(ROBOT, folder, lambda: True)
+    folder = KeyFolder(str(tmp_path))
+    manager = Manager(ROBOT, folder, lambda: True)
     manager.hear(status())
     assert manager.check_order(Desk().order(TICKET), 0, False), "the others count"
     assert manager.condition()[0] == "warn" and "junk.pub" in manager.condition()[1]
 
 
 def test_where_others_reach_it_and_nobody_is_trusted_everything_is_refused(tmp_path: Path) -> None:
-    manager = manager_core.Manager(ROBOT, pursue_guard.KeyFolder(str(tmp_path)), lambda: True, exposed=True)
+    manager = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True, exposed=True)
     assert manager.condition()[0] == "error"
-    with pytest.raises(manager_core.NotNow) as caught:
+    with pytest.raises(NotNow) as caught:
         manager.check_open()
     assert (caught.value.answer.http, caught.value.answer.code) == (503, "no_keys")
     Desk().trusted_by(tmp_path)
@@ -177,30 +190,30 @@ def test_a_reader_that_began_anew_is_not_waited_for(manager: Any) -> None:
 
 def test_the_body_is_the_one_that_the_order_is_about() -> None:
     order = mission_bundle.Order("prepare", "", ROBOT, TICKET, 3, manager_core.hashlib.sha256(b"abc").hexdigest())
-    manager_core.check_bundle(order, b"abc")
+    check_bundle(order, b"abc")
     for body in (b"", b"ab", b"abd", b"abcd"):
-        with pytest.raises(manager_core.NotNow):
-            manager_core.check_bundle(order, body)
+        with pytest.raises(NotNow):
+            check_bundle(order, body)
 
 
 def test_messages_carry_the_order_as_it_came() -> None:
-    assert json.loads(manager_core.mission_message("o.k.s", b"")) == {"order": "o.k.s"}
-    assert json.loads(manager_core.mission_message("o", b"\x00\xff")) == {"order": "o", "bundle": "AP8="}
+    assert json.loads(mission_message("o.k.s", b"")) == {"order": "o.k.s"}
+    assert json.loads(mission_message("o", b"\x00\xff")) == {"order": "o", "bundle": "AP8="}
 
 
 @pytest.mark.parametrize("text", ["", "-1", "+1", "1_0", " 1", "1 ", "0x1", "1,1", "1e3", "\u0661", "9" * 16, "1\n"])
 def test_lengths_are_plain_numbers(text: str) -> None:
-    with pytest.raises(manager_core.NotNow):
-        manager_core.parse_length(text)
-    assert manager_core.parse_length(None) is None
-    assert manager_core.parse_length("042") == 42
+    with pytest.raises(NotNow):
+        parse_length(text)
+    assert parse_length(None) is None
+    assert parse_length("042") == 42
 
 
 # The log
 
 def test_the_log_gets_a_line_now_and_then_and_the_counts_get_all() -> None:
     now, lines, notes = [0.0], [], []  # type: ignore[var-annotated]
-    record = manager_core.Record(lines.append, notes.append, lambda: now[0])
+    record = Record(lines.append, notes.append, lambda: now[0])
     for _ in range(1000):
         record.count("401", "a stranger")
     record.count("200")
@@ -213,20 +226,20 @@ def test_the_log_gets_a_line_now_and_then_and_the_counts_get_all() -> None:
 
 
 def test_topics_are_named_with_commas_between() -> None:
-    assert manager_core.topic_names("") == manager_core.topic_names(" , ") == []
-    assert manager_core.topic_names("pursue/events, /bot1/x,pursue/events") == ["pursue/events", "/bot1/x"]
+    assert topic_names("") == topic_names(" , ") == []
+    assert topic_names("pursue/events, /bot1/x,pursue/events") == ["pursue/events", "/bot1/x"]
     for wrong in ("a b", "1a", "a,ü", "a;b", "//"):
         with pytest.raises(ValueError, match="not the name of a topic"):
-            manager_core.topic_names(wrong)
+            topic_names(wrong)
 
 
 @pytest.mark.parametrize("host, loopback", [
     ("127.0.0.1", True), ("localhost", True), ("::1", True), ("0.0.0.0", False), ("", False), ("robot", False),
 ])
 def test_loopback_is_told_from_other_addresses(host: str, loopback: bool) -> None:
-    assert manager_core.is_loopback(host) is loopback
+    assert is_loopback(host) is loopback
 
 
 def test_every_word_has_a_status_of_http() -> None:
-    codes: Dict[str, int] = manager_core.HTTP
+    codes: Dict[str, int] = HTTP
     assert all(400 <= http < 600 for http in codes.values())

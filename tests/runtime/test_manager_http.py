@@ -19,21 +19,12 @@ from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
-from manager_stage import (
-    ROBOT,
-    Desk,
-    Robot,
-    ask,
-    exchange,
-    head,
-    manager_core,
-    manager_http,
-    manager_loop,
-    parse,
-    send,
-)
+from manager_stage import ROBOT, Desk, Robot, ask, exchange, head, parse, send
 
-from pursue_gen.transport import mission_bundle
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.manager.background import ServerError, bind
+from pursue_runtime.manager.manager import LONGEST_HEADER
+from pursue_runtime.manager.server import Limits, tls
 from tests.waiting import connected, may_close, rest, until
 
 Serve = Callable[..., Robot]
@@ -378,7 +369,7 @@ def certificate(folder: Path, password: Optional[bytes] = None) -> Tuple[Path, P
 @pytest.mark.filterwarnings("ignore:ssl.TLSVersion:DeprecationWarning")
 def test_with_a_certificate_it_speaks_tls_only_and_no_old_one(serve: Serve, tmp_path: Path) -> None:
     cert, key = certificate(tmp_path)
-    context = manager_http.tls(str(cert), str(key))
+    context = tls(str(cert), str(key))
     robot, desk = serve(context=context), Desk()
     client = ssl.create_default_context(cafile=str(cert))
     told = send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64), tls=client)
@@ -398,30 +389,30 @@ def test_with_a_certificate_it_speaks_tls_only_and_no_old_one(serve: Serve, tmp_
 
 
 def test_a_certificate_that_cannot_be_used_is_told_with_what_to_do(tmp_path: Path) -> None:
-    assert manager_http.tls("", "") is None
+    assert tls("", "") is None
     cert, key = certificate(tmp_path)
     locked = tmp_path / "locked"
     locked.mkdir()
     for files in ((str(tmp_path / "none.pem"), ""), (str(key), str(key)), (str(cert), ""),
                   tuple(map(str, certificate(locked, b"secret")))):
-        with pytest.raises(manager_loop.ServerError, match="PEM files"):
-            manager_http.tls(*files)
-    with pytest.raises(manager_loop.ServerError, match="~certificate"):
-        manager_http.tls("", str(key))
+        with pytest.raises(ServerError, match="PEM files"):
+            tls(*files)
+    with pytest.raises(ServerError, match="~certificate"):
+        tls("", str(key))
 
 
 # Beginning and end
 
 def test_a_port_that_is_taken_is_told_with_what_to_do(serve: Serve) -> None:
     robot = serve()
-    with pytest.raises(manager_loop.ServerError, match=f"port {robot.port}.*choose another ~port"):
-        manager_loop.bind("127.0.0.1", robot.port, "~port")
+    with pytest.raises(ServerError, match=f"port {robot.port}.*choose another ~port"):
+        bind("127.0.0.1", robot.port, "~port")
 
 
 @pytest.mark.parametrize("host, port", [("192.0.2.1", 0), ("no such host", 0), ("x" * 300, 0), ("127.0.0.1", 70000)])
 def test_an_address_that_is_not_ours_is_told(host: str, port: int) -> None:
-    with pytest.raises(manager_loop.ServerError, match="choose another"):
-        manager_loop.bind(host, port, "~port")
+    with pytest.raises(ServerError, match="choose another"):
+        bind(host, port, "~port")
 
 
 def test_the_port_is_free_again_at_once(tmp_path: Path) -> None:
@@ -430,10 +421,10 @@ def test_the_port_is_free_again_at_once(tmp_path: Path) -> None:
         assert ask(robot).http == 200
         robot.close()
         assert held.recv(10) == b""
-    for taken in manager_loop.bind("127.0.0.1", robot.port, "~port"):
+    for taken in bind("127.0.0.1", robot.port, "~port"):
         taken.close()
 
 
 def test_limits_and_words_are_those_of_the_bundles() -> None:
-    assert manager_core.LONGEST_HEADER > mission_bundle.ORDER_LENGTH
-    assert manager_http.Limits().longest < 600
+    assert LONGEST_HEADER > mission_bundle.ORDER_LENGTH
+    assert Limits().longest < 600

@@ -11,7 +11,12 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
-from reader_stage import OWN, Crash, Disk, Mission, Robot, mission, mission_bundle, mission_store
+from reader_stage import OWN, Crash, Disk, Mission, Robot, mission
+
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.bundle import Bundle, mission_file, unpack
+from pursue_runtime.reader import store as mission_store
+from pursue_runtime.reader.store import Store, StoreError, damage, table
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")
 
@@ -28,14 +33,14 @@ def tree(folder: Path) -> Dict[str, bytes]:
 
 
 def whole(robot: Robot, made: Mission) -> bool:
-    return bool(mission_store.damage(robot.store.folder, made.digest) == "")
+    return bool(damage(robot.store.folder, made.digest) == "")
 
 
 def test_a_mission_lies_there_as_the_nodes_look_for_it(robot: Robot) -> None:
     robot.send(FIRST)
     files = tree(robot.folder / "missions" / FIRST.digest)
     mark = files.pop("controller_bot1/mission.yaml")
-    assert mark == files.pop("observer/mission.yaml") == mission_bundle.mission_file(FIRST.digest, "first")
+    assert mark == files.pop("observer/mission.yaml") == mission_file(FIRST.digest, "first")
     text, seal = files.pop("manifest.json"), files.pop("signature.json")
     assert files == FIRST.files
     assert mission_bundle.hashlib.sha256(text).hexdigest() == FIRST.digest
@@ -87,8 +92,8 @@ def test_the_missions_outlive_the_process(robot: Robot) -> None:
 
 
 def test_two_processes_do_not_change_one_store(robot: Robot) -> None:
-    with pytest.raises(mission_store.StoreError, match="another pursue_reader"):
-        mission_store.Store(robot.store.folder, 5, lambda level, text: None)
+    with pytest.raises(StoreError, match="another pursue_reader"):
+        Store(robot.store.folder, 5, lambda level, text: None)
 
 
 # Faults ---------------------------------------------------------------------------------------------------------------
@@ -137,11 +142,11 @@ def test_wherever_it_is_killed_there_is_a_whole_mission(tmp_path: Path, monkeypa
                 robot.send(THIRD)
         assert robot.current in (SECOND.digest, THIRD.digest)
         for digest in robot.store.kept():
-            assert mission_store.damage(robot.store.folder, digest) == "", at
+            assert damage(robot.store.folder, digest) == "", at
         robot.restart()
         assert not [name for name in robot.places if name.startswith(".new-")]
         for digest in robot.store.kept():
-            assert mission_store.damage(robot.store.folder, digest) == "", at
+            assert damage(robot.store.folder, digest) == "", at
         assert set(robot.store.kept()) == set(robot.store.state.named())
         robot.state("waiting")
         robot.send(THIRD)
@@ -153,8 +158,8 @@ def test_wherever_it_is_killed_there_is_a_whole_mission(tmp_path: Path, monkeypa
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(mission_store.StoreError, match="cannot keep missions in .*file"):
-        mission_store.Store(str(tmp_path / "file" / "missions"), 5, lambda level, text: None)
+    with pytest.raises(StoreError, match="cannot keep missions in .*file"):
+        Store(str(tmp_path / "file" / "missions"), 5, lambda level, text: None)
 
 
 @pytest.mark.parametrize("path", ["manifest.json", "controller_bot1/strategy.yaml", "observer/mission.yaml"])
@@ -246,7 +251,7 @@ def test_what_cannot_be_read_just_now_is_not_thrown_away(
 
         with monkeypatch.context() as patch:
             patch.setattr(mission_store, "open", stutters, raising=False)
-            with pytest.raises(mission_store.StoreError):
+            with pytest.raises(StoreError):
                 robot.start()
     robot.start()
     assert robot.current == FIRST.digest and robot.store.whole(FIRST.digest)
@@ -272,10 +277,10 @@ def test_what_others_put_into_the_store_is_not_followed(robot: Robot, tmp_path: 
 @pytest.mark.parametrize("path", ["../outside.yaml", "/tmp/outside.yaml", "a/../../outside.yaml"])
 def test_no_name_leads_out_of_the_folder_of_a_mission(robot: Robot, path: str) -> None:
     """unpack lets no such name through; the store does not depend on it."""
-    bundle = mission_bundle.unpack(FIRST.bundle, robot.reader.keys())
+    bundle = unpack(FIRST.bundle, robot.reader.keys())
     files: Any = {**bundle.files, path: b"format: 1\n"}
-    evil = mission_bundle.Bundle(bundle.digest, bundle.manifest, files, bundle.signed_by)
-    with pytest.raises(mission_store.StoreError, match="is not in the folder"):
+    evil = Bundle(bundle.digest, bundle.manifest, files, bundle.signed_by)
+    with pytest.raises(StoreError, match="is not in the folder"):
         robot.store.put(evil, FIRST.bundle, lambda folder: None)
     assert robot.places == []
 
@@ -284,12 +289,12 @@ def test_a_person_sees_what_is_kept(robot: Robot) -> None:
     for made in (FIRST, SECOND):
         robot.send(made)
     robot.order("prepare", THIRD.digest, THIRD.bundle)
-    rows = {name: (scenario, what) for name, scenario, what in mission_store.table(robot.store.folder, "mine")}
+    rows = {name: (scenario, what) for name, scenario, what in table(robot.store.folder, "mine")}
     assert rows == {
         "own": ("mine", "the workspace's own; earlier"),
         FIRST.digest[:12]: ("first", "earlier"),
         SECOND.digest[:12]: ("second", "current"),
         THIRD.digest[:12]: ("third", "prepared"),
     }
-    nothing = mission_store.table(str(robot.folder / "nowhere"), "mine")
+    nothing = table(str(robot.folder / "nowhere"), "mine")
     assert nothing == [("own", "mine", "the workspace's own; current")]

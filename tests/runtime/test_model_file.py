@@ -8,13 +8,13 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import pytest
 import yaml
-from node_modules import model
 
 from pursue_gen.language import load, parse
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.words import event_word
 from pursue_gen.workspace.model_file import render
+from pursue_runtime.model import Model
 
 THESIS = Path(__file__).resolve().parents[2] / "scenarios" / "thesis"
 SCENARIOS = ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief")
@@ -37,7 +37,7 @@ def network_of(scenario: Any) -> Network:
 
 
 def model_of(scenario: Any, network: Network) -> Any:
-    return model.Model(yaml.safe_load(render(network, scenario_objective(scenario), scenario, "0")))
+    return Model(yaml.safe_load(render(network, scenario_objective(scenario), scenario, "0")))
 
 
 @pytest.mark.parametrize("number", SCENARIOS)

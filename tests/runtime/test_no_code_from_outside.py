@@ -8,10 +8,6 @@ from typing import Dict, Iterator, List
 
 import pytest
 
-from pursue_gen.simulation.code import rendered
-from pursue_gen.workspace.packages import desk_modules, templates_dir
-
-NAMES = {"scenario": "example", "generator": "0", "package": "controller_bot"}
 ROOT = Path(__file__).resolve().parents[2]
 
 CALLS = {"eval", "exec", "compile", "__import__", "execfile"}
@@ -26,14 +22,10 @@ SAFE = ("SafeLoader", "CSafeLoader")
 
 def programs() -> Dict[str, str]:
     """name → text of every Python file that runs on a robot: nodes and their modules, tests, what makes other plans."""
-    kinds = sorted(folder.name for folder in templates_dir().iterdir() if (folder / "scripts").is_dir())
-    assert {"controller", "observer", "UI", "pursue_reader", "communication_manager", "common"} <= set(kinds)
-    found = {f"{kind}/{name}": text for kind in kinds for name, text in rendered([kind], NAMES).items()}
-    found.update({name: content.decode() for name, content in desk_modules(NAMES).items()})
-    for part in ("replanning", "transport"):
-        files = (ROOT / "pursue_gen" / part).glob("*.py")
-        found.update({path.name: path.read_text(encoding="utf-8") for path in files})
-    return found
+    parts = ("pursue_runtime", "pursue_gen/replanning", "pursue_gen/transport", "templates")
+    files = [path for part in parts for path in sorted((ROOT / part).rglob("*.py"))]
+    assert len(files) > 60
+    return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in files}
 
 
 PROGRAMS = programs()
@@ -93,7 +85,7 @@ def test_modules_that_are_chosen_while_it_runs_are_named_in_the_code() -> None:
     for name, text in PROGRAMS.items():
         asked = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
         imports = [node for node in asked if _dotted(node.func).endswith("import_module")]
-        assert not imports or name == "controller/robot_links.py", name
+        assert not imports or name == "pursue_runtime/nodes/robot_link.py", name
         for call in asked:
             if _dotted(call.func).split(".")[-1] == "needed":
                 assert all(isinstance(given, ast.Constant) for given in call.args[:2]), (name, call.lineno)

@@ -9,7 +9,12 @@ from typing import Any, Dict, List, Tuple
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from node_modules import library, model, observer_core, pursue_strategy, read
+from texts import read
+
+from pursue_runtime.data import DataError
+from pursue_runtime.model import Model
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.strategy import read_cover
 
 CHASE = """
 format: 1
@@ -93,9 +98,9 @@ class Journey:
 
     def __init__(self, text: str = CHASE, cover: Any = None, **options: Any) -> None:
         self.logs: List[Tuple[str, str]] = []
-        table = None if cover is None else pursue_strategy.read_cover(read(cover))
+        table = None if cover is None else read_cover(read(cover))
         log = lambda level, message: self.logs.append((level, message))  # noqa: E731
-        self.mission = observer_core.Mission(model.Model(read(text)), table, log, **options)
+        self.mission = Mission(Model(read(text)), table, log, **options)
 
     def hear(self, word: str, now: float) -> Any:
         """The last state published for the word, None: none."""
@@ -326,8 +331,8 @@ def test_it_can_be_told_to_go_on_without_cover() -> None:
 
 def test_a_model_with_something_amiss_is_told() -> None:
     for broken in (CHASE.replace("initial: a", "initial: z"), CHASE.replace("Cbot > 1", "Cbot ~ 1"), "format: 1"):
-        with pytest.raises(library.DataError):
-            model.Model(read(broken))
+        with pytest.raises(DataError):
+            Model(read(broken))
 
 
 # Commands of machines whose clocks are ahead --------------------------------------------------------------------------

@@ -6,8 +6,9 @@ import json
 from typing import Any, Dict, List
 
 import pytest
-from node_modules import library
 from test_observer import CHASE, Journey
+
+from pursue_runtime.state import format_state, parse_state
 
 COVER = """
 format: 1
@@ -86,7 +87,7 @@ def test_a_plan_is_in_force_for_everybody_in_one_step() -> None:
     (state,) = made.mission.hear(f"two:_plan_@{number}", 4.4)
     assert (state.status, state.seq, state.plan, state.event) == ("running", 4, number, "")
     assert made.mission.proposal is None
-    assert library.parse_state(library.format_state(state)).plan == number
+    assert parse_state(format_state(state)).plan == number
 
 
 def test_a_command_from_before_the_new_plan_is_stale() -> None:
@@ -190,7 +191,7 @@ def test_a_robot_that_has_failed_is_lost_at_once() -> None:
     made.hear("bot_a2b", 2.0)
     state = made.hear("bot:_failed_", 3.0)
     assert (state.status, state.lost) == ("holding", ("bot",)) and "bot has failed" in state.reason
-    assert library.parse_state(library.format_state(state)).lost == ("bot",)
+    assert parse_state(format_state(state)).lost == ("bot",)
     assert made.hear("bot:_failed_", 3.5) is None
 
 

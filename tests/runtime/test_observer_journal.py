@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import os
 from pathlib import Path
@@ -11,11 +10,16 @@ from typing import Any, List, Tuple
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from node_modules import library, model, observer_core, pursue_strategy, read
 from test_observer import CHASE
 from test_observer_holding import COVER, EVERYWHERE, answer
+from texts import read
 
-observer_journal: Any = importlib.import_module("observer_journal")
+from pursue_runtime.model import Model
+from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.state import format_state
+from pursue_runtime.strategy import read_cover
+
 HEADER = {"scenario": "chase", "model": "1", "launch": "x"}
 PLAY = [
     *[("hear", word) for word in ("_start_", "bot_a2b", "nonsense", "bot_going_a_to_b2b")],
@@ -30,10 +34,10 @@ class Life:
     def __init__(self, path: Path, header: Any = None) -> None:
         self.logs: List[Tuple[str, str]] = []
         log = lambda level, message: self.logs.append((level, message))  # noqa: E731
-        cover = pursue_strategy.read_cover(read(COVER))
-        chase = model.Model(read(CHASE))
-        self.mission = observer_core.Mission(chase, cover, log, on_uncovered="plan", controllers=["one"])
-        self.journal = observer_journal.Journal(self.mission, str(path), header or HEADER, log)
+        cover = read_cover(read(COVER))
+        chase = Model(read(CHASE))
+        self.mission = Mission(chase, cover, log, on_uncovered="plan", controllers=["one"])
+        self.journal = Journal(self.mission, str(path), header or HEADER, log)
 
     def play(self, *calls: Any, first: int = 0) -> List[Any]:
         """Calls, one time unit after the other; what was published."""
@@ -44,7 +48,7 @@ class Life:
 
     def state(self) -> str:
         """Everything that is published, but for the clocks of the moment."""
-        text: str = library.format_state(self.mission.state(2000.0))
+        text: str = format_state(self.mission.state(2000.0))
         return text
 
 
@@ -143,28 +147,28 @@ MISSION = {**HEADER, "mission": "0123456789ab"}
 
 
 def test_a_new_observer_learns_whose_mission_was_under_way(path: Path) -> None:
-    assert observer_journal.unfinished(str(path), "x") is None
+    assert unfinished(str(path), "x") is None
     life = Life(path, MISSION)
-    assert observer_journal.unfinished(str(path), "x") is None, "it has not begun"
+    assert unfinished(str(path), "x") is None, "it has not begun"
     life.play(("hear", "_start_"))
-    assert observer_journal.unfinished(str(path), "x") == "0123456789ab"
-    assert observer_journal.unfinished(str(path), "y") is None, "that was in another launch"
+    assert unfinished(str(path), "x") == "0123456789ab"
+    assert unfinished(str(path), "y") is None, "that was in another launch"
     life.play(("hear", "_stop_"), first=1)
-    assert observer_journal.unfinished(str(path), "x") == "0123456789ab", "nobody may have heard of its end"
+    assert unfinished(str(path), "x") == "0123456789ab", "nobody may have heard of its end"
     life.journal.told()
-    assert observer_journal.unfinished(str(path), "x") is None
+    assert unfinished(str(path), "x") is None
 
 
 def test_the_workspaces_own_mission_may_have_no_name(path: Path) -> None:
     Life(path).play(("hear", "_start_"))
-    assert observer_journal.unfinished(str(path), "x") == ""
+    assert unfinished(str(path), "x") == ""
 
 
 @pytest.mark.parametrize("text", ["", "rubbish\nrubbish\n", "[]\n{}\n", '{"format": 1}\n{"call": "hear"}\n'])
 def test_what_is_no_journal_says_of_no_mission_that_it_is_under_way(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True)
     path.write_text(text)
-    assert observer_journal.unfinished(str(path), "x") is None
+    assert unfinished(str(path), "x") is None
 
 
 def test_a_journal_of_a_mission_that_never_began_leaves_nothing_behind(path: Path) -> None:
@@ -193,5 +197,5 @@ def test_without_a_place_for_it_the_mission_runs_and_says_so(tmp_path: Path) -> 
 
 
 def test_the_journals_are_under_ros_home() -> None:
-    assert observer_journal.journals_folder({"ROS_HOME": "/some/where"}) == "/some/where/pursue/example"
-    assert observer_journal.journals_folder({}).endswith("/.ros/pursue/example")
+    assert journals_folder({"ROS_HOME": "/some/where"}, "example") == "/some/where/pursue/example"
+    assert journals_folder({}, "example").endswith("/.ros/pursue/example")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import queue
 import shlex
@@ -12,19 +11,18 @@ from pathlib import Path
 from typing import Any, List, Tuple
 
 import pytest
-from node_modules import observer_core  # noqa: F401 (puts the modules on the path)
 from test_again import gone
 
+from pursue_runtime.observer import planner as observer_planner
+from pursue_runtime.observer.planner import Planner
+from pursue_runtime.observer.planning import PlanRequest
 from tests.waiting import PATIENCE, until
-
-observer_planner: Any = importlib.import_module("observer_planner")
-observer_plans: Any = importlib.import_module("observer_plans")
 
 FOUND = {"format": 1, "won": True, "strategies": {}, "people": None, "cover": {}}
 
 
 def request(number: int = 1) -> Any:
-    return observer_plans.PlanRequest(number, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 2.5}, 100.0, 1.5, ("dog",))
+    return PlanRequest(number, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 2.5}, 100.0, 1.5, ("dog",))
 
 
 class Office:
@@ -33,7 +31,7 @@ class Office:
     def __init__(self, program: str, limit: float = PATIENCE) -> None:
         self.answers: "queue.Queue[Any]" = queue.Queue()
         command = f"{shlex.quote(sys.executable)} -c {shlex.quote(program)}" if program.count(" ") else program
-        self.planner = observer_planner.Planner(command, {"name": "chase"}, limit, self.answers.put)
+        self.planner = Planner(command, {"name": "chase"}, limit, self.answers.put)
 
     def ask(self, number: int = 1) -> Tuple[int, Any, str]:
         self.planner.want(request(number))

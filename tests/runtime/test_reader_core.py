@@ -10,21 +10,11 @@ from pathlib import Path
 from typing import Any, Set
 
 import pytest
-from reader_stage import (
-    DESK,
-    OWN,
-    PATIENCE,
-    POSES,
-    STRANGER,
-    STRATEGY,
-    Robot,
-    desk_bundle,
-    message,
-    mission,
-    pursue_guard,
-)
+from reader_stage import DESK, OWN, PATIENCE, POSES, STRANGER, STRATEGY, Robot, desk_bundle, message, mission
 
 from pursue_gen.workspace.generate import mission_of
+from pursue_runtime import trusted_keys as pursue_guard
+from pursue_runtime.trusted_keys import KeyFolder, read_keys
 from tests import waiting
 from tests.workspace.worlds import files as workspace_files
 
@@ -244,8 +234,8 @@ def test_keys_count_as_soon_as_they_are_there_and_no_longer(robot: Robot) -> Non
 
 
 def test_whoever_asks_while_keys_are_being_read_gets_them_too(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = pursue_guard.KeyFolder(str(robot.folder / "keys"))
-    reads, read, go_on = pursue_guard.read_keys, threading.Event(), threading.Event()
+    folder = KeyFolder(str(robot.folder / "keys"))
+    reads, read, go_on = read_keys, threading.Event(), threading.Event()
 
     def slowly(path: str) -> Any:
         read.set()

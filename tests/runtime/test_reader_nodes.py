@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import Any, Tuple
+from typing import Tuple
 
 import pytest
-from reader_stage import SCRIPTS
 
 from pursue_gen.workspace.machines import BESIDE
-
-assert SCRIPTS.is_dir()
-reader_nodes: Any = importlib.import_module("reader_nodes")
+from pursue_runtime.reader import packages as reader_nodes
+from pursue_runtime.reader.packages import packages_here, without_package
 
 INSTALLED = ("observer", "UI", "controller_bot1", "controller_bot2", "controllerObj")
 
@@ -33,13 +30,13 @@ INSTALLED = ("observer", "UI", "controller_bot1", "controller_bot2", "controller
 def test_packages_are_those_of_the_nodes_that_run_here(
     nodes: str, expected: Tuple[str, ...], nowhere: Tuple[str, ...]
 ) -> None:
-    assert reader_nodes.packages_here(nodes, INSTALLED) == expected
-    assert reader_nodes.without_package(nodes, INSTALLED) == nowhere
+    assert packages_here(nodes, INSTALLED) == expected
+    assert without_package(nodes, INSTALLED) == nowhere
 
 
 def test_what_is_not_installed_does_not_count() -> None:
-    assert reader_nodes.packages_here("observer UI", ("UI",)) == ("UI",)
-    assert reader_nodes.packages_here("all", ()) == ()
+    assert packages_here("observer UI", ("UI",)) == ("UI",)
+    assert packages_here("all", ()) == ()
 
 
 def test_nodes_of_the_package_ui_are_those_that_the_desk_knows() -> None:

@@ -13,9 +13,12 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-from node_modules import library, pursue_missions
 
-from pursue_gen.workspace.mission_manifest import make_manifest, mission_file, mission_id
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.hearing import Hearing
+from pursue_runtime.manifest import make_manifest, mission_file, mission_id
+from pursue_runtime.missions import Missions, own_source, ros_home
+from pursue_runtime.state import SystemState, format_state, older, parse_state
 
 DATA = {"bot": b"format: 1\nwhat: bot of %s\n", "observer": b"format: 1\nwhat: observer of %s\n"}
 
@@ -52,8 +55,8 @@ class Robot:
         os.replace(aside, self.store / "state.json")
 
     def missions(self, received: bool = True) -> Any:
-        own = pursue_missions.own_source(str(self.script), "bot", "plan.yaml")
-        return pursue_missions.Missions(own, "bot", str(self.home) if received else "")
+        own = own_source(Package("bot", "example", str(self.script)), "plan.yaml")
+        return Missions(own, "bot", str(self.home) if received else "")
 
 
 @pytest.fixture
@@ -82,7 +85,7 @@ def test_a_workspace_that_does_not_say_which_mission_it_is_has_one_without_a_nam
 @pytest.mark.parametrize("text", ["format: 1\nmission: 12\n", "format: 1\n", "what is this", "format: 2\n"])
 def test_a_workspaces_name_of_its_mission_is_a_digest(robot: Robot, text: str) -> None:
     (robot.config / "mission.yaml").write_text(text)
-    with pytest.raises(library.DataError, match="generate"):
+    with pytest.raises(DataError, match="generate"):
         robot.missions()
 
 
@@ -153,7 +156,7 @@ def test_a_package_may_have_no_part_in_a_mission(robot: Robot) -> None:
     robot.switch(robot.receive("two", "observer"))
     source = robot.missions().current()
     assert source.empty and not source.has("plan.yaml")
-    with pytest.raises(library.DataError, match=r"has no plan\.yaml for bot"):
+    with pytest.raises(DataError, match=r"has no plan\.yaml for bot"):
         source.read("plan.yaml")
 
 
@@ -179,7 +182,7 @@ def test_what_is_damaged_is_said_and_never_played(robot: Robot, kind: str) -> No
     digest = robot.receive("two")
     robot.switch(digest)
     damage(robot, digest, kind)
-    with pytest.raises(library.DataError) as problem:
+    with pytest.raises(DataError) as problem:
         robot.missions().current().read("plan.yaml")
     assert str(robot.store) in str(problem.value)
     assert ("expected the digest" in str(problem.value)) == ("current" in kind)
@@ -191,7 +194,7 @@ def test_a_manifest_that_lists_no_files_is_said_too(robot: Robot) -> None:
         (robot.store / digest).mkdir(parents=True)
         (robot.store / digest / "manifest.json").write_bytes(text)
         robot.switch(digest)
-        with pytest.raises(library.DataError, match="does not list"):
+        with pytest.raises(DataError, match="does not list"):
             robot.missions().current()
 
 
@@ -219,8 +222,8 @@ def test_the_store_is_only_read(robot: Robot) -> None:
 
 
 def test_ros_home_is_where_ros_has_it() -> None:
-    assert pursue_missions.ros_home({"ROS_HOME": "/there"}) == "/there"
-    assert pursue_missions.ros_home({}).endswith(os.path.join("", ".ros"))
+    assert ros_home({"ROS_HOME": "/there"}) == "/there"
+    assert ros_home({}).endswith(os.path.join("", ".ros"))
 
 
 # Whose states count ---------------------------------------------------------------------------------------------------
@@ -229,11 +232,11 @@ A, B = "a" * 12, "b" * 12
 
 
 def state(seq: int, stamp: float, mission: str = A, status: str = "running") -> Any:
-    return library.SystemState(seq, stamp, {}, {}, {}, status=status, mission=mission)
+    return SystemState(seq, stamp, {}, {}, {}, status=status, mission=mission)
 
 
 def hearing(mission: str = A, again: bool = False) -> Any:
-    return pursue_missions.Hearing(mission, A, again)
+    return Hearing(mission, A, again)
 
 
 def test_only_states_of_its_mission_are_a_nodes_own() -> None:
@@ -245,8 +248,8 @@ def test_only_states_of_its_mission_are_a_nodes_own() -> None:
 def test_a_state_that_names_no_mission_is_of_the_workspaces_own() -> None:
     assert hearing().judge(state(1, 1.0, "")) == "ours"
     assert hearing(B).judge(state(1, 1.0, "")) == "other"
-    assert pursue_missions.Hearing("", "").judge(state(1, 1.0, "")) == "ours"
-    assert pursue_missions.Hearing("", "").judge(state(1, 1.0, B)) == "other"
+    assert Hearing("", "").judge(state(1, 1.0, "")) == "ours"
+    assert Hearing("", "").judge(state(1, 1.0, B)) == "other"
 
 
 def test_a_delayed_state_of_the_mission_before_does_not_bring_it_back() -> None:
@@ -273,7 +276,7 @@ class Real:
 @pytest.mark.parametrize(("mission", "seq"), [(B, 0), (B, 7), (A, 0)])
 def test_an_observer_whose_clock_was_set_back_is_heard_again_after_a_minute(mission: str, seq: int) -> None:
     real = Real()
-    node = pursue_missions.Hearing(A, A, False, real)
+    node = Hearing(A, A, False, real)
     assert node.judge(state(40, 5000.0, status="won")) == "ours"
     heard = []
     for second in range(1, 64):
@@ -286,7 +289,7 @@ def test_an_observer_whose_clock_was_set_back_is_heard_again_after_a_minute(miss
 def test_while_the_observer_is_heard_no_state_is_too_old_to_be_delayed() -> None:
     """Also where its clock was set back while nothing happens: what it says is known then."""
     real = Real()
-    node = pursue_missions.Hearing(B, A, False, real)
+    node = Hearing(B, A, False, real)
     assert node.judge(state(3, 5000.0, B)) == "ours"
     for second in range(1, 200):
         real.now = float(second)
@@ -308,9 +311,9 @@ def test_who_waits_for_nothing_more_ends_with_the_mission_whenever_it_comes() ->
 
 @given(st.text("0123456789abcdef", max_size=12), st.integers(0, 99), st.sampled_from(("", "a=b mission=x")))
 def test_a_states_mission_comes_back_and_is_left_out_where_there_is_none(name: str, plan: int, reason: str) -> None:
-    said = library.SystemState(3, 1.0, {"bot": "a"}, {}, {}, reason=reason, plan=plan, mission=name)
-    text = library.format_state(said)
-    assert library.parse_state(text) == said
+    said = SystemState(3, 1.0, {"bot": "a"}, {}, {}, reason=reason, plan=plan, mission=name)
+    text = format_state(said)
+    assert parse_state(text) == said
     assert ("mission=" in text.partition(" reason=")[0]) == bool(name)
 
 
@@ -320,7 +323,7 @@ MOMENTS = st.tuples(st.integers(0, 3), st.floats(0, 10), st.sampled_from(("", A,
 @given(MOMENTS, MOMENTS)
 def test_no_state_is_older_than_one_that_is_older_than_it(first: Any, second: Any) -> None:
     one, two = (state(*moment) for moment in (first, second))
-    assert not (library.older(one, two) and library.older(two, one))
+    assert not (older(one, two) and older(two, one))
 
 
 def test_data_and_name_of_a_mission_of_a_workspace_agree_with_the_generators(tmp_path: Path) -> None:

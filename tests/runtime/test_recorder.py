@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import ast
-import importlib
 import os
 import stat
 from pathlib import Path
-from typing import Any
 
 import pytest
-from ui_package import SCRIPTS, model_data, mover, pursue_model
+from ui_package import model_data, mover
 
-recorder_core: Any = importlib.import_module("recorder_core")
-MODEL = pursue_model.Model(model_data(mover("bot", "robot", 3), mover("thief", "agent", 3)))
+from pursue_runtime.model import Model
+from pursue_runtime.ui.recording import missing, reserve, topics
+
+MODEL = Model(model_data(mover("bot", "robot", 3), mover("thief", "agent", 3)))
 
 
 def test_topics_are_named_and_each_stands_once() -> None:
-    simulated, real = recorder_core.topics(MODEL, True), recorder_core.topics(MODEL, False)
+    simulated, real = topics(MODEL, True), topics(MODEL, False)
     assert len(set(simulated)) == len(simulated)
     assert {"pursue/events", "pursue/system_state", "pursue/plan", "/diagnostics"} <= set(real)
     assert set(simulated) - set(real) == {"/clock"}
@@ -26,9 +25,9 @@ def test_topics_are_named_and_each_stands_once() -> None:
 
 
 def test_a_bag_goes_where_it_was_asked_for_else_to_the_folder(tmp_path: Path) -> None:
-    assert recorder_core.reserve("", str(tmp_path / "new")) == str(tmp_path / "new" / "mission.bag")
+    assert reserve("", str(tmp_path / "new")) == str(tmp_path / "new" / "mission.bag")
     asked = str(tmp_path / "other" / "my.bag")
-    assert recorder_core.reserve(asked, str(tmp_path / "new")) == asked
+    assert reserve(asked, str(tmp_path / "new")) == asked
     mode = stat.S_IMODE(os.stat(asked + ".active").st_mode)
     assert mode & 0o600 == 0o600
 
@@ -37,8 +36,8 @@ def test_nothing_is_ever_overwritten(tmp_path: Path) -> None:
     finished, begun = tmp_path / "mission.bag", tmp_path / "mission-2.bag.active"
     finished.write_text("a mission")
     begun.write_text("another one")
-    assert recorder_core.reserve("", str(tmp_path)) == str(tmp_path / "mission-3.bag")
-    assert recorder_core.reserve("", str(tmp_path)) == str(tmp_path / "mission-4.bag")
+    assert reserve("", str(tmp_path)) == str(tmp_path / "mission-3.bag")
+    assert reserve("", str(tmp_path)) == str(tmp_path / "mission-4.bag")
     assert (finished.read_text(), begun.read_text()) == ("a mission", "another one")
 
 
@@ -46,16 +45,12 @@ def test_nothing_is_ever_overwritten(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(OSError):
-        recorder_core.reserve("", str(tmp_path))
+        reserve("", str(tmp_path))
 
 
 def test_it_is_complete_when_it_hears_everybody() -> None:
     nodes, publishers = ["observer", "bot"], {"/e": {"/observer", "/bot"}, "/s": {"/observer"}, "/p": set()}
-    assert recorder_core.missing(nodes, publishers, {"/e": 2, "/s": 1}) == ""
-    assert recorder_core.missing(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
-    assert recorder_core.missing(nodes, publishers, {"/e": 2}) == "not connected to everybody on /s yet"
-    assert recorder_core.missing([*nodes, "UI"], publishers, {"/e": 2, "/s": 1}) == "nothing from UI yet"
-
-
-def test_the_node_runs_on_python_3_8() -> None:
-    ast.parse((SCRIPTS / "recorder").read_text(encoding="utf-8"), feature_version=(3, 8))
+    assert missing(nodes, publishers, {"/e": 2, "/s": 1}) == ""
+    assert missing(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
+    assert missing(nodes, publishers, {"/e": 2}) == "not connected to everybody on /s yet"
+    assert missing([*nodes, "UI"], publishers, {"/e": 2, "/s": 1}) == "nothing from UI yet"

@@ -10,16 +10,22 @@ from pathlib import Path
 from typing import Any, Iterator, List, Tuple
 
 import pytest
-from manager_stage import manager_core, manager_http, manager_loop
-from node_modules import library
-from reader_stage import DESK, mission_store, pursue_guard, reader_core
+from reader_stage import DESK
 
 from pursue_gen.language import load
-from pursue_gen.transport import mission_bundle
 from pursue_gen.transport.bundles import AskedMission, make_mission, sign
 from pursue_gen.transport.client import Robot
 from pursue_gen.transport.send_checks import fits, kept_by_all, previous
 from pursue_gen.transport.sender import Sent, look, send, wait
+from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.manager.manager import Manager, Record
+from pursue_runtime.manager.server import Limits, Server
+from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader.reader import Reader
+from pursue_runtime.reader.store import Store, StoreError
+from pursue_runtime.state import SystemState
+from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
@@ -41,17 +47,17 @@ class Machine:
         self.lock = threading.Lock()
         self.silent = False
         self.log: List[str] = []
-        self.store = mission_store.Store(str(folder / "missions"), 5, lambda *line: self.log.append(line[-1]))
+        self.store = Store(str(folder / "missions"), 5, lambda *line: self.log.append(line[-1]))
         facts = reader_core.Robot(name, "scenario_1", MACHINES[name], 10**6)
-        folder_of_keys = pursue_guard.KeyFolder(str(keys))
+        folder_of_keys = KeyFolder(str(keys))
         long_ago = time.monotonic() - 100.0
-        self.reader = reader_core.Reader(facts, self.store, folder_of_keys, long_ago, lambda *line: None, 5.0)
-        record = manager_core.Record(self.log.append, self.log.append)
-        manager = manager_core.Manager(name, pursue_guard.KeyFolder(str(keys)), lambda: not self.silent)
-        sockets = manager_loop.bind("127.0.0.1", 0, "~port")
-        limits = manager_http.Limits(patience=PATIENCE, header=PATIENCE, window=PATIENCE)
-        self.server = manager_http.Server(manager, sockets, self.publish, record, limits)
-        self.background = manager_loop.Background((self.server,), record.count)
+        self.reader = Reader(facts, self.store, folder_of_keys, long_ago, lambda *line: None, 5.0)
+        record = Record(self.log.append, self.log.append)
+        manager = Manager(name, KeyFolder(str(keys)), lambda: not self.silent)
+        sockets = bind("127.0.0.1", 0, "~port")
+        limits = Limits(patience=PATIENCE, header=PATIENCE, window=PATIENCE)
+        self.server = Server(manager, sockets, self.publish, record, limits)
+        self.background = Background((self.server,), record.count)
         self.background.start()
         self.say()
 
@@ -70,7 +76,7 @@ class Machine:
         """A system state is heard."""
         with self.lock:
             now = time.monotonic()
-            self.reader.see(library.SystemState(seq, now, {}, {}, {}, status=status), now)
+            self.reader.see(SystemState(seq, now, {}, {}, {}, status=status), now)
             self.say()
 
     @property
@@ -145,7 +151,7 @@ def test_one_that_fails_to_commit_takes_all_back(machines: Any, missions: Any, r
 
     def full(state: Any) -> None:
         if missions[1][0] in (state.current, state.next):
-            raise mission_store.StoreError("the disk is full")
+            raise StoreError("the disk is full")
         real(state)
 
     robots[1].store.save = full

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import sim_clock_core
+
+from pursue_runtime.simulator.clock import KEPT, Memory, Pace, SimClock
 
 
 def test_it_starts_after_zero_and_goes_in_steps() -> None:
-    clock = sim_clock_core.SimClock(sim_clock_core.Pace(speed=5, step=0.02))
+    clock = SimClock(Pace(speed=5, step=0.02))
     assert clock.now > 0
     first = clock.now
     assert clock.tick(10.0) == pytest.approx(first + 0.02)
@@ -19,7 +20,7 @@ def test_it_starts_after_zero_and_goes_in_steps() -> None:
 
 
 def test_it_holds_after_a_message_and_goes_on() -> None:
-    clock = sim_clock_core.SimClock(sim_clock_core.Pace(hold=0.03))
+    clock = SimClock(Pace(hold=0.03))
     clock.heard(10.0)
     held = clock.tick(10.01)
     clock.heard(10.02)
@@ -28,19 +29,19 @@ def test_it_holds_after_a_message_and_goes_on() -> None:
 
 
 def test_the_tick_makes_the_speed() -> None:
-    assert sim_clock_core.Pace(speed=5, step=0.02).tick == pytest.approx(0.004)
+    assert Pace(speed=5, step=0.02).tick == pytest.approx(0.004)
 
 
 @pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": -1.0}, {"step": 0.0}, {"hold": -1.0},
                                    {"speed": float("nan")}, {"speed": float("inf")}])
 def test_a_wrong_pace_is_refused(wrong: dict) -> None:
     with pytest.raises(ValueError, match="~" + next(iter(wrong))):
-        sim_clock_core.Pace(**wrong)
+        Pace(**wrong)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.floats(0, 100))))
 def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
-    clock = sim_clock_core.SimClock(sim_clock_core.Pace(step=0.02))
+    clock = SimClock(Pace(step=0.02))
     before = clock.now
     for message, real in happenings:
         if message:
@@ -53,16 +54,16 @@ def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
 
 def test_it_goes_on_where_a_killed_one_was(tmp_path: Path) -> None:
     path = str(tmp_path / "pursue" / "example" / "clock-1")
-    memory = sim_clock_core.Memory(path)
+    memory = Memory(path)
     assert memory.last is None
     for moment in (1.02, 123456789.25, 7.5):
         memory.keep(moment)
-        assert sim_clock_core.Memory(path).last == moment, "a shorter number leaves nothing of a longer one"
-    again = sim_clock_core.SimClock(sim_clock_core.Pace(step=0.02), sim_clock_core.Memory(path).last)
+        assert Memory(path).last == moment, "a shorter number leaves nothing of a longer one"
+    again = SimClock(Pace(step=0.02), Memory(path).last)
     assert again.tick(0.0) == pytest.approx(7.52)
 
 
 def test_old_clocks_are_forgotten(tmp_path: Path) -> None:
-    for number in range(sim_clock_core.KEPT + 5):
-        sim_clock_core.Memory(str(tmp_path / f"clock-{number}"))
-    assert len(list(tmp_path.iterdir())) == sim_clock_core.KEPT
+    for number in range(KEPT + 5):
+        Memory(str(tmp_path / f"clock-{number}"))
+    assert len(list(tmp_path.iterdir())) == KEPT

@@ -5,15 +5,18 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import model_data, mover, pursue_model, simulator_core, state, worker
+from ui_package import model_data, mover, state, worker
 
-MODEL = pursue_model.Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
+from pursue_runtime.model import Model
+from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator, window_at
+
+MODEL = Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
 EVERYBODY = ["bot", "thief", "nurse"]
 ARRIVAL = "bot_going_a_to_b2b"
 
 
 def simulator(reports=EVERYBODY, delays: str = "middle", seed: int = 0, model=MODEL):
-    made = simulator_core.Simulator(model, reports, simulator_core.Delays(delays, seed))
+    made = Simulator(model, reports, Delays(delays, seed))
     made.on_state(state(model, 1, 100.0, {}, event="_start_"), real=0.0)
     return made
 
@@ -92,7 +95,7 @@ def test_an_unknown_agent_to_report_for_is_refused() -> None:
 
 def test_an_unknown_choice_of_delays_is_refused() -> None:
     with pytest.raises(ValueError, match="random, early, middle, late"):
-        simulator_core.Delays("slow")
+        Delays("slow")
 
 
 def test_each_end_is_reported_once_when_the_state_follows() -> None:
@@ -143,7 +146,7 @@ def test_the_same_movement_again_is_a_new_one() -> None:
 
 
 def test_a_restarted_simulator_goes_on_with_robots_that_are_on_their_way() -> None:
-    world = simulator_core.Simulator(MODEL, EVERYBODY, simulator_core.Delays("middle"))
+    world = Simulator(MODEL, EVERYBODY, Delays("middle"))
     world.on_state(state(MODEL, 7, 108.0, {"Cbot": 3.0}, bot="going_a_to_b"), real=0.0)
     assert world.next_moments()[0] == pytest.approx(105.0 + 9.45)
 
@@ -157,7 +160,7 @@ def test_nobody_reports_after_the_end(status: str) -> None:
 
 
 def test_the_agent_is_named_where_two_could_mean_it() -> None:
-    model = pursue_model.Model(model_data(worker("bot", "robot"), worker("human", "agent")))
+    model = Model(model_data(worker("bot", "robot"), worker("human", "agent")))
     world = simulator(["human"], model=model)
     world.on_state(state(model, 2, 105.0, {}, human="doing_screw_in_s"), real=1.0)
     assert world.due(109.0, 1.0) == ["human:screwDONE"]
@@ -169,20 +172,20 @@ def test_time_units_are_not_seconds() -> None:
     assert world.next_moments()[0] == pytest.approx(105.0 + 2.045)
 
 
-@given(st.sampled_from(simulator_core.DELAYS), st.integers(), st.integers(1, 50))
+@given(st.sampled_from(DELAYS), st.integers(), st.integers(1, 50))
 def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> None:
-    window = simulator_core.window_at(MODEL.automaton("bot"), "going_a_to_b")
-    drawn = simulator_core.Delays(choice, seed).draw(window, "bot", number)
+    window = window_at(MODEL.automaton("bot"), "going_a_to_b")
+    drawn = Delays(choice, seed).draw(window, "bot", number)
     assert window == (ARRIVAL, "Cbot", 9, 10)
     assert 9 < drawn < 10
-    assert drawn == simulator_core.Delays(choice, seed).draw(window, "bot", number)
+    assert drawn == Delays(choice, seed).draw(window, "bot", number)
 
 
 def test_early_middle_and_late_are_in_that_order_and_seeds_differ() -> None:
-    window = simulator_core.window_at(MODEL.automaton("bot"), "going_a_to_b")
-    early, middle, late = (simulator_core.Delays(c).draw(window, "bot", 1) for c in ("early", "middle", "late"))
+    window = window_at(MODEL.automaton("bot"), "going_a_to_b")
+    early, middle, late = (Delays(c).draw(window, "bot", 1) for c in ("early", "middle", "late"))
     assert early < middle < late
-    assert len({simulator_core.Delays("random", seed).draw(window, "bot", 1) for seed in range(5)}) == 5
+    assert len({Delays("random", seed).draw(window, "bot", 1) for seed in range(5)}) == 5
 
 
 @given(st.lists(st.tuples(st.floats(0, 400), st.floats(0, 30)), max_size=30))

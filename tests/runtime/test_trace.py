@@ -6,25 +6,26 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import ui_trace
+
+from pursue_runtime.ui.trace import TraceError, read_trace
 
 WORDS = ["thief_a2b", "thief_b2a", "screw"]
 
 
 def faults(text: str) -> str:
-    with pytest.raises(ui_trace.TraceError) as caught:
-        ui_trace.read_trace(text, "thief.yaml", WORDS)
+    with pytest.raises(TraceError) as caught:
+        read_trace(text, "thief.yaml", WORDS)
     return str(caught.value)
 
 
 def test_steps_are_read_in_order() -> None:
-    steps = ui_trace.read_trace("- {at: 3.5, do: thief_a2b}\n- at: 30\n  do: human:screw\n- {at: 30, do: _stop_}\n",
+    steps = read_trace("- {at: 3.5, do: thief_a2b}\n- at: 30\n  do: human:screw\n- {at: 30, do: _stop_}\n",
                                 "t.yaml", WORDS)
     assert [(step.at, step.word) for step in steps] == [(3.5, "thief_a2b"), (30.0, "human:screw"), (30.0, "_stop_")]
 
 
 def test_an_empty_list_is_a_trace_where_nothing_happens() -> None:
-    assert ui_trace.read_trace("[]", "t.yaml", WORDS) == ()
+    assert read_trace("[]", "t.yaml", WORDS) == ()
 
 
 @pytest.mark.parametrize("text, place, expected", [
@@ -57,12 +58,12 @@ def test_all_faults_are_told_at_once() -> None:
 def test_what_yaml_writes_is_read_back(entries: list) -> None:
     entries.sort(key=lambda entry: entry[0])
     text = yaml.safe_dump([{"at": at, "do": word} for at, word in entries])
-    assert [(step.at, step.word) for step in ui_trace.read_trace(text, "t.yaml", WORDS)] == entries
+    assert [(step.at, step.word) for step in read_trace(text, "t.yaml", WORDS)] == entries
 
 
 @given(st.text(max_size=60))
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
-        ui_trace.read_trace(text, "t.yaml", WORDS)
-    except ui_trace.TraceError as error:
+        read_trace(text, "t.yaml", WORDS)
+    except TraceError as error:
         assert "t.yaml:" in str(error)

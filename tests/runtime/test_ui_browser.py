@@ -9,15 +9,18 @@ from pathlib import Path
 from typing import Any, Callable, Iterator
 
 import pytest
-from rendered_scripts import TEMPLATES
-from ui_package import model_data, mover, pursue_model, state, ui_page, worker
+from ui_package import model_data, mover, state, worker
+
+from pursue_runtime.model import Model
+from pursue_runtime.ui.page import Facts, Page, Plan
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 sys.path.append(str(Path(__file__).resolve().parent.parent / "ros"))
-import ui_board
-import ui_web
 from browser import Browser, browser, program
 
+from pursue_runtime.ui import board as ui_board
+from pursue_runtime.ui import web as ui_web
+from pursue_runtime.ui.board import STATIC
 from tests.waiting import until
 
 pytestmark = pytest.mark.skipif(program() is None, reason="there is no Chromium: apt install chromium, or ./run test")
@@ -35,19 +38,19 @@ class Node:
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        self.board = ui_board.Board(ui_page.Page(model, ui_page.Plan(places, ways)), self)
+        self.board = ui_board.Board(Page(model, Plan(places, ways)), self)
 
     def serve(self, port: int = 0) -> Any:
         board = self.board
         board.web = ui_web.Web(
-            str(TEMPLATES / "UI" / "web"), "127.0.0.1", port, "", board.welcome, board.asked, board.moment
+            STATIC, "127.0.0.1", port, "", board.welcome, board.asked, board.moment
         )
         board.web.start()
         return board.web
 
     def facts(self) -> Any:
         at = self.state.stamp - 100.0 if self.state is not None else 0.0
-        return ui_page.Facts(self.phase, (), self.state, at, at + self.clock() - self.shown, self.verdict)
+        return Facts(self.phase, (), self.state, at, at + self.clock() - self.shown, self.verdict)
 
     def obey(self, request: Any) -> str:
         self.wanted.append(tuple(request))
@@ -73,7 +76,7 @@ def show(page: Browser) -> Iterator[Callable[..., Node]]:
 
     def start(*automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), **more: Any) -> Node:
         data = {**model_data(*automata), **more}
-        node = Node(pursue_model.Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways)
+        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways)
         nodes.append(node)
         page.complaints.clear()
         page.screen(1100, 800)

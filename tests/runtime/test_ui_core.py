@@ -5,12 +5,17 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import model_data, mover, pursue_model, pursue_strategy, state, ui_core, ui_players, worker
+from ui_package import model_data, mover, state, worker
+
+from pursue_runtime.model import Model, Position
+from pursue_runtime.strategy import Strategy
+from pursue_runtime.ui.mission import Mission, Opening, Readiness, answer, menu, openings, tasks
+from pursue_runtime.ui.players import AGAIN, AtRandom, Scripted, StandStill, Step
 
 DATA = model_data(
     mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent")
 )
-MODEL = pursue_model.Model(DATA)
+MODEL = Model(DATA)
 CLOCKS = ("Cbot", "Cthief", "Cnurse", "Cboy", "Creach")
 
 
@@ -22,16 +27,16 @@ def at(seq: int, stamp: float, **more):
 
 
 def offers(current, now: float, **more):
-    return ui_core.openings(MODEL, current, current.clocks_at(now), **more)
+    return openings(MODEL, current, current.clocks_at(now), **more)
 
 
 def mission(player=None, orders=None):
-    return ui_core.Mission(MODEL, player or ui_players.StandStill(), orders)
+    return Mission(MODEL, player or StandStill(), orders)
 
 
 def orders(*commands: dict):
     start = {"nurse": "s"}
-    return pursue_strategy.Strategy({"commands_agents": ["nurse"], "reaction": 0.1,
+    return Strategy({"commands_agents": ["nurse"], "reaction": 0.1,
                                     "strategy": [{"state": start, "commands": list(commands)}]})
 
 
@@ -67,7 +72,7 @@ def test_a_window_that_has_closed_is_no_offer() -> None:
 # Who plays them
 
 def test_standing_still_says_nothing() -> None:
-    played = mission(ui_players.StandStill())
+    played = mission(StandStill())
     played.on_state(at(1, 100.0, event="_start_"), 100.0)
     assert played.due(500.0, 1.0) == []
     assert played.next_moments(500.0) == (None, None)
@@ -75,20 +80,20 @@ def test_standing_still_says_nothing() -> None:
 
 @given(st.integers(), st.floats(0.1, 50.0), st.floats(0.0, 30.0))
 def test_chance_says_only_what_is_possible_then(seed: int, pace: float, since: float) -> None:
-    player = ui_players.AtRandom(MODEL, seed, pace)
+    player = AtRandom(MODEL, seed, pace)
     current = at(1, 100.0)
     player.on_state(current, 100.0, 100.0 + since)
     moment = player.next_moment()
     assert moment is not None and moment >= 100.0 + since
     (word,) = player.due(moment)
     named, _, event = word.rpartition(":")
-    position = pursue_model.Position(current.locations, current.values, current.clocks_at(moment))
+    position = Position(current.locations, current.values, current.clocks_at(moment))
     assert MODEL.joint_move(position, event, named) is not None
 
 
 def test_chance_is_the_same_for_the_same_seed_and_other_for_another() -> None:
     def first(seed: int):
-        player = ui_players.AtRandom(MODEL, seed)
+        player = AtRandom(MODEL, seed)
         player.on_state(at(1, 100.0), 100.0, 100.0)
         return player.next_moment()
 
@@ -97,15 +102,15 @@ def test_chance_is_the_same_for_the_same_seed_and_other_for_another() -> None:
 
 
 def test_chance_does_not_repeat_itself_before_an_answer_can_come() -> None:
-    player = ui_players.AtRandom(MODEL, 1)
+    player = AtRandom(MODEL, 1)
     player.on_state(at(1, 100.0), 100.0, 110.0)
     moment = player.next_moment()
     assert player.due(moment)
-    assert player.next_moment() >= moment + ui_players.AGAIN
+    assert player.next_moment() >= moment + AGAIN
 
 
 def test_chance_waits_while_nothing_is_possible() -> None:
-    player = ui_players.AtRandom(MODEL, 1)
+    player = AtRandom(MODEL, 1)
     player.on_state(at(1, 100.0, thief="going_a_to_b", values={"Prule": 1}), 100.0, 100.0)
     assert player.next_moment() is None
     assert player.due(900.0) == []
@@ -113,15 +118,15 @@ def test_chance_waits_while_nothing_is_possible() -> None:
 
 def test_a_wrong_pace_is_refused() -> None:
     with pytest.raises(ValueError, match="~pace"):
-        ui_players.AtRandom(MODEL, 1, pace=0.0)
+        AtRandom(MODEL, 1, pace=0.0)
 
 
 def steps(*pairs):
-    return [ui_players.Step(moment, word) for moment, word in pairs]
+    return [Step(moment, word) for moment, word in pairs]
 
 
 def test_a_trace_is_said_at_its_moments_after_the_start() -> None:
-    player = ui_players.Scripted(steps((3.5, "thief_a2b"), (9.0, "boy:screw"), (9.0, "_ping_")))
+    player = Scripted(steps((3.5, "thief_a2b"), (9.0, "boy:screw"), (9.0, "_ping_")))
     assert player.next_moment() is None, "not before the start"
     player.on_state(at(1, 100.0)._replace(unit=0.5), 100.0, 100.0)
     assert player.next_moment() == 101.75
@@ -133,7 +138,7 @@ def test_a_trace_is_said_at_its_moments_after_the_start() -> None:
 
 
 def test_a_restart_does_not_play_the_past_again() -> None:
-    player = ui_players.Scripted(steps((3.0, "thief_a2b"), (40.0, "thief_b2a")))
+    player = Scripted(steps((3.0, "thief_a2b"), (40.0, "thief_b2a")))
     player.on_state(at(7, 120.0), 100.0, 120.0)
     assert player.due(120.0) == []
     assert player.next_moment() == 140.0
@@ -161,8 +166,8 @@ def test_no_order_after_its_zone() -> None:
 
 
 def test_people_are_told_in_words_once_it_is_taken() -> None:
-    walker = pursue_model.Model(model_data(mover("nurse", "human", 9)))
-    told = ui_core.Mission(walker, ui_players.StandStill())
+    walker = Model(model_data(mover("nurse", "human", 9)))
+    told = Mission(walker, StandStill())
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
     lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
     assert [line.strip() for line in lines] == ["4.0  nurse_a2b", "nurse: go from a to b now"]
@@ -215,8 +220,8 @@ def test_the_end_and_its_reason_are_told(status: str, reason: str, code: int, sa
 
 
 def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
-    safe = pursue_model.Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
-    told = ui_core.Mission(safe, ui_players.StandStill())
+    safe = Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
+    told = Mission(safe, StandStill())
     told.on_state(at(5, 131.5, status="won"), 131.5)
     assert told.verdict() == (0, "The objective was kept to the end, after 31.5 time units.")
 
@@ -231,7 +236,7 @@ def test_progress_says_where_everybody_is() -> None:
 # Who is ready
 
 def test_the_missing_are_named_until_they_are_ready() -> None:
-    nodes = ui_core.Readiness(["observer", "/controller_bot", "simulator"])
+    nodes = Readiness(["observer", "/controller_bot", "simulator"])
     nodes.heard("/observer", True)
     nodes.heard("stranger", True)
     assert nodes.missing() == ["controller_bot", "simulator"]
@@ -242,7 +247,7 @@ def test_the_missing_are_named_until_they_are_ready() -> None:
 
 # What is typed
 
-OFFERS = [ui_core.Opening("thief_a2b", 0.0, float("inf")), ui_core.Opening("boy:screw", 2.5, 4.0)]
+OFFERS = [Opening("thief_a2b", 0.0, float("inf")), Opening("boy:screw", 2.5, 4.0)]
 
 
 @pytest.mark.parametrize("text, word, remark", [
@@ -258,11 +263,11 @@ OFFERS = [ui_core.Opening("thief_a2b", 0.0, float("inf")), ui_core.Opening("boy:
     ("", "", ""),
 ])
 def test_what_is_typed_becomes_a_word(text: str, word: str, remark: str) -> None:
-    assert ui_core.answer(text, OFFERS, {"screw", "thief_a2b"}) == (word, remark)
+    assert answer(text, OFFERS, {"screw", "thief_a2b"}) == (word, remark)
 
 
 def test_the_menu_lists_by_number() -> None:
-    lines = ui_core.menu(OFFERS)
+    lines = menu(OFFERS)
     assert lines[0].split() == ["1", "thief_a2b"]
     assert lines[1].split()[:2] == ["2", "boy:screw"] and "in 2.5 time units, for 1.5" in lines[1]
     assert "stop" in lines[-1]
@@ -271,17 +276,17 @@ def test_the_menu_lists_by_number() -> None:
 # What people report
 
 def test_people_report_the_end_of_what_they_are_told() -> None:
-    crew = pursue_model.Model(model_data(mover("nurse", "human", 9), worker("cook", "human"), worker("boy", "agent")))
+    crew = Model(model_data(mover("nurse", "human", 9), worker("cook", "human"), worker("boy", "agent")))
     busy = state(crew, 3, 100.0, {}, nurse="going_a_to_b", cook="doing_screw_in_s", boy="doing_screw_in_s")
-    given = ui_core.tasks(crew, busy)
+    given = tasks(crew, busy)
     assert [(task.agent, task.text) for task in given] == [("nurse", "go from a to b"), ("cook", "do screw, at s")]
-    assert ui_core.tasks(crew, state(crew, 1, 100.0, {})) == []
-    assert ui_core.answer("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
-    assert ui_core.answer("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
-    assert ui_core.answer("done", [], set(), given) == ("", "who? expected done nurse or done cook")
-    assert ui_core.answer("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
-    assert ui_core.answer("done boy", [], set(), given) == ("", "boy has nothing to do now")
-    assert ui_core.answer("done", [], set(), []) == ("", "there is nothing to do now")
+    assert tasks(crew, state(crew, 1, 100.0, {})) == []
+    assert answer("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
+    assert answer("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
+    assert answer("done", [], set(), given) == ("", "who? expected done nurse or done cook")
+    assert answer("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
+    assert answer("done boy", [], set(), given) == ("", "boy has nothing to do now")
+    assert answer("done", [], set(), []) == ("", "there is nothing to do now")
 
 
 def test_a_state_that_comes_late_is_no_news() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import py_compile
 import re
 import shutil
 import socket
@@ -14,8 +13,7 @@ from typing import Dict, Iterator
 
 import pytest
 import yaml
-from rendered_scripts import TEMPLATES
-from ui_package import SCRIPTS, model_data, mover
+from ui_package import model_data, mover
 
 from tests.waiting import PATIENCE
 
@@ -24,18 +22,26 @@ from ros_world import Ros, end
 
 pytest.importorskip("rospy", reason="ROS is not installed")
 
+SCRIPT = """
+import sys
+from pursue_runtime.data import Package
+from pursue_runtime.nodes import ui
+
+sys.exit(ui.main(Package("UI", "example", __file__)))
+"""
+
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A package UI with a small model."""
     folder = tmp_path_factory.mktemp("UI")
-    shutil.copytree(str(SCRIPTS), str(folder / "scripts"))
+    (folder / "scripts").mkdir()
+    (folder / "scripts" / "UI").write_text(SCRIPT)
     (folder / "config").mkdir()
     model = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
     (folder / "config" / "model.yaml").write_text(yaml.safe_dump(model))
     (folder / "config" / "ui.yaml").write_text("format: 1\nnodes: [observer, controller_bot]\n")
     (folder / "config" / "poses.yaml").write_text("format: 1\nposes: {a: [0, 0, 0], b: [9, 0, 0]}\n")
-    shutil.copytree(str(TEMPLATES / "UI" / "web"), str(folder / "web"))
     return folder
 
 
@@ -53,11 +59,6 @@ def run(package: Path, environment: Dict[str, str], *arguments: str) -> "subproc
     command = [sys.executable, str(package / "scripts" / "UI"), *arguments]
     return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, universal_newlines=True, timeout=2 * PATIENCE)
-
-
-@pytest.mark.parametrize("script", ["UI", "simulator", "sim_clock"])
-def test_the_scripts_are_python(script: str, tmp_path: Path) -> None:
-    py_compile.compile(str(SCRIPTS / script), cfile=str(tmp_path / "compiled"), doraise=True)
 
 
 def test_help_needs_no_roscore(package: Path) -> None:
@@ -132,7 +133,6 @@ class Stage:
 
     def __init__(self, environment: Dict[str, str]) -> None:
         code = (Path(__file__).parent / "ui_stage.py").read_text()
-        environment = {**environment, "PYTHONPATH": str(SCRIPTS)}
         self.process = subprocess.Popen([sys.executable, "-c", code], env=environment, start_new_session=True)
 
     def __enter__(self) -> "Stage":

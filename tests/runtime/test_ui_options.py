@@ -5,11 +5,14 @@ from __future__ import annotations
 import io
 
 import pytest
-from ui_package import ui_options, ui_terminal
+
+from pursue_runtime.ui import options as ui_options
+from pursue_runtime.ui.options import OptionError, read_options
+from pursue_runtime.ui.terminal import GOOD, Terminal
 
 
 def read(arguments=(), params=None, terminal: bool = False, nodes=("observer",)):
-    return ui_options.read_options(list(arguments), params or {}, terminal, nodes)
+    return read_options(list(arguments), params or {}, terminal, nodes)
 
 
 def test_a_terminal_is_asked_and_none_stands_still() -> None:
@@ -64,7 +67,7 @@ def test_whoever_has_a_page_starts_the_mission_there() -> None:
     ({"nodes": 7}, "nodes is 7; expected a list of names"),
 ])
 def test_a_wrong_option_is_refused(params: dict, expected: str) -> None:
-    with pytest.raises(ui_options.OptionError) as caught:
+    with pytest.raises(OptionError) as caught:
         read(params=params)
     assert expected in str(caught.value)
 
@@ -74,7 +77,7 @@ def test_the_nodes_are_those_of_the_mission_but_for_what_this_launch_knows_bette
     assert ui_options.expected({}, listed) == listed
     assert ui_options.expected({"without": "simulator", "also": "recorder"}, listed) == (*listed[:2], "recorder")
     assert ui_options.expected({"nodes": "one, two", "also": "recorder"}, listed) == ("one", "two")
-    with pytest.raises(ui_options.OptionError, match="without"):
+    with pytest.raises(OptionError, match="without"):
         ui_options.expected({"without": 7}, listed)
 
 
@@ -83,7 +86,7 @@ def test_help_says_what_there_is(capsys: pytest.CaptureFixture) -> None:
         read(["--help"])
     assert left.value.code == 0
     said = capsys.readouterr().out
-    assert all(word in said for word in ("--mode", "--trace", "--seed", "example", "Exit status"))
+    assert all(word in said for word in ("--mode", "--trace", "--seed", "Starts the mission", "Exit status"))
 
 
 class Screen(io.StringIO):
@@ -92,9 +95,9 @@ class Screen(io.StringIO):
 
 
 def written(stream: io.StringIO, environment: dict) -> str:
-    terminal = ui_terminal.Terminal(stream, environment)
+    terminal = Terminal(stream, environment)
     terminal.progress("3.0 on the way")
-    terminal.line("done", ui_terminal.GOOD)
+    terminal.line("done", GOOD)
     terminal.close()
     return stream.getvalue()
 

@@ -6,21 +6,26 @@ import json
 from typing import Any, Dict, Optional
 
 import pytest
-from ui_package import model_data, mover, pursue_library, pursue_model, state, ui_page, worker
+from ui_package import model_data, mover, state, worker
 
-MODEL = pursue_model.Model(
+from pursue_runtime.data import DataError
+from pursue_runtime.model import Model
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.page import KEPT, Facts, Page, Plan, read_plan, read_request
+
+MODEL = Model(
     model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent"))
 )
 PLACES = {"a": (0.0, 0.0), "b": (9.0, 0.0), "s": (3.0, 4.0)}
-PLAN = ui_page.Plan(PLACES, (("a", "b", 9.0),))
+PLAN = Plan(PLACES, (("a", "b", 9.0),))
 
 
 def page(**more: Any) -> Any:
-    return ui_page.Page(MODEL, PLAN, **more)
+    return Page(MODEL, PLAN, **more)
 
 
 def view(shown: Any, now: Any, at: float = 0.0, phase: str = "running", verdict: Any = None) -> Dict[str, Any]:
-    seen: Dict[str, Any] = shown.view(ui_page.Facts(phase, (), now, at, at, verdict))
+    seen: Dict[str, Any] = shown.view(Facts(phase, (), now, at, at, verdict))
     json.dumps(seen, allow_nan=False)
     return seen
 
@@ -53,12 +58,12 @@ def test_ends_are_buttons_only_on_request() -> None:
 
 def test_a_map_is_read_and_a_wrong_one_refused() -> None:
     poses = {"poses": {"a": [1, 2, 0, 0, 0, 0, 1], "b": [3, 4, 0, 0, 0, 0, 1]}}
-    plan = ui_page.read_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
-    assert plan == ui_page.Plan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
-    assert ui_page.read_plan(poses, {}).ways == ()
+    plan = read_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
+    assert plan == Plan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
+    assert read_plan(poses, {}).ways == ()
     for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}):
-        with pytest.raises(pursue_library.DataError):
-            ui_page.read_plan(wrong, {})
+        with pytest.raises(DataError):
+            read_plan(wrong, {})
 
 
 # Who does what
@@ -170,17 +175,17 @@ def test_the_log_tells_of_holding_of_lost_agents_and_of_new_plans() -> None:
 
 def test_the_log_keeps_what_is_new() -> None:
     shown = page()
-    for number in range(ui_page.KEPT + 5):
+    for number in range(KEPT + 5):
         shown.note(float(number), "x")
-    assert len(shown.log) == ui_page.KEPT
-    assert shown.log[-1]["n"] == ui_page.KEPT + 5
+    assert len(shown.log) == KEPT
+    assert shown.log[-1]["n"] == KEPT + 5
 
 
 def test_states_of_strangers_do_no_harm() -> None:
     shown = page()
-    strange = pursue_library.SystemState(9, 1.0, {"who": "where"}, {"n": 1}, {}, "what", "who")
+    strange = SystemState(9, 1.0, {"who": "where"}, {"n": 1}, {}, "what", "who")
     assert [entry["text"] for entry in shown.on_state(strange, 3.0)] == ["what"]
-    hostile = pursue_library.SystemState(10, 1.0, {"bot": "<script>"}, {"Prule": 0}, dict.fromkeys(MODEL.clocks, 0.0))
+    hostile = SystemState(10, 1.0, {"bot": "<script>"}, {"Prule": 0}, dict.fromkeys(MODEL.clocks, 0.0))
     assert agent(view(shown, hostile), "bot")["place"] == ""
 
 
@@ -193,7 +198,7 @@ def test_states_of_strangers_do_no_harm() -> None:
     (b'{"do": "done", "word": "nurse:screwDONE"}', ("done", "nurse:screwDONE")),
 ])
 def test_requests_are_read(text: Any, request_: Any) -> None:
-    assert ui_page.read_request(text) == request_
+    assert read_request(text) == request_
 
 
 @pytest.mark.parametrize("text", [
@@ -203,4 +208,4 @@ def test_requests_are_read(text: Any, request_: Any) -> None:
 ])
 def test_junk_is_refused_with_what_was_expected(text: Any) -> None:
     with pytest.raises(ValueError, match="expected"):
-        ui_page.read_request(text)
+        read_request(text)

@@ -15,21 +15,20 @@ import sys
 from typing import Any, Iterator, List, Tuple
 
 import pytest
-from rendered_scripts import TEMPLATES
-from ui_package import SCRIPTS
 
+from pursue_runtime.ui.board import STATIC
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 
 PROGRAM = """
 import resource, sys
-import ui_web
+from pursue_runtime.ui import web as page
 
 soft, longest = int(sys.argv[2]), float(sys.argv[3])
 resource.setrlimit(resource.RLIMIT_NOFILE, (soft, soft))
-ui_web.PATIENCE = ui_web.LONGEST = longest
-web = ui_web.Web(sys.argv[1], "127.0.0.1", 0, "a token", dict, str, lambda: None)
+page.PATIENCE = page.LONGEST = longest
+web = page.Web(sys.argv[1], "127.0.0.1", 0, "a token", dict, str, lambda: None)
 web.start()
 print(web.port, flush=True)
 sys.stdin.read()
@@ -41,9 +40,9 @@ CHUNKED = b"Host: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n"
 @contextlib.contextmanager
 def serving(files: int = 256, longest: float = 60.0) -> Iterator[Tuple[int, "subprocess.Popen[bytes]"]]:
     """A server with a token, of which we know nothing; `files`: so many may be open in its process."""
-    words = [sys.executable, "-c", PROGRAM, str(TEMPLATES / "UI" / "web"), str(files), str(longest)]
+    words = [sys.executable, "-c", PROGRAM, str(STATIC), str(files), str(longest)]
     pipe = subprocess.PIPE
-    with subprocess.Popen(words, cwd=str(SCRIPTS), stdin=pipe, stdout=pipe, stderr=pipe) as process:
+    with subprocess.Popen(words, stdin=pipe, stdout=pipe, stderr=pipe) as process:
         assert process.stdout is not None and process.stdin is not None
         try:
             there, _, _ = select.select([process.stdout], [], [], PATIENCE)

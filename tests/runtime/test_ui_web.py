@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import importlib
 import json
 import socket
 import threading
@@ -13,18 +12,19 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import pytest
-from rendered_scripts import TEMPLATES
-from ui_package import ui_page
+
+from pursue_runtime.ui import web as ui_web
+from pursue_runtime.ui.page import read_request
+from pursue_runtime.ui.web import JUNK, LARGEST, Web, WebError, is_loopback
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
+from pursue_runtime.ui.board import STATIC
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
-ui_web: Any = importlib.import_module("ui_web")
-
-FOLDER = str(TEMPLATES / "UI" / "web")
+FOLDER = STATIC
 TOKEN = "correct horse"
 
 
@@ -39,7 +39,7 @@ class Node:
         return {"type": "hello"}
 
     def ask(self, message: Any) -> str:
-        request = ui_page.read_request(message)
+        request = read_request(message)
         self.asked.append(request)
         return "not now" if request.word == "later" else ""
 
@@ -61,7 +61,7 @@ def serve(node: Node) -> Iterator[Serve]:
     started = []
 
     def start(host: str = "127.0.0.1", token: str = "", port: int = 0) -> Any:
-        web = ui_web.Web(FOLDER, host, port, token, node.welcome, node.ask, node.moment)
+        web = Web(FOLDER, host, port, token, node.welcome, node.ask, node.moment)
         web.start()
         started.append(web)
         return web
@@ -243,7 +243,7 @@ def test_junk_is_answered_and_too_much_of_it_ends_the_talk(serve: Serve, node: N
     async def script(there: Any) -> Any:
         await there.read_message()
         answers = []
-        for number in range(ui_web.JUNK):
+        for number in range(JUNK):
             await there.write_message(b"\xff" if number % 2 else "{", binary=bool(number % 2))
             answers.append(await there.read_message())
         return answers
@@ -258,7 +258,7 @@ def test_junk_is_answered_and_too_much_of_it_ends_the_talk(serve: Serve, node: N
 def test_messages_that_are_too_long_end_the_talk(serve: Serve, node: Node) -> None:
     async def script(there: Any) -> Any:
         await there.read_message()
-        await there.write_message(json.dumps({"do": "say", "word": "x" * ui_web.LARGEST}))
+        await there.write_message(json.dumps({"do": "say", "word": "x" * LARGEST}))
         return await there.read_message()
 
     web = serve()
@@ -345,7 +345,7 @@ def test_the_last_word_goes_out_before_the_end(serve: Serve) -> None:
 
 def test_a_port_that_is_taken_is_told_with_what_to_do(serve: Serve) -> None:
     web = serve()
-    with pytest.raises(ui_web.WebError, match=f"port {web.port}.*choose another --port"):
+    with pytest.raises(WebError, match=f"port {web.port}.*choose another --port"):
         serve(port=web.port)
 
 
@@ -354,7 +354,7 @@ def test_an_address_that_is_not_ours_is_told(serve: Serve, host: str) -> None:
     if host == "":
         assert serve(host).token, "everywhere: with a token"
         return
-    with pytest.raises(ui_web.WebError, match="choose another"):
+    with pytest.raises(WebError, match="choose another"):
         serve(host)
 
 
@@ -363,4 +363,4 @@ def test_an_address_that_is_not_ours_is_told(serve: Serve, host: str) -> None:
     ("", False), ("10.0.0.1", False), ("robot", False), ("localhost.example", False),
 ])
 def test_loopback_is_told_from_other_addresses(host: str, loopback: bool) -> None:
-    assert ui_web.is_loopback(host) is loopback
+    assert is_loopback(host) is loopback

@@ -2,24 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 from typing import Any, Dict
 
-from rendered_scripts import importable
-
-SCRIPTS = importable("UI", package="UI")
-
-pursue_library: Any = importlib.import_module("pursue_library")
-pursue_model: Any = importlib.import_module("pursue_model")
-pursue_strategy: Any = importlib.import_module("pursue_strategy")
-sim_clock_core: Any = importlib.import_module("sim_clock_core")
-simulator_core: Any = importlib.import_module("simulator_core")
-ui_core: Any = importlib.import_module("ui_core")
-ui_options: Any = importlib.import_module("ui_options")
-ui_page: Any = importlib.import_module("ui_page")
-ui_players: Any = importlib.import_module("ui_players")
-ui_terminal: Any = importlib.import_module("ui_terminal")
-ui_trace: Any = importlib.import_module("ui_trace")
+from pursue_runtime.state import SystemState
 
 
 def mover(name: str, kind: str, speed: int) -> Dict[str, Any]:
@@ -65,7 +50,7 @@ def state(model: Any, seq: int, stamp: float, clocks: Dict[str, float], status: 
           agent: str = "", reason: str = "", unit: float = 1.0, values: Any = None, **locations: str) -> Any:
     """A system state of the model: everything at its start but what is named."""
     start = model.initial()
-    return pursue_library.SystemState(
+    return SystemState(
         seq, stamp, {**start.locations, **locations}, {**start.values, **(values or {})}, {**start.clocks, **clocks},
         event, agent, status, reason, unit,
     )

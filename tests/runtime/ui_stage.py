@@ -4,8 +4,10 @@ import os
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from pursue_library import EVENTS, LOST, RUNNING, START, SYSTEM_STATE, WAITING, SystemState, format_state
 from std_msgs.msg import String
+
+from pursue_runtime.state import LOST, RUNNING, WAITING, SystemState, format_state
+from pursue_runtime.words import EVENTS, START, SYSTEM_STATE
 
 UNIT = 10.0  # seconds; who hears of the start later than that skips what a trace says of its beginning
 begun = []

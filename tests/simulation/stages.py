@@ -47,7 +47,7 @@ def stage(name: str) -> Stage:
 
 
 def sabotaged(name: str, path: str, old: str, new: str) -> Stage:
-    """Its stage, with something else in one file of the workspace."""
+    """Its stage, with something else in one data file of the workspace."""
     found = files(name)
     text = found[path].decode()
     assert old in text, f"{path} does not hold {old!r}"

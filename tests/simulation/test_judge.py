@@ -1,56 +1,62 @@
-"""The judge sees what must never be: each part of the generated code is sabotaged in turn."""
+"""The judge sees what must never be: each part of the run time is sabotaged in turn."""
 
 from __future__ import annotations
 
-from typing import Any, Dict
+import inspect
+import sys
+import textwrap
+from typing import Any, Dict, Mapping, Sequence, Tuple
 
 import pytest
 from stages import THIEF, files, missions, sabotaged, solved, stage
 
 from pursue_gen.simulation.commands import commands_of
 from pursue_gen.simulation.judge import Judge
-from pursue_gen.simulation.mission import FAILED, Settings
+from pursue_gen.simulation.mission import FAILED, Outcome, Settings
+from pursue_runtime.controller.player import Player
+from pursue_runtime.observer.board import Board
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.state import SystemState
 
-SABOTAGE = {
-    "another command": (
-        "src/controller_polBot1/config/strategy.yaml",
-        "do: polBot1_a2b\n    agent: polBot1\n    from: a\n    to: going_a_to_b",
-        "do: polBot1_a2d\n    agent: polBot1\n    from: a\n    to: going_a_to_d",
-        "wrong command: the strategy does not hold polBot1_a2d",
-    ),
+SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
     "a clock that is not reset": (
-        "src/observer/scripts/observer_board.py",
-        "dict.fromkeys(edge.resets, now)",
-        "dict.fromkeys(edge.resets[:0], now)",
-        ", not 0.0",
+        Board, "take", "dict.fromkeys(edge.resets, now)", "dict.fromkeys(edge.resets[:0], now)", ", not 0.0"
     ),
     "a variable that is not set": (
-        "src/observer/scripts/observer_board.py",
-        "self._values.update(edge.assign)",
-        "self._values.update({})",
-        "is no step of the network",
+        Board, "take", "self._values.update(edge.assign)", "self._values.update({})", "is no step of the network"
     ),
-    "a number that is skipped": (
-        "src/observer/scripts/observer_core.py",
-        "            self.seq += 1\n            self.counts",
-        "            self.seq += 2\n            self.counts",
-        "state 3 follows state 1",
-    ),
+    "a number that is skipped": (Mission, "_take", "self.seq += 1", "self.seq += 2", "state 3 follows state 1"),
     "an order for another place": (
-        "src/controller_polBot1/scripts/controller_core.py",
-        'orders.append(Order(agent, state.event if own else action_of(target), origin, target))',
+        Player,
+        "_begun",
+        "orders.append(Order(agent, state.event if own else action_of(target), origin, target))",
         'orders.append(Order(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
         "wrong order: polBot1 is told",
     ),
-}
+}  # fmt: skip
+"""A class of the run time, its method, a part of its code, what takes the place of that, and what the judge says."""
 
 
 @pytest.mark.parametrize("what", SABOTAGE)
-def test_sabotage_is_seen(what: str) -> None:
-    path, old, new, problem = SABOTAGE[what]
-    if path.endswith("controller_core.py"):  # any copy of a module is the one that is loaded
-        path = next(other for other in sorted(files(THIEF)) if other.endswith("/controller_core.py"))
-    outcomes = missions(THIEF, 10, Settings("random"), sabotaged(THIEF, path, old, new))
+def test_sabotage_of_the_run_time_is_seen(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    kind, method, old, new, problem = SABOTAGE[what]
+    source = textwrap.dedent(inspect.getsource(getattr(kind, method)))
+    assert old in source
+    scope = dict(vars(sys.modules[kind.__module__]))
+    exec(compile("from __future__ import annotations\n" + source.replace(old, new), method, "exec"), scope)
+    monkeypatch.setattr(kind, method, scope[method])
+    assert_seen(missions(THIEF, 10, Settings("random")), problem)
+
+
+def test_another_command_is_seen() -> None:
+    path = "src/controller_polBot1/config/strategy.yaml"
+    old = "do: polBot1_a2b\n    agent: polBot1\n    from: a\n    to: going_a_to_b"
+    stage = sabotaged(THIEF, path, old, old.replace("a2b", "a2d").replace("a_to_b", "a_to_d"))
+    outcomes = missions(THIEF, 10, Settings("random"), stage)
+    assert_seen(outcomes, "wrong command: the strategy does not hold polBot1_a2d")
+
+
+def assert_seen(outcomes: Sequence[Outcome], problem: str) -> None:
     failed = [outcome for outcome in outcomes if outcome.end == FAILED]
     assert failed
     assert any(problem in outcome.reason for outcome in failed), failed[0].reason
@@ -79,7 +85,7 @@ def first(seq: int = 1, now: float = 0.0, **more: Any) -> Any:
     on = stage(THIEF)
     at: Dict[str, str] = {automaton.name: automaton.initial for automaton in on.model.automata}
     clocks = dict.fromkeys(on.model.clocks, now)
-    state = on.pursue_library.SystemState(seq, now, at, dict(on.model.variables), clocks)
+    state = SystemState(seq, now, at, dict(on.model.variables), clocks)
     return state._replace(**more)
 
 

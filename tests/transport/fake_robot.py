@@ -21,7 +21,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat
 
 from pursue_gen.transport.client import Robot
-from pursue_gen.transport.mission_bundle import (
+from pursue_runtime.bundle import (
     ABORT,
     COMMIT,
     OWN,

@@ -20,8 +20,8 @@ from pursue_gen.language import load
 from pursue_gen.language.scenario import Pose
 from pursue_gen.transport.bundles import AskedMission, make_mission, read_bundle, sign
 from pursue_gen.transport.keys import load_private, new_key, public_keys
-from pursue_gen.transport.mission_bundle import Bundle, Manifest, fingerprint, make_manifest, mission_file
 from pursue_gen.transport.poses_file import read_poses, with_poses
+from pursue_runtime.bundle import Bundle, Manifest, fingerprint, make_manifest, mission_file
 from tests.authoring.commands import Outcome, pursue
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.transport.client import ANSWER_LIMIT, Robot, Unreached, health, plain, send_order
 from pursue_gen.transport.client import _status as status_of
-from pursue_gen.transport.mission_bundle import ABORT, Order, write_order
+from pursue_runtime.bundle import ABORT, Order, write_order
 from tests.waiting import PATIENCE
 
 NEW, _ = bundle()

@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import BestAvailableEncryption
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.transport.keys import default_key, key_names, keys_folder, load_private, load_public, new_key
-from pursue_gen.transport.mission_bundle import fingerprint, read_keys
+from pursue_runtime.bundle import fingerprint, read_keys
 from tests.authoring.commands import pursue
 from tests.waiting import PATIENCE
 

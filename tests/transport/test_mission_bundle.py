@@ -22,8 +22,8 @@ pytest.importorskip("cryptography", reason="cryptography is not installed")
 
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
-from pursue_gen.transport import mission_bundle as mb
-from pursue_gen.workspace.packages import desk_modules
+from pursue_gen.workspace.packages import runtime_package
+from pursue_runtime import bundle as mb
 
 KEY = Ed25519PrivateKey.from_private_bytes(bytes(range(32)))
 OTHER = Ed25519PrivateKey.from_private_bytes(bytes(range(1, 33)))
@@ -113,13 +113,14 @@ def test_different_files_have_different_digests(one: Dict[str, bytes], other: Di
 
 
 def test_robots_have_the_same_code(tmp_path: Path) -> None:
-    """The copies in a robot's package import each other, need nothing of pursue_gen, and accept what the desk packs."""
-    for name, content in desk_modules({"generator": "0", "scenario": "thief"}).items():
-        (tmp_path / name).write_bytes(content)
+    """The copy in a workspace needs nothing of pursue_gen, and accepts what the desk packs."""
+    for path, content in runtime_package().data.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_bytes(content)
     (tmp_path / "bundle").write_bytes(packed())
     (tmp_path / "lab.pub").write_text(mb.write_public_key(KEY.public_key(), "lab"))
     program = (
-        "import sys; sys.path.insert(0, '.'); import mission_bundle as mb; keys, _ = mb.read_keys('.');"
+        "import sys; sys.path.insert(0, 'src'); from pursue_runtime import bundle as mb; keys, _ = mb.read_keys('.');"
         "print(mb.unpack(open('bundle', 'rb').read(), keys).digest, 'pursue_gen' in sys.modules)"
     )
     environment = {**os.environ, "PYTHONPATH": ""}

@@ -17,9 +17,9 @@ from fake_robot import bundle as make_bundle
 
 from pursue_gen.cli.app import main
 from pursue_gen.transport.client import Robot, Status
-from pursue_gen.transport.mission_bundle import OWN, mission_id
 from pursue_gen.transport.send_checks import asked_mission, previous
 from pursue_gen.transport.send_table import upload_lines
+from pursue_runtime.bundle import OWN, mission_id
 from tests.waiting import PATIENCE
 
 SCENARIO = str(Path(__file__).resolve().parent.parent.parent / "scenarios" / "thesis" / "scenario_1.pur")

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.transport.client import Robot, Status
-from pursue_gen.transport.mission_bundle import OWN
 from pursue_gen.transport.sender import Sent, look, send, wait
+from pursue_runtime.bundle import OWN
 from tests.waiting import PATIENCE
 
 NEW, CONTENT = bundle("catch")

@@ -25,6 +25,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace import Options, generate, write_tree
 from pursue_gen.workspace.deploy import DEBIAN_PACKAGES, service_names
 from pursue_gen.workspace.machines import Machine, Machines
+from pursue_gen.workspace.packages import SHARED
 from tests.waiting import PATIENCE
 
 OPTIONS = Options(reaction=REACTION, docker=True, systemd=True)
@@ -152,7 +153,7 @@ def test_one_container_for_each_node_with_its_own_package(compose: Dict[str, Any
     assert nodes == {(name, name) for name in CONTROLLERS | {"observer", "UI"}} | {("UI", "simulator")}
     for name, service in services.items():
         if name != "master":
-            assert service["build"]["args"]["PACKAGES"] == service["command"][1]
+            assert service["build"]["args"]["PACKAGES"].split(";") == [*SHARED, service["command"][1]]
             assert service["depends_on"] == {"master": {"condition": "service_healthy"}}
             assert service["healthcheck"]["test"][-1] == "/" + service["command"][2]
 

@@ -40,8 +40,8 @@ def test_nodes_do_so_too_where_nobody_has_given_an_address() -> None:
     for path, text in files().items():
         for default in re.findall(r"""get_param\("~host", ([^)]*)\)|found\.get\("host"\) or ([^)]*)\)""", text):
             found[path.rsplit("/", 1)[-1]] = "".join(default).strip('"')
-        if path.endswith("ui_options.py"):
+        if path.endswith("ui/options.py"):
             assert re.search(rf'^    host: str = "{LOOPBACK}"$', text, re.MULTILINE)
-    assert found == {"communication_manager": LOOPBACK, "ui_options.py": LOOPBACK}
+    assert found == {"communication_manager.py": LOOPBACK, "options.py": LOOPBACK}
     listening = {path.rsplit("/", 1)[-1] for path, text in files().items() if OPENS.search(text)}
-    assert listening == {"communication_manager", "manager_loop.py", "ui_web.py"}, listening
+    assert listening == {"communication_manager.py", "background.py", "web.py"}, listening

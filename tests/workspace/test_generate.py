@@ -16,14 +16,15 @@ import pytest
 import yaml
 from worlds import SCENARIOS, files, world
 
+import pursue_runtime
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
-from pursue_gen.transport import mission_bundle
 from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
-from pursue_gen.workspace.packages import RECEIVING
+from pursue_gen.workspace.packages import RECEIVING, RUNTIME
+from pursue_runtime import bundle
 
 SHAPES = [
     ("thesis/scenario_1", "distributed", "dedicated"),
@@ -54,7 +55,7 @@ def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
 
 
 def test_one_package_for_each_node() -> None:
-    common = {"observer", "UI", "catch_the_thief_bringup", *RECEIVING}
+    common = {"observer", "UI", "catch_the_thief_bringup", RUNTIME, *RECEIVING}
     robots = {"controller_polBot1", "controller_polBot2"}
     name = "thesis/catch_the_thief"
     assert packages(files(name)) == common | robots | {"controllerObj"}
@@ -73,16 +74,37 @@ def test_manifests_are_valid_and_named_like_their_folders(generated: Dict[str, b
         parsed.validate()
         assert parsed.name == name
         assert [d.name for d in parsed.buildtool_depends] == ["catkin"]
-        assert name.endswith("_bringup") or {"rospy", "std_msgs"} <= {d.name for d in parsed.exec_depends}
+        assert name.endswith(("_bringup", RUNTIME)) or RUNTIME in {d.name for d in parsed.exec_depends}
 
 
-def test_every_ros_import_is_in_the_manifest(generated: Dict[str, bytes]) -> None:
-    keys = {"yaml": "python3-yaml", "transitions": "python3-transitions"}
-    known = {"rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "rostest", *keys}
+def test_what_a_node_imports_is_in_its_manifest_or_that_of_the_run_time(generated: Dict[str, bytes]) -> None:
+    keys = {"yaml": "python3-yaml", "transitions": "python3-transitions", "tornado": "python3-tornado"}
+    keys["cryptography"] = "python3-cryptography"
+    known = {"rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "rosbag", "rostest", *keys}
     for path, text in python(generated).items():
-        manifest = generated["/".join(path.split("/")[:2]) + "/package.xml"].decode()
-        for module in imports(text) & known:
-            assert f"_depend>{keys.get(module, module)}<" in manifest, f"{path} imports {module}"
+        package = path.split("/")[1]
+        if package == RUNTIME:
+            continue
+        manifest = b"".join(generated[f"src/{name}/package.xml"] for name in (package, RUNTIME)).decode()
+        for module in reached(text, generated) & known:
+            assert f"_depend>{keys.get(module, module)}<" in manifest, f"{path} needs {module}"
+
+
+def reached(text: str, generated: Dict[str, bytes]) -> Set[str]:
+    """What a script imports, directly or by way of modules of the run time that are imported at once."""
+    found: Set[str] = set()
+    waiting, seen = [ast.parse(text)], set()
+    while waiting:
+        tree = waiting.pop()
+        for node in (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module):
+            names = [node.module, *(f"{node.module}.{name.name}" for name in node.names)]
+            for module in set(names) - seen:
+                seen.add(module)
+                path = f"src/{RUNTIME}/src/{module.replace('.', '/')}.py"
+                if path in generated:
+                    waiting.append(ast.parse(generated[path].decode()))
+        found |= imports(ast.unparse(tree))
+    return found
 
 
 def imports(text: str) -> Set[str]:
@@ -94,19 +116,23 @@ def imports(text: str) -> Set[str]:
     return found
 
 
-def test_every_package_is_complete_in_itself(generated: Dict[str, bytes]) -> None:
-    modules = {Path(path).stem for path in generated if "/scripts/" in path and path.endswith(".py")}
-    for path, text in python(generated).items():
-        for module in imports(text) & modules:
-            assert f"{path.rsplit('/', 1)[0]}/{module}.py" in generated, f"{path} imports {module}"
+def test_the_run_time_is_there_once_and_byte_for_byte_what_is_imported_here(generated: Dict[str, bytes]) -> None:
+    root = Path(pursue_runtime.__file__).parent
+    ours = {path for path in root.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
+    head = f"src/{RUNTIME}/src/{RUNTIME}/"
+    assert {path[len(head):] for path in generated if path.startswith(head)} == {
+        path.relative_to(root).as_posix() for path in ours
+    }
+    assert all(generated[head + path.relative_to(root).as_posix()] == path.read_bytes() for path in ours)
+    assert not [path for path in generated if path.endswith(".py") and "/scripts/" in path]
 
 
-def test_no_package_carries_a_module_that_it_does_not_use(generated: Dict[str, bytes]) -> None:
-    scripts = {path: text for path, text in python(generated).items() if "/scripts/" in path}
-    for path in scripts:
-        folder, name = path.rsplit("/", 1)
-        users = [text for other, text in scripts.items() if other.startswith(f"{folder}/") and other != path]
-        assert not name.endswith(".py") or any(name[:-3] in imports(text) for text in users), path
+def test_the_script_of_a_node_is_small_and_says_where_it_comes_from(generated: Dict[str, bytes]) -> None:
+    scripts = {path: text for path, text in python(generated).items() if not path.startswith(f"src/{RUNTIME}/")}
+    assert scripts
+    for path, text in scripts.items():
+        assert len(text.splitlines()) <= 40, path
+        assert "Generated by pursue-gen" in text.splitlines()[1], path
 
 
 def test_what_cmake_names_is_there_and_everything_is_installed(generated: Dict[str, bytes]) -> None:
@@ -117,26 +143,21 @@ def test_what_cmake_names_is_there_and_everything_is_installed(generated: Dict[s
         named = set(re.findall(r"(?:scripts|test)/[\w.]+", cmake))
         assert named <= inside
         assert {p for p in inside if p.startswith("scripts/")} <= named
-        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts"}
+        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts", "src"}
         for folder in folders:
             assert re.search(rf"install\(DIRECTORY[^)]*\b{folder}\b", cmake), f"{name}/{folder} is not installed"
 
 
 def test_robots_check_missions_with_the_desks_own_code(generated: Dict[str, bytes]) -> None:
-    ours = (Path(mission_bundle.__file__)).read_text(encoding="utf-8")
+    assert generated[f"src/{RUNTIME}/src/{RUNTIME}/bundle.py"] == Path(bundle.__file__).read_bytes()
     for package in RECEIVING:
-        theirs = generated[f"src/{package}/scripts/mission_bundle.py"].decode()
-        head, _, rest = theirs.partition("\n")
-        assert head.startswith("# Generated by pursue-gen ")
-        assert rest.split("import", 1)[0] == ours.split("import", 1)[0]
-        assert "pursue_gen" not in imports(theirs)
         assert "_depend>python3-cryptography<" in generated[f"src/{package}/package.xml"].decode()
         assert f"rosrun {package}" not in generated["README.md"].decode()
 
 
 def test_each_package_has_the_node_of_its_name(generated: Dict[str, bytes]) -> None:
     for name in packages(generated):
-        if not name.endswith("_bringup"):
+        if not name.endswith(("_bringup", RUNTIME)):
             assert generated[f"src/{name}/scripts/{name}"].startswith(b"#!/usr/bin/env python3\n")
     assert "src/UI/scripts/simulator" in generated and "src/UI/scripts/sim_clock" in generated
 
@@ -270,7 +291,8 @@ def generate_text(text: str, name: str) -> Dict[str, bytes]:
 def test_people_get_instructions_and_no_controller() -> None:
     text = (SCENARIOS / "thesis/scenario_1.pur").read_text().replace('"bot2" controllable', '"bot2" human controllable')
     generated = generate_text(text, "ward")
-    assert packages(generated) == {"controller_bot1", "controllerObj", "observer", "UI", "ward_bringup", *RECEIVING}
+    nodes = {"controller_bot1", "controllerObj", "observer", "UI"}
+    assert packages(generated) == {*nodes, "ward_bringup", RUNTIME, *RECEIVING}
     (instructions,) = [yaml.safe_load(t) for p, t in generated.items() if p.endswith("/config/people.yaml")]
     assert instructions["commands_agents"] == ["bot2"]
 

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import json
 import sys
 import unittest.mock
-from typing import Any, Dict, List
+from typing import Any, Dict, Iterator, List
 
 import pytest
 from worlds import files
 
-from pursue_gen.workspace import templates_dir
-
-STUBS = ("rospkg", "rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg")
+STUBS = ("rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg")
 
 
 @pytest.fixture(scope="module")
-def judge() -> Any:
-    """mission_test.py, without ROS."""
-    path = templates_dir() / "bringup" / "test" / "mission_test.py"
-    spec = importlib.util.spec_from_file_location("mission_test", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    with unittest.mock.patch.dict(sys.modules, {name: unittest.mock.MagicMock() for name in STUBS}):
-        spec.loader.exec_module(module)
-    return module
+def judge() -> Iterator[Any]:
+    """The module mission_test, without ROS."""
+    name = "pursue_runtime.nodes.mission_test"
+    with unittest.mock.patch.dict(sys.modules, {stub: unittest.mock.MagicMock() for stub in STUBS}):
+        sys.modules.pop(name, None)
+        yield importlib.import_module(name)
+        del sys.modules[name]
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,4 @@
+"""What runs on robots: the run time of missions, the same in every workspace.
+
+Plain Python; nothing but `nodes` needs ROS.
+"""

@@ -1,0 +1,1 @@
+"""What a controller decides: its next command, and what its robots are told."""

@@ -1,0 +1,145 @@
+"""How a controller plays its part of the strategy: no threads; moments are seconds of ROS time."""
+
+from __future__ import annotations
+
+from typing import List, NamedTuple, Optional, Tuple
+
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older
+from pursue_runtime.strategy import Command, Plans, Strategy
+from pursue_runtime.words import PLANNED, Word
+from pursue_runtime.zones import EPSILON
+
+FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0
+"""Seconds of real time that a word has to be answered before it is sent again: at first, and at most."""
+
+
+class Order(NamedTuple):
+    """What an agent has begun, for the exeggutor."""
+
+    agent: str
+    trigger: str
+    origin: str
+    target: str
+
+
+class Player:
+    """Looks from state to state when the next command of its strategy is due, and what its agents have begun."""
+
+    def __init__(self, strategy: Strategy, name: str = "") -> None:
+        """`name`: the controller's, by which the observer knows who has a new plan."""
+        self.state: Optional[SystemState] = None
+        self.planned: Optional[Tuple[float, Command]] = None
+        self.news = False  # the last state was a new one
+        self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
+        self._name = name
+        self._agents = strategy.agents
+        self._own = strategy
+        self._plans = Plans(strategy)
+        self._newest = 0
+        self._unanswered = 0
+        self._patience: Optional[float] = None
+
+    def wake(self) -> Tuple[Optional[float], Optional[float]]:
+        """When to call `ring`: a moment, or the seconds of real time from now after which a word counts as lost."""
+        return (self.planned[0] if self.planned else None), self._patience
+
+    def learn(self, plan: int, strategy: Strategy, now: float) -> Word:
+        """A new plan came, for the states that name it; the word that says so to the observer."""
+        self._plans.learn(plan, strategy)
+        self._newest = max(plan, self._newest)
+        if self.state is not None and self.state.plan == plan and self.planned is None:
+            self._plan(self.state, now)
+        return self._receipt(plan)
+
+    def receipt(self) -> Optional[Word]:
+        """Says again which plan came last, while the mission may be waiting for that."""
+        waits = self.state is not None and self.state.status == HOLDING and self.state.plan < self._newest
+        return self._receipt(self._newest) if waits else None
+
+    def _receipt(self, plan: int) -> Word:
+        return Word(self._name, PLANNED, plan)
+
+    def see(self, state: SystemState, now: float) -> List[Order]:
+        """A state was published: what has our agents begun? The next command is planned."""
+        before = self.state
+        self.news = False
+        if before is not None and older(state, before):
+            self.counts["old"] += 1
+            return []
+        self.state = state
+        if state.status == WAITING:  # a mission that has not begun has no new plans: these were of the one before
+            self._plans, self._newest = Plans(self._own), 0
+        if before is not None and (before.seq, before.status) == (state.seq, state.status):
+            return []  # the answer to a ping, or the observer says only that it is there
+        self.news = True
+        self.planned, self._patience, self._unanswered = None, None, 0
+        if state.status == WON:  # what won it, if that is done at once
+            return [order for order in self._begun(before, state) if order.origin == order.target]
+        if state.status not in LIVE:
+            return []
+        self._plan(state, now)
+        orders = self._begun(before, state)
+        self.counts["taken"] += len(orders)
+        return orders
+
+    def ring(self, now: float) -> Optional[Word]:
+        """A command is due, or was not answered: the word to publish, if any."""
+        state = self.state
+        if state is None or state.status != RUNNING:
+            return None
+        self._patience = None
+        strategy = self._plans.at(state)
+        if strategy is None:
+            return None
+        if self.planned is None:  # the last word was not answered
+            self.planned = strategy.decided(state, now)
+        elif now > self.planned[0] + strategy.lateness(state) + EPSILON:
+            self.planned = strategy.decided(state, now)
+            self.counts["too_late"] += self.planned is None or self.planned[0] > now
+        if self.planned is None or now < self.planned[0]:
+            return None
+        command = self.planned[1]
+        self.planned = None
+        self._patience = min(FIRST_PATIENCE * 2**self._unanswered, LAST_PATIENCE)
+        self.counts["sent_again" if self._unanswered else "sent"] += 1
+        self._unanswered += 1
+        return Word(command.agent, command.event, state.seq)
+
+    def _plan(self, state: SystemState, now: float) -> None:
+        """Looks for the next command: there is none while the mission holds, or before the plan in force came."""
+        strategy = self._plans.at(state) if state.status == RUNNING else None
+        self.planned = strategy.decided(state, now) if strategy else None
+
+    def _begun(self, before: Optional[SystemState], state: SystemState) -> List[Order]:
+        """What our agents have begun since the state before, even where states in between (or all) were missed."""
+        orders: List[Order] = []
+        for agent in self._agents:
+            target = state.locations.get(agent, "")
+            origin = before.locations.get(agent, "") if before else ""
+            own = state.agent == agent
+            begins = origin != target and target.startswith(("going_", "doing_"))
+            if own and before is not None and not self._holds(before, state):
+                self.counts["not_ours"] += 1  # somebody reports it, or did it by hand: the robot gets no order from us
+            elif begins or (own and origin == target and self._instant(state, target)):
+                orders.append(Order(agent, state.event if own else action_of(target), origin, target))
+        return orders
+
+    def _instant(self, state: SystemState, location: str) -> bool:
+        """True for a command that is done at once; after states that were missed it may be the end of another one."""
+        strategy = self._plans.at(state)
+        return strategy is not None and strategy.instant(state.agent, state.event, location)
+
+    def _holds(self, before: SystemState, state: SystemState) -> bool:
+        """True if what led to the state is a command of the strategy, or cannot be known: states were missed."""
+        if before.status == HOLDING and state.seq == before.seq + 1:
+            return False
+        strategy = self._plans.at(before)
+        if state.seq != before.seq + 1 or strategy is None:
+            return True
+        commands = strategy.commands(before)
+        return any((command.agent, command.event) == (state.agent, state.event) for command in commands)
+
+
+def action_of(location: str) -> str:
+    """The event of a location `doing_<event>_in_<poi>`; the location itself for others."""
+    return location[len("doing_") :].rsplit("_in_", 1)[0] if location.startswith("doing_") else location

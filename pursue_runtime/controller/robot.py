@@ -1,0 +1,256 @@
+"""When a robot gets its goal, and what is reported of its way: decisions only, without ROS.
+
+Moments are seconds of ROS time, `real` those of the computer's clock, distances metres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Any, Callable, Deque, List, Mapping, NamedTuple, Optional, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.words import FAILED, Word, format_word
+
+GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
+
+SUCCEEDED = 3
+FAILURES = {2: "preempted", 4: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
+"""The statuses with which a goal may end, as actionlib_msgs/GoalStatus numbers them."""
+
+FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0
+"""Seconds of real time that a report has to show in the state before it is repeated: at first, and at most."""
+
+
+class Settings(NamedTuple):
+    """How one robot is connected. Each is a parameter of the node, or of one robot: `~ends`, `~bot1/ends`."""
+
+    goals: str = "simple"
+    ends: str = "words"
+    on_stop: str = "finish"
+    retries: int = 2
+    retry_delay: float = 1.0
+    end_tolerance: float = 0.3
+    end_settle: float = 0.5
+    clock_skew: float = 0.5
+    map_frame: str = "map"
+    base_frame: str = "{robot}/base_link"
+    simulated: bool = False
+
+    @property
+    def answers(self) -> bool:
+        """True where the results of move_base are listened to."""
+        return self.goals == "action" or self.ends == "result"
+
+    @property
+    def watches(self) -> bool:
+        """True where it is for the controller to see that the robot has arrived."""
+        return self.ends in ("pose", "tf")
+
+
+def settings_of(robot: str, given: Mapping[str, Any]) -> Settings:
+    """The robot's settings among the node's parameters; those in the group of its name win. Raises DataError."""
+    own = given.get(robot, {})
+    if not isinstance(own, dict) or set(own) - set(Settings._fields):
+        raise DataError(f"~{robot} is {own!r}; expected some of {', '.join(Settings._fields)}")
+    values = {**given, **own}
+    defaults = Settings()._asdict()
+    settings = Settings(**{name: _checked(name, values[name], defaults[name]) for name in defaults if name in values})
+    for name, known in (("goals", GOALS), ("ends", ENDS), ("on_stop", ON_STOP)):
+        if getattr(settings, name) not in known:
+            raise DataError(f"~{name} of {robot} is {getattr(settings, name)!r}; expected one of {', '.join(known)}")
+    if settings.simulated and (settings.goals, settings.ends) != ("simple", "words"):
+        raise DataError(
+            f"goals:={settings.goals} and ends:={settings.ends} for {robot}, which is simulated: the simulator takes"
+            " simple goals and tells ends in words; leave these out, or set simulate:=false for real robots"
+        )
+    frames = (settings.map_frame.replace("{robot}", robot), settings.base_frame.replace("{robot}", robot))
+    return settings._replace(map_frame=frames[0], base_frame=frames[1])
+
+
+def _checked(name: str, value: Any, default: Any) -> Any:
+    """The value as the type of its default; numbers are not negative. Raises DataError."""
+    kind = type(default)
+    if isinstance(value, kind) and kind in (bool, str):
+        return value
+    number = isinstance(value, (int, float)) and not isinstance(value, bool) and 0 <= value < math.inf
+    if number and kind in (int, float) and kind(value) == value:
+        return kind(value)
+    wanted = {bool: "true or false", str: "a name", int: "a whole number", float: "a number that is not negative"}
+    raise DataError(f"~{name} is {value!r}; expected {wanted[kind]}")
+
+
+class Way(NamedTuple):
+    """A movement: the location that the agent has meanwhile, and the point where it ends."""
+
+    location: str
+    poi: str
+    x: float
+    y: float
+
+
+class Goal(NamedTuple):
+    """What a robot is to be told: with an id of our own, which only action goals carry."""
+
+    name: str
+    way: Way
+
+
+@dataclass
+class Trip:
+    """One movement under way: `goals` is how many were sent for it, `goal` the one that the robot is after."""
+
+    way: Way
+    goal_at: Optional[float] = None
+    goal: str = ""
+    goals: int = 0
+    near_since: Optional[float] = None
+    report: str = ""
+    reports: int = 0
+    reported: float = 0.0
+    heard: bool = False
+
+
+Log = Callable[[str, str], None]
+"""Takes a level (info, warn, err) and a sentence."""
+
+
+class Robot:
+    """What one robot was told, and what it has answered."""
+
+    def __init__(self, name: str, settings: Settings, log: Log) -> None:
+        self.name = name
+        self.settings = settings
+        self._log = log
+        self._trip: Optional[Trip] = None
+        self._running = True
+        self._sent = self._earliest = -math.inf  # when its last goal was sent; the earliest stamp that it may have
+        self._answered: Deque[str] = deque(maxlen=8)
+
+    @property
+    def watching(self) -> bool:
+        """True while its position is to be looked at."""
+        trip = self._trip
+        return self.settings.watches and trip is not None and trip.report != self._end(trip)
+
+    @property
+    def goal(self) -> str:
+        """The id of the goal that it is after, "" if none."""
+        return self._trip.goal if self._trip else ""
+
+    # What happens -----------------------------------------------------------------------------------------------------
+
+    def follow(self, way: Optional[Way], running: bool, lost: bool) -> None:
+        """A state shows it on this way (None: on none). Goals are sent while the mission is `running` only."""
+        self._running = running
+        if way is None or self._trip is None or self._trip.way != way:
+            self._trip = Trip(way) if way else None  # whoever began it: its end is an end
+        elif lost and self._trip.report == self._failure():
+            self._trip.heard = True
+
+    def order(self, way: Way, now: float) -> None:
+        """It is to go there."""
+        self._trip = Trip(way, goal_at=now)
+
+    def result(self, goal: str, stamp: float, status: int, now: float) -> None:
+        """move_base says how a goal has ended that it got at `stamp`."""
+        trip = self._trip
+        if trip is None or trip.report == self._end(trip) or not self._means(trip, goal, stamp, status):
+            return
+        self._answered.append(goal)
+        if status == SUCCEEDED:
+            trip.goal = ""
+            if self.settings.ends == "result":
+                self._say(trip, self._end(trip))
+            elif self.settings.watches and trip.near_since is None:
+                self._log("warn", f"{self.name} says that it is at {trip.way.poi}, but is not seen there yet")
+        else:
+            self._fails(trip, FAILURES[status], now)
+
+    def position(self, x: float, y: float, now: float) -> None:
+        """It is there now, on the map."""
+        trip = self._trip
+        if trip is None or not self.watching:
+            return
+        if math.hypot(x - trip.way.x, y - trip.way.y) > self.settings.end_tolerance:
+            trip.near_since = None
+        elif trip.near_since is None:
+            trip.near_since = now
+
+    # What is to be done -----------------------------------------------------------------------------------------------
+
+    def due(self, now: float, real: float) -> Tuple[Optional[Goal], Optional[str]]:
+        """The goal to send and the word to publish at this moment, if any."""
+        trip = self._trip
+        if trip is None:
+            return None, None
+        if trip.near_since is not None and now >= self._arrival(trip.near_since) and self.watching:
+            self._say(trip, self._end(trip))
+        goal, word = None, None
+        if self._running and trip.goal_at is not None and now >= trip.goal_at:
+            goal = self._next_goal(trip, now)
+        if trip.report and not trip.heard and (trip.reports == 0 or real >= self._repeat(trip)):
+            trip.reports, trip.reported, word = trip.reports + 1, real, trip.report
+        return goal, word
+
+    def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
+        """When `due` should be asked again: in ROS time, and on the real clock; None: not before something happens."""
+        trip = self._trip
+        if trip is None:
+            return None, None
+        moments: List[float] = [trip.goal_at] if self._running and trip.goal_at is not None else []
+        if trip.near_since is not None and self.watching:
+            moments.append(self._arrival(trip.near_since))
+        return min(moments, default=None), (self._repeat(trip) if trip.reports and not trip.heard else None)
+
+    # How --------------------------------------------------------------------------------------------------------------
+
+    def _next_goal(self, trip: Trip, now: float) -> Goal:
+        # A simple goal gets its id and stamp from the robot, whose clock may be behind. The goal before may still be
+        # answered (it is preempted by this one): what is nearer to that one is not taken for the answer to this.
+        self._earliest = now - min(self.settings.clock_skew, (now - self._sent) / 2)
+        self._sent = now
+        trip.goals += 1
+        trip.goal, trip.goal_at = f"{self.name}-{trip.way.location}-{trip.goals}-{now:.6f}", None
+        return Goal(trip.goal, trip.way)
+
+    def _means(self, trip: Trip, goal: str, stamp: float, status: int) -> bool:
+        """True if the result is that of the goal which the robot is after."""
+        if not trip.goal or (status != SUCCEEDED and status not in FAILURES):
+            return False
+        if self.settings.goals == "action":
+            return goal == trip.goal
+        if goal and goal in self._answered:
+            return False
+        if not stamp or stamp >= self._earliest:  # who gives no stamp (a person, with rostopic) means now
+            return True
+        self._log("info", f"{self.name}: a result of {self._sent - stamp:.1f} s before the present goal is left aside")
+        return False
+
+    def _fails(self, trip: Trip, how: str, now: float) -> None:
+        trip.goal = ""
+        if trip.goals <= self.settings.retries:
+            self._log("warn", f"{self.name} on its way to {trip.way.poi}: {how}; trying again")
+            trip.goal_at = now + self.settings.retry_delay
+        else:
+            self._log("err", f"{self.name} on its way to {trip.way.poi}: {how} {trip.goals} times; giving up")
+            self._say(trip, self._failure())
+
+    @staticmethod
+    def _say(trip: Trip, word: str) -> None:
+        """The word is reported until the state shows it; no goal is due any more."""
+        trip.report, trip.reports, trip.heard, trip.goal_at = word, 0, False, None
+
+    @staticmethod
+    def _repeat(trip: Trip) -> float:
+        return trip.reported + min(FIRST_PATIENCE * 2.0 ** (trip.reports - 1), LAST_PATIENCE)
+
+    def _arrival(self, near_since: float) -> float:
+        return near_since + self.settings.end_settle
+
+    def _end(self, trip: Trip) -> str:
+        return f"{self.name}_{trip.way.location}2{trip.way.poi}"
+
+    def _failure(self) -> str:
+        return format_word(Word(self.name, FAILED))

@@ -1,0 +1,57 @@
+"""The data files of a generated package: where they are, and how they are read."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, NamedTuple
+
+import yaml
+
+
+class Package(NamedTuple):
+    """The generated package whose node runs: its name, the scenario it was made from, the path of the node's script."""
+
+    name: str
+    scenario: str
+    script: str
+
+
+class DataError(Exception):
+    """A data file or a text in it cannot be used; the message says which, and why."""
+
+
+def read_data(path: str) -> Dict[str, Any]:
+    """The content of one of the package's YAML files. Raises DataError."""
+    try:
+        with open(path, "rb") as file:
+            content = file.read()
+    except OSError as problem:
+        raise DataError(f"cannot read {path}: {problem}") from problem
+    return parse_data(content, path)
+
+
+def parse_data(content: bytes, path: str) -> Dict[str, Any]:
+    """What is in a YAML file of ours; `path` says in messages which one it is. Raises DataError."""
+    try:
+        # The C loader is many times faster; it is missing where PyYAML was built without libyaml.
+        data = yaml.load(content, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except (ValueError, yaml.YAMLError) as problem:
+        raise DataError(f"cannot read {path}: {problem}") from problem
+    if not isinstance(data, dict) or data.get("format") != 1:
+        raise DataError(f"{path} is not a file of format 1: generate the workspace again")
+    return data
+
+
+def data_file(package: Package, name: str, config: str = "") -> str:
+    """The path of a data file: in the folder `config` if given, else beside scripts/ (source and devel space) or in
+    share/<package>/config (install space, where the script is in lib/<package>). Raises DataError if there is none."""
+    here = os.path.dirname(os.path.realpath(package.script))
+    beside = os.path.join(here, "..", "config")
+    installed = os.path.join(here, "..", "..", "share", package.name, "config")
+    folders = [config] if config else [beside, installed]
+    for folder in folders:
+        path = os.path.normpath(os.path.join(folder, name))
+        if os.path.isfile(path):
+            return path
+    places = " nor in ".join(os.path.normpath(folder) for folder in folders)
+    raise DataError(f"no {name} in {places}; set ~config to its folder")

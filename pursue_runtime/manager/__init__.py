@@ -1,0 +1,1 @@
+"""How a robot takes missions from the desk over HTTP."""

@@ -1,0 +1,176 @@
+"""The model: its automata, as model.yaml holds them, and which of them an event moves."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
+
+
+class Edge(NamedTuple):
+    """An edge: from `source` to `target` on `word`; `sync` is send, receive or own (a step without partners)."""
+
+    source: str
+    target: str
+    word: str
+    sync: str
+    when: Zone
+    tests: Tuple[Tuple[Tuple[str, int], ...], ...]
+    assign: Dict[str, int]
+    resets: Tuple[str, ...]
+    controllable: bool
+
+    def allowed(self, values: Mapping[str, int]) -> bool:
+        """True where the variables let it be taken."""
+        return all(any(values[name] == value for name, value in clause) for clause in self.tests)
+
+
+class Automaton(NamedTuple):
+    """One automaton; `invariants` gives the upper bounds on clocks of each location."""
+
+    name: str
+    kind: str
+    initial: str
+    invariants: Dict[str, Zone]
+    edges: Tuple[Edge, ...]
+
+    def edges_from(self, location: str) -> Iterator[Edge]:
+        """Its edges there, in order."""
+        return (edge for edge in self.edges if edge.source == location)
+
+
+class Move(NamedTuple):
+    """One automaton's part of what an event does."""
+
+    automaton: str
+    edge: Edge
+
+
+class Position(NamedTuple):
+    """Where the automata are, the variables, and the clocks of now."""
+
+    locations: Dict[str, str]
+    values: Dict[str, int]
+    clocks: Dict[str, float]
+
+
+class Model:
+    """The network of the mission, in system order."""
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        try:
+            self.scenario = str(data["scenario"])
+            self.clocks: Tuple[str, ...] = tuple(data["clocks"])
+            self.variables: Dict[str, int] = dict(data["variables"])
+            self.automata = tuple(_automaton(automaton) for automaton in data["automata"])
+            objective = data["objective"]
+            self.objective = str(objective["kind"])
+            self.goal: Optional[Tuple[str, str]] = tuple(objective["goal"]) if objective["goal"] else None
+            self.bad: Optional[Tuple[str, str]] = tuple(objective["bad"]) if objective["bad"] else None
+        except (KeyError, TypeError, ValueError, AttributeError) as problem:
+            raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
+        self._by_name = {automaton.name: automaton for automaton in self.automata}
+
+    def automaton(self, name: str) -> Automaton:
+        """The automaton of that name. Raises KeyError."""
+        return self._by_name[name]
+
+    def of_kind(self, *kinds: str) -> List[Automaton]:
+        """The automata of these kinds, in system order."""
+        return [automaton for automaton in self.automata if automaton.kind in kinds]
+
+    def initial(self) -> Position:
+        """Where everything starts, clocks at zero."""
+        locations = {automaton.name: automaton.initial for automaton in self.automata}
+        return Position(locations, dict(self.variables), dict.fromkeys(self.clocks, 0.0))
+
+    def joint_move(
+        self, position: Position, word: str, agent: str = "", timed: bool = True
+    ) -> Optional[Tuple[Move, ...]]:
+        """What `word` (done by `agent`, or whoever can first) does here: the mover's part, then each receiver's.
+
+        None: it cannot happen. Untimed, bounds on clocks do not count: a robot may be earlier or later than its model.
+        """
+        for automaton in self.automata:
+            if agent and automaton.name != agent:
+                continue
+            for edge in automaton.edges_from(position.locations[automaton.name]):
+                if edge.word != word or edge.sync == "receive" or not self._enabled(edge, position, timed):
+                    continue
+                moves = (Move(automaton.name, edge), *self._receivers(automaton, edge, position))
+                if not timed or self._fits(moves, position):
+                    return moves
+        return None
+
+    def possible(self, position: Position, timed: bool = True) -> List[str]:
+        """The words that can happen here, each once, in system order."""
+        words: Dict[str, None] = {}
+        for automaton in self.automata:
+            for edge in automaton.edges_from(position.locations[automaton.name]):
+                if edge.sync != "receive" and self.joint_move(position, edge.word, automaton.name, timed):
+                    words[edge.word] = None
+        return list(words)
+
+    @staticmethod
+    def after(moves: Tuple[Move, ...], position: Position) -> Position:
+        """The position that the moves lead to."""
+        locations, values, clocks = dict(position.locations), dict(position.values), dict(position.clocks)
+        for name, edge in moves:
+            locations[name] = edge.target
+            values.update(edge.assign)
+            clocks.update(dict.fromkeys(edge.resets, 0.0))
+        return Position(locations, values, clocks)
+
+    @staticmethod
+    def _enabled(edge: Edge, position: Position, timed: bool) -> bool:
+        return edge.allowed(position.values) and (not timed or holds(edge.when, position.clocks, EPSILON))
+
+    def _receivers(self, mover: Automaton, edge: Edge, position: Position) -> Iterator[Move]:
+        if edge.sync != "send":
+            return
+        for automaton in self.automata:
+            if automaton is mover:
+                continue
+            for answer in automaton.edges_from(position.locations[automaton.name]):
+                if answer.word == edge.word and answer.sync == "receive" and answer.allowed(position.values):
+                    yield Move(automaton.name, answer)
+                    break
+
+    def _fits(self, moves: Tuple[Move, ...], position: Position) -> bool:
+        """True where the invariants hold that the moves lead to."""
+        after = self.after(moves, position)
+        return all(holds(self._by_name[name].invariants[edge.target], after.clocks, EPSILON) for name, edge in moves)
+
+
+def _automaton(data: Mapping[str, Any]) -> Automaton:
+    invariants = {str(name): _bounds(bounds) for name, bounds in data["locations"].items()}
+    edges = tuple(_edge(edge) for edge in data["edges"])
+    unknown = {place for edge in edges for place in (edge.source, edge.target)} - set(invariants)
+    if unknown or data["initial"] not in invariants:
+        raise ValueError(f"{data['name']}: unknown location among {sorted(unknown) or data['initial']}")
+    return Automaton(str(data["name"]), str(data["kind"]), str(data["initial"]), invariants, edges)
+
+
+def _edge(data: Mapping[str, Any]) -> Edge:
+    tests = tuple(tuple(_test(test) for test in clause) for clause in data.get("if", ()))
+    return Edge(
+        source=str(data["from"]),
+        target=str(data["to"]),
+        word=str(data["word"]),
+        sync=str(data["sync"]),
+        when=_bounds(data.get("when", ())),
+        tests=tests,
+        assign=dict(data.get("set", {})),
+        resets=tuple(data.get("reset", ())),
+        controllable=bool(data["controllable"]),
+    )
+
+
+def _bounds(texts: Any) -> Zone:
+    return tuple(constraint for text in texts for constraint in parse_zone(text))
+
+
+def _test(text: str) -> Tuple[str, int]:
+    name, _, value = text.partition("=")
+    return name.strip(), int(value)

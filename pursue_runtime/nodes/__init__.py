@@ -1,0 +1,1 @@
+"""The rospy nodes: topics, parameters and threads; what they do is decided in the other folders."""

@@ -1,0 +1,144 @@
+"""Takes missions from the desk over HTTP and publishes them for pursue_reader; forwards topics to tools without ROS.
+
+Parameters: ~robot (the name that the desk knows; its namespace, or this machine's name where there is none), ~host
+(127.0.0.1), ~port (13000), ~topicName (local_mission), ~limit (bytes of the largest bundle), ~keys (folder of the
+trusted keys; $ROS_HOME/pursue/keys), ~certificate and ~private_key (PEM files, for TLS), ~patience (seconds for the
+reader's answer; 10), ~connections (at a time; 64), ~pubsubport (13001), ~forwardedtopics (of type std_msgs/String,
+with commas between; none).
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+from typing import Any, Dict, List, Optional, Tuple
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import String
+
+from pursue_runtime.bundle import LIMIT
+from pursue_runtime.data import Package
+from pursue_runtime.manager.background import Background, ServerError, Service, bind
+from pursue_runtime.manager.forwarder import Forwarder
+from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, Record, is_loopback, topic_names
+from pursue_runtime.manager.server import Limits, Server, tls
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report
+from pursue_runtime.trusted_keys import KeyFolder, keys_folder
+
+
+class CommunicationManager:
+    """The node: ROS on one side, a thread with the servers on the other."""
+
+    def __init__(self) -> None:
+        host = str(rospy.get_param("~host", "127.0.0.1"))
+        exposed = not is_loopback(host)
+        keys = str(rospy.get_param("~keys", "")) or keys_folder(os.environ)
+        self.record = Record(lambda *text: rospy.logwarn("%s", *text), lambda *text: rospy.loginfo("%s", *text))
+        limit = int(number("~limit", LIMIT))
+        self.manager = Manager(robot_name(), KeyFolder(keys), self.reader_is_there, limit, exposed)
+        context = tls(str(rospy.get_param("~certificate", "")), str(rospy.get_param("~private_key", "")))
+        self.limits = Limits(int(number("~connections", 64)), number("~patience", 10.0))
+        self.sockets = bind(host, int(number("~port", 13000, 0)), "~port")
+        self.server = Server(self.manager, self.sockets, self.publish, self.record, self.limits, context)
+        self.forwarder, topics = self.make_forwarder(host)
+        services: Tuple[Service, ...] = (self.server, *([self.forwarder] if self.forwarder else []))
+        self.background = Background(services, self.record.count)
+        self.ending = Ending()
+        self.orders = rospy.Publisher(str(rospy.get_param("~topicName", LOCAL_MISSION)), String, queue_size=2)
+        self.statuses = rospy.Subscriber(MISSION_STATUS, String, self.on_status, queue_size=100, tcp_nodelay=True)
+        self.ears = [rospy.Subscriber(topic, String, self.on_message, topic, queue_size=1000) for topic in topics]
+        self.background.start()
+        self.tell(host, exposed, context is not None)
+        pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda _: None, queue_size=100)
+        Diagnostics(self.report, Links(pulses, lost=self.master_lost))
+
+    def make_forwarder(self, host: str) -> Tuple[Optional[Forwarder], List[str]]:
+        """The socket and the topics that go there; none without topics. Raises ServerError."""
+        try:
+            topics = topic_names(str(rospy.get_param("~forwardedtopics", "")))
+        except ValueError as problem:
+            raise ServerError(f"~forwardedtopics: {problem}") from problem
+        if not topics:
+            return None, []
+        sockets = bind(host, int(number("~pubsubport", 13001, 0)), "~pubsubport")
+        return Forwarder(sockets, self.record), topics
+
+    def tell(self, host: str, exposed: bool, safe: bool) -> None:
+        """What the log says at the start."""
+        scheme = "https" if safe else "http"
+        rospy.loginfo("%s takes missions at %s, port %d (%s)", self.manager.robot, host, self.server.port, scheme)
+        if exposed and not safe:
+            rospy.logwarn("other machines reach this port without TLS: what is sent is signed, but anyone can read it")
+        if self.forwarder is not None:
+            names = ", ".join(ear.resolved_name for ear in self.ears)
+            rospy.loginfo("%s: forwarded at %s, port %d", names, host, self.forwarder.port)
+        if not self.manager.trusts:
+            rospy.logwarn("%s", self.manager.condition()[1])
+
+    def publish(self, text: str) -> None:
+        """For the reader."""
+        self.orders.publish(text)
+
+    def reader_is_there(self) -> bool:
+        """True while the reader hears us and we hear it. A connection without a socket is one that broke."""
+        connections = list(self.statuses.impl.connections)
+        return self.orders.get_num_connections() > 0 and any(each.socket is not None for each in connections)
+
+    def on_status(self, message: String) -> None:
+        """The reader speaks."""
+        self.background.call(self.server.hear, message.data)
+
+    def on_message(self, message: String, topic: str) -> None:
+        """A message to forward."""
+        latched = message._connection_header.get("latching") == "1"
+        if self.forwarder is not None:
+            self.background.call(self.forwarder.send, topic, message.data, latched)
+
+    def report(self) -> Report:
+        """For /diagnostics. Ready: a mission that came now would be taken."""
+        how, sentence = self.manager.condition()
+        values: Dict[str, object] = {"robot": self.manager.robot, "port": self.server.port}
+        if self.forwarder is not None:
+            values["subscribers"] = self.forwarder.subscribers
+        values.update(sorted(self.record.counts().items()))
+        trusted = self.manager.trusts and self.manager.reader_is_there
+        return Report(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
+
+    def master_lost(self, why: str) -> None:
+        """Another master would never hear of this node: it ends, and is started again."""
+        rospy.logerr("ends here: %s", why)
+        self.ending.end(1)
+
+    def run(self) -> int:
+        """Runs until it is ended; returns the exit status."""
+        try:
+            return self.ending.wait()
+        finally:
+            self.background.close()
+
+
+def number(name: str, default: float, least: float = 1.0) -> float:
+    """A parameter that is a number. Raises ServerError."""
+    value: Any = rospy.get_param(name, default)
+    if type(value) not in (int, float) or not least <= value < float("inf"):
+        raise ServerError(f"{name} is {value!r}; expected a number, at least {least:g}")
+    return float(value)
+
+
+def robot_name() -> str:
+    """The name by which the desk knows this robot; pursue_reader finds it in the same way."""
+    given = str(rospy.get_param("~robot", "")) or rospy.get_namespace().strip("/")
+    return given or socket.gethostname()
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    os.nice(5)  # who decides about robots goes first
+    rospy.init_node("communication_manager")
+    try:
+        return CommunicationManager().run()
+    except ServerError as problem:
+        rospy.logfatal("%s", problem)
+    return 3

@@ -1,0 +1,178 @@
+"""A controller: plays its part of the strategy (strategy.yaml).
+
+Parameters: those of robots (see exeggutor), ~config (another folder of data), ~received (missions from the desk count),
+~again (after a mission it begins anew and waits for the next one).
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import Dict
+
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.controller.follower import Follower
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.hearing import OLD, OURS
+from pursue_runtime.missions import Missions, own_source, ros_home
+from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report
+from pursue_runtime.state import LOST, STOPPED, WON, SystemState, parse_state
+from pursue_runtime.strategy import parse_plan
+from pursue_runtime.words import PLAN, SYSTEM_STATE, format_word
+
+
+class Controller:
+    """Waits for states; announces a command when it is due; tells the robot once the observer has taken it."""
+
+    def __init__(self, package: Package) -> None:
+        own = own_source(package, "strategy.yaml", rospy.get_param("~config", ""))
+        home = ros_home(os.environ) if rospy.get_param("~received", False) else ""
+        missions, name = Missions(own, package.name, home), rospy.get_name().strip("/")
+        again = bool(rospy.get_param("~again", False))
+        self.lock = threading.RLock()
+        self.ending = Ending()
+        self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)
+        self.observer = ""
+        self.exegg = Exeggutor()
+        self.alarm = Alarm(self.ring)
+        try:
+            self.follower.begin()
+        except DataError as problem:
+            if not home:
+                raise
+            self.follower.refuse(str(problem))  # the next one may be better
+        self.take_up()
+        states = rospy.Subscriber(SYSTEM_STATE, String, self.update_state, queue_size=1000, tcp_nodelay=True)
+        rospy.Subscriber(PLAN, String, self.learn, queue_size=10, tcp_nodelay=True)
+        Diagnostics(self.report, Links(states, lost=self.master_lost))
+
+    def take_up(self) -> None:
+        """Has the robots of the part that is played. Raises DataError where their settings are wrong."""
+        part = self.follower.part
+        if part:
+            what = "its part in" if part.strategy is not None else "no part in"
+            rospy.loginfo("has %s mission %s", what, part.mission or "own")
+        self.alarm.set()
+        self.exegg.take_up(part.robots if part else [], part.poses if part else {})
+
+    def update_state(self, message: String) -> None:
+        """A state: the robots are told what was taken, and the next command is planned."""
+        state = parse_state(message.data)
+        if state is None:
+            rospy.logwarn("not a system state: %r", message.data[:80])
+            return
+        with self.lock:
+            played, verdict = self.follower.part, self.follower.follow(state)
+            if verdict != OLD:
+                self.observer = message._connection_header.get("callerid", "")
+            if self.follower.part is not played:
+                try:
+                    self.take_up()
+                except DataError as problem:
+                    self.follower.refuse(str(problem))
+                    return
+            if verdict == OURS:
+                self.play(state)
+
+    def play(self, state: SystemState) -> None:
+        """A state of the mission whose part we have."""
+        player = self.follower.player
+        if player is not None:
+            orders = player.see(state, rospy.get_time())
+            if player.news:  # else what is waited for is waited for as before
+                self.wake()
+            self.learned()
+            self.exegg.follow(state)
+            for order in orders:
+                self.exegg.exeggute(*order)
+            receipt = player.receipt()
+            if receipt:
+                self.exegg.announce(format_word(receipt))
+        if state.status == WON:
+            self.ending.end(0)
+        elif state.status in (LOST, STOPPED):
+            rospy.logerr("the mission is %s: %s", state.status, state.reason)
+            self.ending.end(1)
+
+    def wake(self) -> None:
+        """What is due already need not wait for the alarm."""
+        moment, patience = self.follower.player.wake() if self.follower.player else (None, None)
+        if moment is not None and moment <= rospy.get_time():
+            self.ring()
+        else:
+            self.alarm.set(moment, patience)
+
+    def learn(self, message: String) -> None:
+        """A new plan: it counts from the state on that names it, for everybody at once."""
+        try:
+            plan = parse_plan(message.data)
+        except DataError as problem:
+            rospy.logerr("cannot use the new plan: %s", problem)
+            return
+        with self.lock:
+            self.follower.plan = plan
+            self.learned()
+
+    def learned(self) -> None:
+        """Learns the newest plan, if it is of the mission that is played, and says so."""
+        try:
+            word = self.follower.learn(rospy.get_time())
+        except DataError as problem:
+            rospy.logerr("cannot use the new plan: %s", problem)
+            return
+        if word:
+            rospy.loginfo("has plan %s", word.seq)
+            self.exegg.announce(format_word(word))
+            self.wake()
+
+    def ring(self) -> None:
+        """The alarm: a command is due, or was not answered."""
+        with self.lock:
+            player = self.follower.player
+            if player is None:
+                return
+            word = player.ring(rospy.get_time())
+            if word:
+                self.exegg.announce(format_word(word))
+            self.alarm.set(*player.wake())
+
+    def master_lost(self, why: str) -> None:
+        """Without a master nobody can start or join: no further orders."""
+        rospy.logerr("ends here: %s", why)
+        self.ending.end(1)
+
+    def report(self) -> Report:
+        """For /diagnostics. It is ready when it has heard the observer, and the observer can hear it."""
+        with self.lock:
+            state, player, part, trouble = self.follower.report()
+            planned = player.planned if player else None
+            values: Dict[str, object] = {"seq": state.seq if state else "", "mission": part.mission if part else ""}
+            values.update(player.counts if player else {})
+            values["next_command"] = planned[1].event if planned else ""
+        if trouble:
+            return Report(False, WARN, trouble, values)
+        if state is None:
+            return Report(False, WARN, "no state from the observer yet", values)
+        if self.observer not in self.exegg.observers():
+            return Report(False, WARN, "the observer does not hear us", values)
+        if player is None:
+            return Report(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
+        return Report(True, ERROR if state.status in (LOST, STOPPED) else OK, state.status, values)
+
+    def run(self) -> int:
+        """Runs until the mission ends; returns the exit status."""
+        return self.ending.wait(linger=0.2)
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    rospy.init_node(package.name)
+    try:
+        return Controller(package).run()
+    except DataError as problem:
+        rospy.logfatal("%s", problem)
+        return 3

@@ -1,0 +1,166 @@
+"""A controller's executor, the thesis's exeggutor: it tells robots what to do, and the observer what becomes of it."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from functools import partial
+from typing import Dict, Iterable, List, Mapping, Sequence
+
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.controller.robot import Robot, Way, settings_of
+from pursue_runtime.nodes.node import Alarm, listeners
+from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
+from pursue_runtime.words import EVENTS
+
+LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
+
+LOOKS = 0.2
+"""Seconds of real time between two looks at tf, while a robot is under way."""
+
+
+class Exeggutor:
+    """Sends the words to the observer, and goals and actions to each robot on topics of its own."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._poses: Dict[str, List[float]] = {}
+        self._ways: Dict[str, Way] = {}
+        self._status = RUNNING
+        self._transition = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        self._robots: Dict[str, Robot] = {}
+        self._links: Dict[str, RobotLink] = {}
+        self._alarm = Alarm(self._ring)
+        rospy.on_shutdown(self._call_back)
+
+    def take_up(self, robots: Iterable[str], poses: Mapping[str, Sequence[float]]) -> None:
+        """Has these robots from now on, and these places; what they were told before is over. Raises DataError, and has
+        none, where a robot's settings are wrong."""
+        with self._lock:
+            self._call_back()
+            for link in self._links.values():
+                link.keep("", False, "")
+            self._robots, self._status = {}, RUNNING
+            self._poses = {poi: [float(number) for number in pose] for poi, pose in poses.items()}
+            ways = [(f"going_{x}_to_{y}", y) for x in self._poses for y in self._poses]
+            self._ways = {location: Way(location, y, *self._poses[y][:2]) for location, y in ways}
+            given = rospy.get_param("~", {})
+            settings = {robot: settings_of(robot, given) for robot in robots}
+            for robot in set(self._links) - set(settings):
+                self._links.pop(robot).close()
+            for robot in settings:
+                if robot not in self._links:
+                    answer, place = partial(self._result, robot), partial(self._place, robot)
+                    self._links[robot] = RobotLink(robot, settings[robot], answer, place)
+                self._robots[robot] = Robot(robot, settings[robot], self._log)
+
+    @staticmethod
+    def _log(level: str, text: str) -> None:
+        LOGS[level]("%s", text)
+
+    # For the controller -----------------------------------------------------------------------------------------------
+
+    def announce(self, word: str) -> None:
+        """Asks the observer for an event, or reports one."""
+        with contextlib.suppress(rospy.ROSException):  # the node is going down
+            self._transition.publish(word)
+
+    def observers(self) -> List[str]:
+        """The nodes that hear what is announced."""
+        return listeners(self._transition)
+
+    def follow(self, state: SystemState) -> None:
+        """A state: orders that are over are dropped, reports that it shows are not repeated."""
+        with self._lock:
+            before, self._status = self._status, state.status
+            for name, robot in self._robots.items():
+                here = state.locations.get(name, "") if state.status in LIVE else ""
+                if state.status in ENDED and before not in ENDED:
+                    self._call_back_one(name)
+                robot.follow(self._ways.get(here), state.status == RUNNING, name in state.lost)
+                self._links[name].keep(here, state.status == RUNNING, robot.goal)
+            self._act()
+
+    def exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
+        """The agent begins `trigger`, from `origin` to `target`: its robot is told."""
+        if agent not in self._robots:
+            return  # an objective has no robot
+        if target.startswith("going_") and target != origin:
+            way = self._ways.get(target)
+            if way is None:
+                rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
+                return
+            with self._lock:
+                self._robots[agent].order(way, rospy.get_time())
+                self._act()
+        elif target == origin:
+            self._links[agent].do(trigger)
+        elif target.startswith("doing_"):
+            self._links[agent].do(trigger, target)
+
+    # From the robots --------------------------------------------------------------------------------------------------
+
+    def _result(self, robot: str, goal: str, stamp: float, status: int) -> None:
+        with self._lock:
+            if robot not in self._robots:
+                return
+            self._robots[robot].result(goal, stamp, status, rospy.get_time())
+            self._act()
+
+    def _place(self, robot: str, x: float, y: float) -> None:
+        with self._lock:
+            if robot not in self._robots:
+                return
+            self._robots[robot].position(x, y, rospy.get_time())
+            self._act()
+
+    # What is due ------------------------------------------------------------------------------------------------------
+
+    def _act(self) -> None:
+        """Does what is due, and sleeps until more is."""
+        now, real = rospy.get_time(), time.monotonic()
+        moments, patience = [], []
+        for name, robot in self._robots.items():
+            goal, word = robot.due(now, real)
+            if goal is not None:
+                self._links[name].go(goal, self._poses[goal.way.poi])
+            if word is not None:
+                rospy.loginfo("reports %s", word)
+                self.announce(word)
+            moment, repeat = robot.next_moments()
+            moments += [] if moment is None else [moment]
+            patience += [] if repeat is None else [repeat - real]
+            if robot.watching != self._links[name].watched:
+                patience.append(0.0)  # topics are changed by the alarm's thread: that may have to wait for the master
+            elif robot.watching and robot.settings.ends == "tf":
+                patience.append(LOOKS)
+        self._alarm.set(min(moments, default=None), max(0.0, min(patience)) if patience else None)
+
+    def _ring(self) -> None:
+        """The alarm."""
+        with self._lock:
+            robots, links = dict(self._robots), dict(self._links)
+        for name, robot in robots.items():
+            links[name].watch(robot.watching)
+            place = links[name].look()
+            if place is not None:
+                self._place(name, *place)
+        with self._lock:
+            self._act()
+
+    # The end ----------------------------------------------------------------------------------------------------------
+
+    def _call_back(self) -> None:
+        """The node ends: what is under way is called back, if that is wanted, unless all is well."""
+        with self._lock:
+            for name in self._robots:
+                self._call_back_one(name)
+
+    def _call_back_one(self, name: str) -> None:
+        robot = self._robots[name]
+        if robot.goal and robot.settings.on_stop == "cancel" and self._status != WON:
+            self._links[name].cancel(robot.goal)

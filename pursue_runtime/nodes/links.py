@@ -1,0 +1,235 @@
+"""Connections that come back after a cut, and the master: what rospy leaves to its nodes.
+
+A TCP connection that was cut for t seconds may need t more before it speaks again, and rospy gives it up for good after
+150 s. So every node listens for pulses: topics on which each publisher speaks about once a second. Who was silent for a
+while gets a second connection, on every topic, as soon as it answers calls again. The old one is kept for a time, and
+only listens: the publisher sends there what it had sent before, and nothing else. So no message is lost or comes twice.
+
+When that is done is decided in `pursue_runtime.links`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import http.client
+import threading
+import time
+import xmlrpc.client
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
+
+import rosgraph
+import rospy
+from rospy.impl.registration import get_topic_manager
+
+from pursue_runtime.links import KNOWN, REFUSED, STRANGER, TROUBLES, UNREACHABLE, MasterWatch, Peers
+from pursue_runtime.nodes.node import ERROR, STALE, WARN, Report, worse
+
+PERIOD = 1.0
+"""Seconds between two looks at the connections."""
+
+LATE = 120.0
+"""Seconds for which an old connection may still bring what was sent before."""
+
+CALL = 1.0
+"""Seconds that another node, or the master, may take to answer a call."""
+
+MASTER_PERIOD = 5.0
+"""Seconds between two calls to a master that answers."""
+
+_OLD = "#old"  # mark of a connection that only listens for what is late
+_CALL_ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
+
+
+class _Hasty(xmlrpc.client.Transport):
+    """Calls that do not wait for ever."""
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        connection = super().make_connection(host)
+        connection.timeout = CALL
+        return connection
+
+
+def _call(uri: str, method: str, *arguments: object) -> Any:
+    """The answer of a node, or of the master, to a call of its XML-RPC interface; raises one of _CALL_ERRORS."""
+    with xmlrpc.client.ServerProxy(uri, transport=_Hasty()) as proxy:
+        code, message, value = getattr(proxy, method)(rospy.get_name(), *arguments)
+    if code != 1:
+        raise xmlrpc.client.Fault(code, message)
+    return value
+
+
+class Links:
+    """Watches the connections of this node and its master, in two threads that mostly sleep.
+
+    `pulses`: subscriptions on which each publisher speaks about once a second (/diagnostics, the observer's state).
+    `lost(reason)` is called once, in a thread of the watch, when the master is given up.
+    """
+
+    def __init__(self, *pulses: rospy.Subscriber, lost: Optional[Callable[[str], None]] = None) -> None:
+        self._pulses = pulses
+        self._lost = lost
+        self._lock = threading.Lock()
+        self._peers = Peers()
+        self._master = MasterWatch()
+        self._busy: Set[str] = set()
+        self._late: List[Tuple[float, Any]] = []
+        self._renewals = 0
+        log_without_master()
+        for task in (self._watch_links, self._watch_master):
+            threading.Thread(target=task, name=task.__name__.strip("_"), daemon=True).start()
+
+    def amend(self, report: Report) -> Report:
+        """The node's report with what is wrong with the master and the connections."""
+        with self._lock:
+            silent, trouble = self._peers.silent(time.monotonic()), TROUBLES[self._master.found]
+            cut_off = len(silent) == len(self._peers)
+        values = {**report.values, "silent": " ".join(silent), "renewed": self._renewals}
+        level, message = report.level, report.message
+        if silent:
+            level = worse(level, STALE if cut_off else WARN)
+            message += f"; nothing is heard of {', '.join(silent)}"
+        if trouble:
+            level = worse(level, WARN if self._master.found == UNREACHABLE else ERROR)
+            message += f"; {trouble}"
+        return Report(report.ready, level, message, values)
+
+    # Connections ------------------------------------------------------------------------------------------------------
+
+    def _watch_links(self) -> None:
+        while not rospy.is_shutdown():
+            now = time.monotonic()
+            counts: Dict[str, int] = {}
+            for pulse in self._pulses:
+                for connection in _live(pulse.impl):
+                    name = connection.callerid_pub
+                    counts[name] = counts.get(name, 0) + connection.stat_num_msg
+            with self._lock:
+                self._peers.update(counts, now)
+                due = [name for name in self._peers.due() if name not in self._busy]
+                self._busy.update(due)
+                over = [connection for end, connection in self._late if end <= now]
+                self._late = [(end, connection) for end, connection in self._late if end > now]
+            for connection in over:
+                connection.close()
+            for name in due:
+                threading.Thread(target=self._renew, args=(name,), name=f"renew {name}", daemon=True).start()
+            time.sleep(PERIOD)
+
+    def _renew(self, name: str) -> None:
+        """Makes all connections to this publisher anew, if it answers calls."""
+        old = [(impl, connection) for impl in _subscriptions() for connection in _live(impl)
+               if connection.callerid_pub == name]
+        answered = {uri for uri in {connection.endpoint_id for _, connection in old} if self._answers(uri, old)}
+        for impl, connection in old:
+            uri = connection.endpoint_id
+            if uri in answered:
+                self._put_aside(impl, connection)
+                with contextlib.suppress(*_CALL_ERRORS):  # what is missing then is found with the master's help
+                    connect(impl.resolved_name, uri)
+        with self._lock:
+            self._busy.discard(name)
+            self._renewals += bool(answered)
+            if answered or not old:
+                self._peers.renewed(name, time.monotonic())
+        if answered:
+            rospy.logwarn("%s was silent for a while: connected to it anew", name)
+
+    @staticmethod
+    def _answers(uri: str, connections: List[Tuple[Any, Any]]) -> bool:
+        """True if there is an answer; connections to a process that is no more are closed."""
+        try:
+            _call(uri, "getPid")
+        except ConnectionRefusedError:
+            for _, connection in connections:
+                if connection.endpoint_id == uri:
+                    connection.close()
+            return False
+        except _CALL_ERRORS:
+            return False
+        return True
+
+    def _put_aside(self, impl: Any, connection: Any) -> None:
+        """Lets it bring what is late, but never connect again; then its name is free for another one."""
+        with contextlib.suppress(OSError, ValueError, TypeError):  # rospy's poll would close it before it was read
+            impl.connection_poll.remove_fd(connection.fileno())
+        connection._reconnect = connection.close
+        connection.endpoint_id += _OLD
+        if connection.socket is None:  # it was about to connect
+            connection.close()
+            return
+        with self._lock:
+            self._late.append((time.monotonic() + LATE, connection))
+
+    # The master -------------------------------------------------------------------------------------------------------
+
+    def _watch_master(self) -> None:
+        told = False
+        while not rospy.is_shutdown():
+            found, publishers = self._ask_master()
+            with self._lock:
+                news = self._master.hear(found, time.monotonic())
+                lost = self._master.lost(time.monotonic())
+            if news and not rospy.is_shutdown():
+                (rospy.logerr if TROUBLES[found] else rospy.logwarn)("%s", TROUBLES[found] or "the ROS master is back")
+            if lost and not told and self._lost is not None:
+                self._lost(TROUBLES[found])
+            told = told or lost
+            if found == KNOWN:
+                for topic, names in publishers.items():
+                    for name in names:
+                        with contextlib.suppress(*_CALL_ERRORS):
+                            self._complete(topic, name)
+            time.sleep(MASTER_PERIOD if found == KNOWN else PERIOD)
+
+    @staticmethod
+    def _ask_master() -> Tuple[str, Dict[str, List[str]]]:
+        """Is it there, does it know us? And who publishes what."""
+        try:
+            publishers, subscribers, _ = _call(rosgraph.get_master_uri(), "getSystemState")
+        except ConnectionRefusedError:
+            return REFUSED, {}
+        except OSError:
+            return UNREACHABLE, {}
+        except (xmlrpc.client.Error, http.client.HTTPException, ValueError):
+            return STRANGER, {}  # something else answers there
+        known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
+        return (KNOWN if known else STRANGER), dict(publishers)
+
+    @staticmethod
+    def _complete(topic: str, name: str) -> None:
+        """Connects to this publisher if rospy has given it up, or was never told of it."""
+        for impl in _subscriptions():
+            if impl.resolved_name == topic and all(name != other.callerid_pub for other in _live(impl)):
+                uri = _call(rosgraph.get_master_uri(), "lookupNode", name)
+                if not impl.has_connection(uri):
+                    _call(uri, "getPid")
+                    connect(topic, uri)
+
+
+def log_without_master() -> None:
+    """rospy asks the master at each line that it logs for a parameter, as long as nobody has set that: with the master
+    cut off, the first log line would stop the node. Set to its default and asked for once, it is known for good."""
+    parameter = "/rosout_disable_topics_generation"
+    with contextlib.suppress(OSError):  # the master has gone this moment
+        if not rospy.has_param(parameter):
+            rospy.set_param(parameter, False)
+        rospy.get_param_cached(parameter)
+
+
+def connect(topic: str, uri: str) -> None:
+    """Has rospy connect this topic to the publisher at the address, as if the master had told it."""
+    _call(rospy.get_node_uri(), "publisherUpdate", topic, [uri])
+
+
+def _subscriptions() -> List[Any]:
+    """rospy's implementations of the topics to which this node has subscribed."""
+    manager = get_topic_manager()
+    found = [manager.get_subscriber_impl(topic) for topic, _ in manager.get_subscriptions()]
+    return [impl for impl in found if impl is not None]
+
+
+def _live(impl: Any) -> Iterator[Any]:
+    """Its connections that are or were established, but for those that were put aside."""
+    for connection in list(impl.connections if impl is not None else ()):
+        if connection.callerid_pub != "unknown" and not connection.endpoint_id.endswith(_OLD):
+            yield connection

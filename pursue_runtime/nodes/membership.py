@@ -1,0 +1,68 @@
+"""Which mission the nodes of this package belong to: that of the observer's states. It comes from the workspace,
+or from what this machine has received (~received); with ~again they stay for the missions that follow.
+"""
+
+from __future__ import annotations
+
+import os
+
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.hearing import OLD, OTHER, OURS, Hearing
+from pursue_runtime.missions import Missions, Source, own_source, ros_home
+from pursue_runtime.nodes.node import Ending
+from pursue_runtime.state import WAITING, SystemState, parse_state
+from pursue_runtime.words import SYSTEM_STATE
+
+PATIENCE = 1.0
+"""Seconds of real time for which a node that starts waits for an observer that says which mission is played."""
+
+
+class Membership:
+    """The mission whose data the node has, and what becomes of states. `trouble`: why it cannot take part, or ""."""
+
+    def __init__(self, package: Package, ending: Ending) -> None:
+        """Raises DataError."""
+        config = rospy.get_param("~config", "")
+        own = own_source(package, "model.yaml", config)
+        self.received = bool(rospy.get_param("~received", False))
+        self.again = bool(rospy.get_param("~again", False))
+        self.trouble = ""
+        self._ending = ending
+        self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")
+        self.source = self._choose()
+        self._hearing = Hearing(self.source.mission, own.mission, self.again)
+
+    def takes(self, state: SystemState) -> bool:
+        """True for a state that counts here. Where it is of another mission that is here, the node begins anew."""
+        verdict = self._hearing.judge(state)
+        if self._hearing.anew and verdict != OTHER:
+            self._ending.renew()  # nothing that is known here is of the mission that comes
+            return False
+        if verdict == OTHER:
+            try:
+                found = self._missions.find(state.mission)
+            except DataError as problem:
+                self.trouble = str(problem)
+            else:
+                self.trouble = f"does not have mission {state.mission or 'own'}: send it to this machine"
+                if found is not None:
+                    self._ending.renew()
+        elif verdict != OLD:
+            self.trouble = ""
+            if state.status == WAITING and self._missions.moved(state.mission, self.source):
+                self._ending.renew()
+        return verdict == OURS
+
+    def _choose(self) -> Source:
+        """The mission of the observer, if it is there already and its mission is here; else the current one."""
+        source = None
+        if self.received:
+            try:
+                state = parse_state(rospy.wait_for_message(SYSTEM_STATE, String, PATIENCE).data)
+                source = self._missions.find(state.mission) if state else None
+            except rospy.ROSException:
+                pass  # there is no observer yet
+        return source or self._missions.current()

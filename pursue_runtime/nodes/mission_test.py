@@ -1,0 +1,216 @@
+"""Plays a mission on ROS and judges it from outside: by what is said on the topics, and by who says it.
+
+What is expected stands in expected.json beside the script of the test. The mission is started from here, when every
+node says that it is ready and the observer is heard, so that nothing of it is missed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import unittest
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Set, Tuple
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import String
+
+from pursue_runtime.data import Package
+
+CONNECTED = 60.0  # seconds of the wall clock for all nodes to come up
+
+
+class Record:
+    """Everything that was said, in the order of its receipt."""
+
+    def __init__(self, robots: Sequence[str]) -> None:
+        self.changed = threading.Condition()
+        self.ready: Set[str] = set()  # nodes
+        self.events: List[Tuple[str, str]] = []  # (node, word)
+        self.commands: List[Tuple[str, str]] = []  # (node, robot)
+        self.states: Dict[int, Dict[str, str]] = {}  # seq: {automaton or variable: location or value}
+        self.status = "waiting"
+        self.readers = [
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100),
+            rospy.Subscriber("pursue/events", String, self.on_event, queue_size=1000),
+            rospy.Subscriber("pursue/system_state", String, self.on_state, queue_size=1000),
+        ]
+        for robot in robots:
+            for topic, kind in (("move_base_simple/goal", PoseStamped), ("pursue/actions", String)):
+                name = f"{robot}/{topic}"
+                self.readers.append(rospy.Subscriber(name, kind, self.on_command, callback_args=robot, queue_size=1000))
+
+    def on_diagnostics(self, message: DiagnosticArray) -> None:
+        """A node says how it is."""
+        with self.changed:
+            for status in message.status:
+                if any(value.key == "ready" and value.value.lower() == "true" for value in status.values):
+                    self.ready.add(sender_of(message))
+            self.changed.notify_all()
+
+    def on_event(self, message: String) -> None:
+        """A word on pursue/events."""
+        with self.changed:
+            self.events.append((sender_of(message), message.data.strip()))
+
+    def on_command(self, message: Any, robot: str) -> None:
+        """A goal or an action for a robot."""
+        with self.changed:
+            self.commands.append((sender_of(message), robot))
+
+    def on_state(self, message: String) -> None:
+        """A state of the mission."""
+        head, values = read_state(message.data)
+        with self.changed:
+            self.states[int(head["seq"])] = values
+            self.status = head["status"]
+            self.changed.notify_all()
+
+    def wait(self, done: Callable[[], object], seconds: float) -> bool:
+        """True as soon as `done()` holds; False after so many seconds of the wall clock."""
+        with self.changed:
+            return bool(self.changed.wait_for(done, seconds))
+
+    def ended(self) -> bool:
+        """True for a mission that is over."""
+        return self.status in ("won", "lost", "stopped")
+
+
+def sender_of(message: Any) -> str:
+    """The node that published the message."""
+    return str(message._connection_header["callerid"]).strip("/")
+
+
+def read_state(text: str) -> Tuple[Dict[str, str], Dict[str, str]]:
+    """The words of the first line, and the locations and variables, of a system state."""
+    lines = text.splitlines()
+    head = dict(word.split("=", 1) for word in lines[0].split() if "=" in word)
+    values = {}
+    for line in lines[1:]:
+        if not line.strip():
+            break  # what follows are clocks
+        name, value = line.split("=", 1)
+        values[name] = value
+    return head, values
+
+
+def event_of(word: str) -> str:
+    """`agent:event@seq` without agent and number."""
+    return word.split("@")[0].split(":")[-1]
+
+
+def enabled(edge: Mapping[str, Any], before: Mapping[str, str]) -> bool:
+    """True where the edge's tests on variables hold (clocks are not looked at)."""
+    return all(any(before[name] == str(value) for name, value in clause) for clause in edge["if"])
+
+
+def takes_part(
+    edges: Sequence[Mapping[str, Any]], before: Mapping[str, str], after: Mapping[str, str], name: str, word: object
+) -> bool:
+    """True where the automaton receives the word as the model says: it moves if it can, else it stays."""
+    heard = [e for e in edges if e["sync"] == "receive" and e["word"] == word and e["from"] == before[name]]
+    open_ = [e for e in heard if enabled(e, before)]
+    if not open_:
+        return before[name] == after[name]
+    return any(e["to"] == after[name] for e in open_)
+
+
+def explained(
+    automata: Mapping[str, Sequence[Mapping[str, Any]]], before: Mapping[str, str], after: Mapping[str, str]
+) -> bool:
+    """True where one joint move of the model leads from one state to the other."""
+    for sender, edges in automata.items():
+        for edge in edges:
+            if edge["sync"] == "receive" or (edge["from"], edge["to"]) != (before[sender], after[sender]):
+                continue
+            word = edge["word"] if edge["sync"] == "send" else None
+            others = (name for name in automata if name != sender)
+            if enabled(edge, before) and all(takes_part(automata[n], before, after, n, word) for n in others):
+                return True
+    return False
+
+
+class MissionTest(unittest.TestCase):
+    """One mission for all tests: it is played once, then judged."""
+
+    folder = ""
+    expected: Dict[str, Any]
+    record: Record
+    voice: rospy.Publisher
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        with open(os.path.join(cls.folder, "expected.json")) as data:
+            cls.expected = json.load(data)
+        rospy.init_node("mission_test")
+        cls.record = Record(cls.expected["robots"])
+        cls.voice = rospy.Publisher("pursue/events", String, queue_size=10)
+        nodes = set(cls.expected["nodes"])
+        if not cls.record.wait(lambda: nodes <= cls.record.ready, CONNECTED):
+            raise AssertionError(f"not ready after {CONNECTED} s: {sorted(nodes - cls.record.ready)}")
+        if not cls.record.wait(lambda: cls.record.states, CONNECTED):
+            raise AssertionError(f"no state of the observer was heard within {CONNECTED} s")
+        cls.start()
+        if cls.expected["reach"]:
+            cls.record.wait(cls.record.ended, rospy.get_param("~patience"))
+        else:
+            cls.play_on(rospy.get_param("~units") * rospy.get_param("~time_unit"))
+
+    @classmethod
+    def start(cls) -> None:
+        """Says `_start_` until a state answers: a word that is said before the observer hears us is lost."""
+        for _ in range(int(CONNECTED)):
+            cls.voice.publish("_start_")
+            if cls.record.wait(lambda: cls.record.status != "waiting", 1.0):
+                break
+
+    @classmethod
+    def play_on(cls, seconds: float) -> None:
+        """Nothing ends a mission that has only to stay safe: after so many seconds of ROS time we do."""
+        end = rospy.get_time() + seconds
+        while rospy.get_time() < end and not cls.record.ended():
+            rospy.sleep(0.5)
+        cls.voice.publish("Finish!")
+        cls.record.wait(cls.record.ended, 10.0)
+
+    def test_mission_ends_well(self) -> None:
+        """It reaches its goal, and without one it is still safe when it is ended."""
+        self.assertEqual(self.record.status, "won", f"states: {len(self.record.states)}, events: {self.record.events}")
+
+    def test_mission_stays_safe(self) -> None:
+        bad = self.expected["bad"]
+        if bad:
+            self.assertNotIn(bad[1], [state[bad[0]] for state in self.record.states.values()])
+
+    def test_every_controller_commands_its_own(self) -> None:
+        allowed = self.expected["commands"]
+        for node, word in self.record.events:
+            if node in allowed:
+                self.assertIn(event_of(word), allowed[node], f"{node} said {word}")
+        for node, robot in self.record.commands:
+            self.assertEqual(node, self.expected["robots"][robot], f"{robot} was commanded by {node}")
+
+    def test_no_controller_publishes_an_end(self) -> None:
+        ends = set(self.expected["ends"])
+        said = [(node, word) for node, word in self.record.events if node in self.expected["commands"]]
+        self.assertEqual([(node, word) for node, word in said if event_of(word) in ends], [])
+
+    def test_every_step_is_a_step_of_the_model(self) -> None:
+        """So every rule is kept: an event that a rule names comes only in its turn."""
+        seqs = sorted(seq for seq in self.record.states if seq > 0)
+        self.assertEqual(seqs, list(range(1, len(seqs) + 1)), "states were missed")
+        for seq in seqs[:-1]:
+            before, after = self.record.states[seq], self.record.states[seq + 1]
+            self.assertTrue(explained(self.expected["automata"], before, after), f"{seq}: {before} to {after}")
+
+
+
+def main(package: Package) -> int:
+    """Plays the mission and judges it; the result goes where rostest looks for it. Returns the exit status."""
+    MissionTest.folder = os.path.dirname(os.path.abspath(package.script))
+    rostest.rosrun(package.name, "mission", MissionTest, sys.argv)
+    return 0

@@ -1,0 +1,218 @@
+"""What every node needs of ROS: diagnostics, an alarm in ROS time, and an end with an exit status."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from typing import TYPE_CHECKING, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rosgraph_msgs.msg import Clock
+
+if TYPE_CHECKING:
+    from pursue_runtime.nodes.links import Links
+
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+STALE = DiagnosticStatus.STALE  # what the node knows is old
+
+
+def worse(level: int, other: int) -> int:
+    """The worse of two levels."""
+    return max(level, other, key=(OK, WARN, STALE, ERROR).index)
+
+
+class Report(NamedTuple):
+    """How a node is: one of the standard levels, a sentence, and values (`ready` is added)."""
+
+    ready: bool
+    level: int
+    message: str
+    values: Dict[str, object]
+
+
+class Diagnostics:
+    """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
+
+    With `links` it tells also what is wrong with the connections and the master.
+    """
+
+    def __init__(self, report: Callable[[], Report], links: Optional[Links] = None) -> None:
+        self._name = rospy.get_name().lstrip("/")
+        self._report = report
+        self._links = links
+        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
+        threading.Thread(target=self._run, name="diagnostics", daemon=True).start()
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            self.publish()
+            time.sleep(1.0)
+
+    def publish(self) -> None:
+        """Publishes the report of now."""
+        report = self._report()
+        if self._links is not None:
+            report = self._links.amend(report)
+        values = {"ready": str(report.ready).lower(), **report.values}
+        status = DiagnosticStatus(
+            level=report.level,
+            name=f"{self._name}: mission",
+            message=report.message,
+            hardware_id=self._name,
+            values=[KeyValue(key, str(value)) for key, value in values.items()],
+        )
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = rospy.Time.now()
+        with contextlib.suppress(rospy.ROSException):  # the node is going down
+            self._publisher.publish(array)
+
+
+class Alarm:
+    """Calls `ring`, in a thread of its own, when the moment comes. It sleeps until then: nothing is polled.
+
+    Setting it again replaces what was set. In simulated time it wakes on /clock.
+    """
+
+    def __init__(self, ring: Callable[[], None]) -> None:
+        self._ring = ring
+        self._changed = threading.Condition()
+        self._moment: Optional[float] = None
+        self._deadline: Optional[float] = None
+        self._simulated: Optional[float] = None
+        if not rospy.rostime.is_wallclock():
+            self._simulated = rospy.get_time()
+            rospy.Subscriber("/clock", Clock, self._tick, queue_size=10, tcp_nodelay=True)
+        threading.Thread(target=self._run, name="alarm", daemon=True).start()
+
+    def set(self, moment: Optional[float] = None, patience: Optional[float] = None) -> None:
+        """Ring at this moment of ROS time (seconds), and in any case after `patience` seconds of real time.
+
+        Neither: do not ring.
+        """
+        with self._changed:
+            self._moment = moment
+            self._deadline = None if patience is None else time.monotonic() + patience
+            self._changed.notify()
+
+    def _tick(self, message: Clock) -> None:
+        with self._changed:
+            self._simulated = message.clock.to_sec()
+            if self._moment is not None and self._simulated >= self._moment:
+                self._changed.notify()
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            with self._changed:
+                wait = self._wait()
+                while wait is None or wait > 0.0:
+                    self._changed.wait(wait)
+                    wait = self._wait()
+                self._moment = self._deadline = None
+            self._ring()
+
+    def _wait(self) -> Optional[float]:
+        """Seconds of real time until it rings as things stand; None: until something changes."""
+        waits: List[float] = []
+        if self._moment is not None:
+            if self._simulated is None:
+                waits.append(self._moment - rospy.get_time())
+            elif self._simulated >= self._moment:
+                waits.append(0.0)
+        if self._deadline is not None:
+            waits.append(self._deadline - time.monotonic())
+        return min(waits) if waits else None
+
+
+INTERRUPTED, RENEWED = -1, -2
+"""What takes the place of an exit status where a signal ends the node, and where it begins anew."""
+
+
+def of_another_master(arguments: Sequence[str], run_id: object) -> bool:
+    """True where roslaunch has started this node for another roscore than the one that runs now (its `/run_id`).
+
+    roslaunch keeps the logs of a launch in a folder of that name, and tells its nodes so: `__log:=…/<run_id>/…`.
+    """
+    logs = [word for word in arguments if word.startswith("__log:=")]
+    return bool(logs and run_id) and not any(str(run_id) in word.split("/") for word in logs)
+
+
+def check_launch() -> None:
+    """Ends the process where a new roscore has taken the place of the one of its launch.
+
+    The new one does not have the launch's parameters: with the defaults instead, a node that waits for missions would
+    play the workspace's own at once.
+    """
+    run_id = None
+    with contextlib.suppress(OSError, rospy.ROSException):
+        run_id = rospy.get_param("/run_id", None) if any(word.startswith("__log:=") for word in sys.argv) else None
+    if of_another_master(sys.argv, run_id):
+        rospy.logfatal("another roscore has been started, which does not have our parameters: start roslaunch again")
+        sys.exit(1)
+
+
+class Ending:
+    """Lets the main thread sleep until somebody ends the node, or ROS does. None begins with settings that are lost."""
+
+    def __init__(self) -> None:
+        check_launch()
+        # A simple queue may be filled from a signal handler, an event or a condition may not.
+        self._ends: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self.renewed = False
+        rospy.on_shutdown(lambda: self._ends.put(0))
+        # rospy ends a node in the handler itself, which may wait for ever for a lock of what it has interrupted.
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(sign, lambda *_: self._ends.put(INTERRUPTED))
+
+    @property
+    def called(self) -> bool:
+        """True as soon as the node is to end."""
+        return not self._ends.empty()
+
+    def end(self, status: int) -> None:
+        """Ends the node with this exit status; the first call counts."""
+        self._ends.put(status)
+
+    def renew(self) -> None:
+        """Ends the node, which is to begin anew: `renewed` is then True, and what it does last is `begin_anew`."""
+        self._ends.put(RENEWED)
+
+    def wait(self, linger: float = 0.0) -> int:
+        """The exit status, once there is one; what was published has `linger` seconds more to go out."""
+        status = self._ends.get()
+        self.renewed = status == RENEWED
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(sign, signal.SIG_IGN)  # it ends already
+        if not rospy.is_shutdown():
+            time.sleep(linger if status >= 0 else 0.0)
+            why = {INTERRUPTED: "interrupted", RENEWED: "there is another mission"}
+            rospy.signal_shutdown(why.get(status, "the mission has ended"))
+        return max(0, status)
+
+
+ANEW = "PURSUE_ANEW"
+"""In the environment of a node that has begun anew."""
+
+
+def begin_anew() -> NoReturn:
+    """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended."""
+    for sign in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(sign, signal.SIG_DFL)
+    sys.stdout.flush()
+    os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes"})
+
+
+def give_way() -> None:
+    """Whoever decides about robots goes first; once for each process."""
+    if ANEW not in os.environ:
+        os.nice(5)
+
+
+def listeners(publisher: rospy.Publisher) -> List[str]:
+    """The names of the nodes that are connected to what we publish there."""
+    return sorted({connection[1] for connection in publisher.impl.get_stats_info()})

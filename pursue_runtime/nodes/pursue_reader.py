@@ -1,0 +1,146 @@
+"""Takes missions from the desk (topic local_mission), checks and keeps them, and has them played when no other runs.
+
+Parameters: ~robot (the robot's name; its namespace, or this machine's name where there is none), ~keys (the folder of
+the keys that are trusted), ~keep (so many earlier missions), ~limit (bytes of the largest bundle), ~patience (seconds
+after the start without an observer, until missions may be exchanged), ~state_topic, ~nodes (those of missions that run
+on this machine: all, or names with blanks between them).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+import threading
+import time
+from typing import Dict, Tuple
+
+import rospkg
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.bundle import LIMIT, MISSION, mission_id
+from pursue_runtime.data import Package
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report
+from pursue_runtime.reader.packages import ALL, packages_here, without_package
+from pursue_runtime.reader.reader import PATIENCE, Reader, Robot
+from pursue_runtime.reader.store import KEEP, Store, StoreError, missions_folder
+from pursue_runtime.state import parse_state
+from pursue_runtime.trusted_keys import KeyFolder, keys_folder
+from pursue_runtime.words import SYSTEM_STATE
+
+LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
+
+RETRY = 10.0
+"""Seconds until a store that cannot be used is tried again."""
+
+
+def log(level: str, text: str) -> None:
+    """Logs a sentence."""
+    LOGS[level]("%s", text)
+
+
+class Node:
+    """The reader on ROS: one lock, so that orders and states are taken one by one."""
+
+    def __init__(self, scenario: str, ending: Ending, store: Store) -> None:
+        self.lock = threading.RLock()
+        self.ending = ending
+        keys = KeyFolder(rospy.get_param("~keys", "") or keys_folder(os.environ))
+        limit, patience = int(rospy.get_param("~limit", LIMIT)), float(rospy.get_param("~patience", PATIENCE))
+        nodes, installed = str(rospy.get_param("~nodes", ALL)), mission_packages()
+        robot = Robot(robot_name(), scenario, packages_here(nodes, installed), limit)
+        self.reader = Reader(robot, store, keys, time.monotonic(), log, patience)
+        self.said = ""
+        self.statuses = rospy.Publisher("mission_status", String, queue_size=10, latch=True)
+        self.alarm = Alarm(self.ring)
+        self.publish()
+        self.ears = rospy.Subscriber("local_mission", String, self.hear, queue_size=1, buff_size=1 << 20)
+        topic = rospy.get_param("~state_topic", SYSTEM_STATE)
+        states = rospy.Subscriber("/" + topic.lstrip("/"), String, self.see, queue_size=1000, tcp_nodelay=True)
+        Diagnostics(self.report, Links(states, lost=self.master_lost))
+        trouble = self.reader.trouble()
+        log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
+        for node in without_package(nodes, installed):
+            log("warn", f"~nodes: there is no package for {node} here, so it plays no part in missions")
+
+    def hear(self, message: String) -> None:
+        """A message on local_mission."""
+        with self.lock:
+            self.reader.handle(message.data, time.monotonic())
+            self.publish()
+
+    def see(self, message: String) -> None:
+        """A state of the mission."""
+        state = parse_state(message.data)
+        with self.lock:
+            if state is not None and self.reader.see(state, time.monotonic()):
+                self.publish()
+
+    def ring(self) -> None:
+        """The alarm: nothing was heard of an observer for long enough."""
+        with self.lock:
+            self.reader.tick(time.monotonic())
+            self.publish()
+
+    def publish(self) -> None:
+        """Says how it stands, where that is news."""
+        text = json.dumps(self.reader.status())
+        if text != self.said:
+            self.said = text
+            with contextlib.suppress(rospy.ROSException):  # the node is going down
+                self.statuses.publish(text)
+        self.alarm.set(None, self.reader.wake(time.monotonic()))
+
+    def master_lost(self, why: str) -> None:
+        """Another master would never hear of this node: it ends, and is started again."""
+        rospy.logerr("ends here: %s", why)
+        self.ending.end(1)
+
+    def report(self) -> Report:
+        """For /diagnostics. It is ready as soon as it is connected with communication_manager."""
+        with self.lock:
+            status, trouble = self.reader.status(), self.reader.trouble()
+            values: Dict[str, object] = {**self.reader.counts, "kept": len(status["kept"])}
+            values["refused"] = sum(self.reader.refusals.counts.values())
+        for name in ("current", "next", "prepared"):
+            values[name] = "" if status[name] is None else mission_id(status[name])
+        return Report(self.ears.get_num_connections() > 0, WARN if trouble else OK, trouble or "takes missions", values)
+
+
+def robot_name() -> str:
+    """The name by which the desk knows this robot."""
+    given = str(rospy.get_param("~robot", "")) or rospy.get_namespace().strip("/")
+    return given or socket.gethostname()
+
+
+def mission_packages() -> Tuple[str, ...]:
+    """The packages of this machine that hold data of a mission."""
+    known = rospkg.RosPack()
+    mark = os.path.join("config", MISSION)
+    return tuple(sorted(name for name in known.list() if os.path.isfile(os.path.join(known.get_path(name), mark))))
+
+
+def open_store(ending: Ending) -> Store:
+    """The store, as soon as it can be used. Raises StoreError where the node ends before."""
+    while True:
+        try:
+            return Store(missions_folder(os.environ), int(rospy.get_param("~keep", KEEP)), log)
+        except StoreError as problem:
+            rospy.logerr("%s", problem)
+            deadline = time.monotonic() + RETRY
+            while time.monotonic() < deadline:
+                if ending.called:
+                    raise
+                time.sleep(0.1)
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    rospy.init_node(package.name)
+    ending = Ending()
+    with contextlib.suppress(StoreError):
+        Node(package.scenario, ending, open_store(ending))
+    return ending.wait()

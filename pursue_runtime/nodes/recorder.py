@@ -1,0 +1,165 @@
+"""Records a mission in a bag, for `pursue-gen replay` and ROS's own tools: complete from its first word on,
+because the UI does not start it before every publisher is connected here, and closed when the mission has ended.
+
+Parameters: ~file (a path, relative to ROS_HOME; "" or true: pursue/<scenario>/mission.bag there; no file is ever
+overwritten, the name gets a number), ~nodes (whose words must not be missed), ~topics (more to record),
+~config, ~received, ~again (see ui_mission).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import threading
+from typing import Any, Dict, List
+
+import genpy
+import rosbag
+import rosgraph
+import rospkg
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.model import Model
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, begin_anew, give_way
+from pursue_runtime.state import ENDED, WAITING, WON, parse_state
+from pursue_runtime.ui.options import OptionError, expected, names
+from pursue_runtime.ui.recording import GAME, missing, reserve, topics
+from pursue_runtime.words import SYSTEM_STATE
+
+CHUNK = 64 * 1024  # bytes; what is not yet in a whole chunk is harder to read after a crash
+
+
+class Bag(rosbag.Bag):
+    """A bag that keeps who published what: rosbag's own `write` has one connection for each topic."""
+
+    def __init__(self, path: str) -> None:
+        super().__init__(path, "w", chunk_threshold=CHUNK)
+        self._known: Dict[Any, Any] = {}
+
+    def note(self, topic: str, message: rospy.AnyMsg, header: Dict[str, str], stamp: rospy.Time) -> None:
+        """Writes a message as it came."""
+        key = (topic, header.get("callerid", ""))
+        self._topic_connections.pop(topic, None)
+        if key in self._known:
+            self._topic_connections[topic] = self._known[key]
+        kind = type("Kind", (), {"_md5sum": header["md5sum"], "_full_text": header["message_definition"]})
+        data = message._buff if isinstance(message, rospy.AnyMsg) else serialized(message)
+        self.write(topic, (header["type"], data, header["md5sum"], kind), stamp, True, {**header, "topic": topic})
+        self._known[key] = self._topic_connections[topic]
+
+
+class Recorder:
+    """The recorder on ROS: one lock, a subscriber for each topic."""
+
+    def __init__(self, package: Package) -> None:
+        self.ending = Ending()
+        self.membership = Membership(package, self.ending)
+        model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
+        self.nodes = ["UI", *expected(rospy.get_param("~", {}), settings.get("nodes", ()))]
+        asked = str(rospy.get_param("~file", ""))
+        asked = "" if asked.lower() == "true" else asked
+        self.path = reserve(asked, os.path.join(rospkg.get_ros_home(), "pursue", package.scenario))
+        self.lock = threading.Lock()
+        self.status = ""
+        self.count = 0
+        self.bag = Bag(self.path + ".active")
+        self.open = True
+        self.master = rosgraph.Master(rospy.get_name())
+        self.states = rospy.resolve_name(SYSTEM_STATE)
+        self.note_game()
+        more = names(rospy.get_param("~topics", []), "~topics")
+        wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
+        self.ears: List[rospy.Subscriber] = [
+            rospy.Subscriber(topic, rospy.AnyMsg, self.hear, rospy.resolve_name(topic), tcp_nodelay=True)
+            for topic in dict.fromkeys(wanted)
+        ]
+        pulses = [ear for ear in self.ears if ear.resolved_name == "/diagnostics"]
+        Diagnostics(self.report, Links(*pulses, lost=lambda _: self.ending.end(1)))
+
+    def note_game(self) -> None:
+        """The bag begins with what is needed to check it."""
+        game = self.membership.source.read("game.yaml")
+        self.bag.write(rospy.resolve_name(GAME), String(json.dumps(game)), stamp())
+
+    def hear(self, message: rospy.AnyMsg, topic: str) -> None:
+        """A message on one of the topics."""
+        state = parse_state(String().deserialize(message._buff).data) if topic == self.states else None
+        ours = state is not None and self.membership.takes(state)
+        with self.lock:
+            if not self.open or (state is not None and not ours and not self.status):
+                return  # the last words of a mission before ours
+            self.bag.note(topic, message, message._connection_header, stamp())
+            self.count += 1
+        if state is not None and ours:
+            self.status = state.status
+            if state.status in ENDED:
+                self.ending.end(0 if state.status == WON else 1)
+
+    def report(self) -> Report:
+        """For /diagnostics. It is ready when nothing of a mission that starts now would be missed."""
+        values = {"mission": self.membership.source.mission, "messages": self.count, "file": self.path}
+        if self.membership.trouble:
+            return Report(False, WARN, self.membership.trouble, values)
+        if self.status not in ("", WAITING):
+            return Report(True, OK, "recording", values)
+        why = self.missing() if self.status else "no state from the observer yet"
+        return Report(not why, WARN if why else OK, why or "recording", values)
+
+    def missing(self) -> str:
+        """Why a mission should not start yet."""
+        try:
+            known = dict(self.master.getSystemState()[0])
+        except (OSError, rosgraph.MasterException) as problem:
+            return f"the master does not answer: {problem}"
+        ours = [ear.resolved_name for ear in self.ears]
+        publishers = {topic: set(known.get(topic, [])) - {rospy.get_name()} for topic in ours}
+        heard = {ear.resolved_name: ear.get_num_connections() for ear in self.ears}
+        own = "/diagnostics"  # we publish there ourselves, and rospy connects us to us
+        heard[own] = heard.get(own, 0) - (rospy.get_name() in known.get(own, []))
+        return missing(self.nodes, publishers, heard)
+
+    def run(self) -> int:
+        """Runs until the mission ends and its last words are in the bag; returns the exit status."""
+        rospy.loginfo("recording %s", self.path)
+        try:
+            status = self.ending.wait(linger=1.5)
+        finally:
+            with self.lock:
+                self.open = False
+                self.bag.close()
+            if self.ending.renewed:
+                os.remove(self.path + ".active")  # nothing has happened yet
+                begin_anew()
+            os.rename(self.path + ".active", self.path)
+            rospy.loginfo("recorded %d messages in %s", self.count, self.path)
+        return status
+
+
+def serialized(message: genpy.Message) -> bytes:
+    """What was sent: rospy decodes /clock for itself, and does not for us then."""
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
+def stamp() -> rospy.Time:
+    """The time of now; rosbag does not take 0, which is simulated time before the first /clock."""
+    return max(rospy.get_rostime(), rospy.Time(0, 1))
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    give_way()
+    rospy.init_node("recorder")
+    try:
+        return Recorder(package).run()
+    except (DataError, OptionError) as problem:
+        rospy.logfatal("%s", problem)
+    except OSError as problem:
+        rospy.logfatal("cannot record: %s", problem)
+    return 3

@@ -1,0 +1,196 @@
+"""The topics between a controller and one robot: goals and actions to it; results and positions from it."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import threading
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import rospy
+from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
+from std_msgs.msg import String
+
+from pursue_runtime.controller.robot import Goal, Settings
+from pursue_runtime.data import DataError
+
+TellOne = Callable[[Any], None]
+"""Publishes to one subscriber alone."""
+
+
+class Order(NamedTuple):
+    """What a robot was told: it stands as long as the state shows it at `location`."""
+
+    location: str
+    message: Any
+
+
+def needed(package: str, module: str, why: str) -> Any:
+    """A module of a ROS package that is needed by some settings only. Raises DataError where it is not installed."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as problem:
+        raise DataError(
+            f"{why} needs the ROS package {package}, which is not here ({problem}):"
+            f" install ros-noetic-{package.replace('_', '-')}, or python3-{package.replace('_', '-')} on Debian"
+        ) from problem
+
+
+class RobotLink(rospy.SubscribeListener):
+    """One robot's topics. `answer` gets id, stamp and status of each result, `place` gets x and y.
+
+    A robot that connects later is told then what it is still to do: a controller that was started again learns from
+    the first state what its robot should be doing, some milliseconds before the robot is connected.
+    """
+
+    def __init__(
+        self,
+        robot: str,
+        settings: Settings,
+        answer: Callable[[str, float, int], None],
+        place: Callable[[float, float], None],
+    ) -> None:
+        super().__init__()
+        self.watched = False
+        self._robot, self._settings, self._answer, self._place = robot, settings, answer, place
+        self._lock = threading.Lock()
+        self._standing: Dict[str, Order] = {}
+        self._open = True
+        self._late: List[Tuple[str, TellOne]] = []
+        self._ears: Any = None
+        self._cancel: Any = None
+        self._results: Any = None
+        self._frames: Any = None
+        self._messages: Any = None
+        self._tf: Any = None
+        if settings.answers:
+            why = "goals:=action" if settings.goals == "action" else "ends:=result"
+            self._messages = needed("move_base_msgs", "move_base_msgs.msg", why)
+        if settings.ends == "tf":
+            self._tf = needed("tf2_ros", "tf2_ros", "ends:=tf")
+        self._act = rospy.Publisher(f"{robot}/pursue/actions", String, self, queue_size=10)
+        if settings.goals == "action":
+            topic, kind = f"{robot}/move_base/goal", self._messages.MoveBaseActionGoal
+        else:
+            topic, kind = f"{robot}/move_base_simple/goal", PoseStamped
+        self._move = rospy.Publisher(topic, kind, self, queue_size=10)
+        if settings.on_stop == "cancel":
+            self._ids = needed("actionlib_msgs", "actionlib_msgs.msg", "on_stop:=cancel").GoalID
+            self._cancel = rospy.Publisher(f"{robot}/move_base/cancel", self._ids, queue_size=10)
+        if settings.answers:
+            kind = self._messages.MoveBaseActionResult
+            topic = f"{robot}/move_base/result"
+            self._results = rospy.Subscriber(topic, kind, self._result, queue_size=100, tcp_nodelay=True)
+
+    # To the robot -----------------------------------------------------------------------------------------------------
+
+    def go(self, goal: Goal, pose: Sequence[float]) -> None:
+        """Sends the goal: a pose [x, y, z, qx, qy, qz, qw] on the map."""
+        stamped = PoseStamped(pose=Pose())
+        stamped.header.frame_id = self._settings.map_frame
+        stamped.header.stamp = rospy.Time.now()
+        position, orientation = stamped.pose.position, stamped.pose.orientation
+        position.x, position.y, position.z = pose[:3]
+        orientation.x, orientation.y, orientation.z, orientation.w = pose[3:]
+        message: Any = stamped
+        if self._settings.goals == "action":
+            message = self._messages.MoveBaseActionGoal(header=stamped.header)
+            message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
+            message.goal.target_pose = stamped
+        self._send(self._move, Order(goal.way.location, message))
+        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.way.poi, position.x, position.y)
+
+    def do(self, trigger: str, location: str = "") -> None:
+        """Sends an action: one that goes on at this location, or one that is done at once ("") and never said again."""
+        self._send(self._act, Order(location, String(trigger)))
+        rospy.loginfo("%s does %s", self._robot, trigger)
+
+    def _send(self, publisher: rospy.Publisher, order: Order) -> None:
+        with self._lock:
+            if order.location.startswith(("going_", "doing_")):
+                self._standing[publisher.resolved_name] = order
+                if not self._open:
+                    self._late.append((publisher.resolved_name, publisher.publish))
+                    return
+            if publisher.get_num_connections() == 0:
+                rospy.logwarn("nobody listens to %s yet", publisher.resolved_name)
+            with contextlib.suppress(rospy.ROSException):  # the node is going down
+                publisher.publish(order.message)
+
+    def keep(self, location: str, is_open: bool, after: str) -> None:
+        """Drops the orders that are over: only what fits the location, and a goal that the robot is `after`, may still
+        be told, and only while the mission `is_open` for orders."""
+        with self._lock:
+            goal = self._standing.get(self._move.resolved_name)
+            for topic, order in list(self._standing.items()):
+                if order.location != location or (order is goal and not after):
+                    del self._standing[topic]
+            self._open = is_open
+            late, self._late = (self._late, []) if is_open else ([], self._late)
+            told = [(tell, self._standing[topic]) for topic, tell in late if topic in self._standing]
+        for tell, order in told:
+            tell(order.message)
+
+    def peer_subscribe(self, topic_name: str, topic_publish: TellOne, peer_publish: TellOne) -> None:
+        """A robot has connected (rospy calls this)."""
+        with self._lock:
+            order = self._standing.get(topic_name) if self._open else None
+            if not self._open:
+                self._late.append((topic_name, peer_publish))
+        if order:
+            peer_publish(order.message)
+
+    def cancel(self, goal: str) -> None:
+        """Calls the robot back from where it goes; a simple goal has no id of ours: from wherever it goes."""
+        rospy.logwarn("%s is called back", self._robot)
+        self._cancel.publish(self._ids(id=goal if self._settings.goals == "action" else ""))
+
+    def close(self) -> None:
+        """The robot is no more for us to command."""
+        self.watch(False)
+        for topic in (self._act, self._move, self._cancel, self._results):
+            if topic is not None:
+                topic.unregister()
+
+    # From the robot ---------------------------------------------------------------------------------------------------
+
+    def _result(self, message: Any) -> None:
+        status = message.status
+        self._answer(status.goal_id.id, status.goal_id.stamp.to_sec(), status.status)
+
+    def watch(self, wanted: bool) -> None:
+        """Looks where the robot is from now on, or does not any more. A robot that stands costs nothing; and what is
+        heard first was not on its way for long: amcl_pose is latched."""
+        if wanted == self.watched:
+            return
+        self.watched = wanted
+        if self._ears is not None:
+            self._ears.unregister()
+            self._ears = self._frames = None
+        if wanted and self._settings.ends == "tf":
+            self._frames = self._tf.Buffer(debug=False)
+            self._ears = self._tf.TransformListener(self._frames)
+        elif wanted:
+            topic = f"{self._robot}/amcl_pose"
+            self._ears = rospy.Subscriber(topic, PoseWithCovarianceStamped, self._pose, queue_size=10, tcp_nodelay=True)
+
+    def _pose(self, message: PoseWithCovarianceStamped) -> None:
+        frame, wanted = message.header.frame_id, self._settings.map_frame
+        if frame.lstrip("/") != wanted.lstrip("/"):
+            what = f"{self._robot}/amcl_pose is in frame {frame!r}; expected {wanted!r} (~map_frame)"
+            rospy.logwarn_throttle(10.0, what)
+            return
+        position = message.pose.pose.position
+        self._place(position.x, position.y)
+
+    def look(self) -> Optional[Tuple[float, float]]:
+        """Where tf has the robot now; None where it does not know."""
+        if self._frames is None:
+            return None
+        frames = self._settings.map_frame, self._settings.base_frame
+        try:
+            found = self._frames.lookup_transform(*frames, rospy.Time(0)).transform.translation
+        except self._tf.TransformException as problem:
+            rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {problem}")
+            return None
+        return found.x, found.y

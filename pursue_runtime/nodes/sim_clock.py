@@ -1,0 +1,92 @@
+"""Simulated time for missions that run faster than life: publishes /clock until it is ended.
+
+Set /use_sim_time before any other node starts. Parameters: ~speed (simulated seconds per real one, default 5), ~hold
+(real seconds of standstill after each message of the mission, default 0.1), ~time_unit (seconds, default 1.0), ~step
+(simulated seconds; default 0.02 time units). Killed and started again it goes on where it was: it keeps its time in a
+file under ROS_HOME, one for each roscore.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from typing import Optional
+
+import rosgraph
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from pursue_runtime.data import Package
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report
+from pursue_runtime.simulator.clock import START, Memory, Pace, SimClock
+from pursue_runtime.words import EVENTS, SYSTEM_STATE
+
+
+def run(pace: Pace, scenario: str) -> int:
+    """Runs the clock until ROS shuts down, or the master is lost (status 1)."""
+    ending = Ending()
+    memory = remember(scenario)
+    last = memory.last if memory is not None else None
+    if last is not None:
+        rospy.logwarn("simulated time goes on at %.2f s, where it was", last)
+    clock = SimClock(pace, START if last is None else last)
+    publisher = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+    _, states = [
+        rospy.Subscriber(
+            topic, rospy.AnyMsg, lambda _: clock.heard(time.monotonic()), queue_size=1000, tcp_nodelay=True
+        )
+        for topic in (EVENTS, SYSTEM_STATE)
+    ]
+    links = Links(states, lost=lambda _: ending.end(1))
+    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), links)
+    threading.Thread(target=tick, args=(clock, pace, publisher, memory), name="clock", daemon=True).start()
+    return ending.wait()
+
+
+def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[Memory]) -> None:
+    """Publishes /clock. While time stands still it is published on: nobody who comes late, or who missed a message,
+    waits for it."""
+    moment = time.monotonic()
+    while not rospy.is_shutdown():
+        simulated = clock.tick(time.monotonic())
+        try:
+            if memory is not None:
+                memory.keep(simulated)
+            publisher.publish(Clock(rospy.Time.from_sec(simulated)))
+        except OSError as problem:
+            rospy.logerr("cannot keep the time: %s", problem)
+            memory = None
+        except rospy.ROSException:
+            return  # the node is going down
+        # On a busy machine steps come late; they are not made up for.
+        moment = max(moment + pace.tick, time.monotonic())
+        time.sleep(max(0.0, moment - time.monotonic()))
+
+
+def remember(scenario: str) -> Optional[Memory]:
+    """The memory of this roscore's clock; None, and a warning, where there cannot be one."""
+    home = os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
+    core = str(rospy.get_param("/run_id", "") or rosgraph.get_master_uri())
+    name = "clock-" + "".join(sign if sign.isalnum() else "_" for sign in core)
+    try:
+        return Memory(os.path.join(home, "pursue", scenario, name))
+    except OSError as problem:
+        rospy.logwarn("cannot keep the time (%s): a clock that is killed will start anew", problem)
+        return None
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    rospy.init_node("sim_clock")
+    if not rospy.get_param("/use_sim_time", False):
+        rospy.logwarn("/use_sim_time is not true: nobody follows this clock")
+    try:
+        time_unit = float(rospy.get_param("~time_unit", 1.0))
+        step = float(rospy.get_param("~step", 0.02 * time_unit))
+        pace = Pace(float(rospy.get_param("~speed", 5.0)), step, float(rospy.get_param("~hold", 0.1)))
+        return run(pace, package.scenario)
+    except (TypeError, ValueError) as problem:
+        rospy.logfatal("%s", problem)
+        return 3

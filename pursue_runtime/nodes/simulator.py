@@ -1,0 +1,124 @@
+"""The simulated robots, people and other agents: tells when what they do has ended.
+
+Parameters: ~reports (whose ends; default: those that ui.yaml names, or everybody's), ~delays (random, early, middle,
+late), ~seed, ~config, ~received, ~again (see ui_mission).
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import List
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import String
+
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.model import Model
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, begin_anew, give_way, listeners
+from pursue_runtime.simulator.simulator import ACTING, Delays, Simulator
+from pursue_runtime.state import LOST, STOPPED, WAITING, WON, parse_state
+from pursue_runtime.ui.options import names
+from pursue_runtime.words import EVENTS, SYSTEM_STATE
+
+
+class SimulatorNode:
+    """The simulator on ROS: one lock, an alarm for the next end, a word on pursue/events for each."""
+
+    def __init__(self, package: Package) -> None:
+        self.ending = Ending()
+        self.membership = Membership(package, self.ending)
+        model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
+        agents = [automaton.name for automaton in model.of_kind(*ACTING)]
+        reports = names(rospy.get_param("~reports", settings.get("reports", agents)), "~reports")
+        delays = Delays(str(rospy.get_param("~delays", "random")), int(rospy.get_param("~seed", 0)))
+        self.simulator = Simulator(model, reports, delays)
+        self.robots = [robot.name for robot in model.of_kind("robot") if robot.name in reports]
+        self.lock = threading.RLock()
+        self.observer = ""
+        self.status = WAITING
+        self.told = 0
+        self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        self.alarm = Alarm(self.act)
+        self.ears: List[rospy.Subscriber] = []
+        for robot in self.robots:
+            for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
+                self.ears.append(
+                    rospy.Subscriber(topic, kind, self.on_goal, callback_args=robot, queue_size=10, tcp_nodelay=True)
+                )
+        states = rospy.Subscriber(SYSTEM_STATE, String, self.on_state, queue_size=1000, tcp_nodelay=True)
+        pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
+        Diagnostics(self.report, Links(states, pulses, lost=self.master_lost))
+
+    def on_state(self, message: String) -> None:
+        """A state: who has begun what."""
+        state = parse_state(message.data)
+        if state is None:
+            rospy.logwarn("not a system state: %r", message.data[:80])
+            return
+        with self.lock:
+            if not self.membership.takes(state):
+                return
+            self.observer = message._connection_header.get("callerid", "")
+            self.status = state.status
+            self.simulator.on_state(state, time.monotonic())
+            self.act()
+        if state.status in (WON, LOST, STOPPED):
+            self.ending.end(0 if state.status == WON else 1)
+
+    def on_goal(self, message: object, robot: str) -> None:
+        """A goal or an action for the robot."""
+        with self.lock:
+            self.simulator.on_goal(robot, rospy.get_time())
+            self.act()
+
+    def act(self) -> None:
+        """Tells the ends whose moment has come, and sleeps until the next."""
+        with self.lock:
+            for word in self.simulator.due(rospy.get_time(), time.monotonic()):
+                rospy.loginfo("reports %s", word)
+                self.events.publish(word)
+                self.told += 1
+            moment, real = self.simulator.next_moments()
+            self.alarm.set(moment, None if real is None else max(0.0, real - time.monotonic()))
+
+    def master_lost(self, why: str) -> None:
+        """Without a master nobody can start or join."""
+        rospy.logerr("ends here: %s", why)
+        self.ending.end(1)
+
+    def report(self) -> Report:
+        """For /diagnostics. It is ready when it has heard the observer, the observer hears it, and each of its robots
+        has somebody who commands it."""
+        with self.lock:
+            observer, status, told = self.observer, self.status, self.told
+        deaf = sorted({ear.resolved_name for ear in self.ears if ear.get_num_connections() == 0})
+        values = {"mission": self.membership.source.mission, "reported": told, "uncommanded": " ".join(deaf)}
+        if self.membership.trouble:
+            return Report(False, WARN, self.membership.trouble, values)
+        if not observer or observer not in listeners(self.events):
+            return Report(False, WARN, "not connected to the observer yet", values)
+        if deaf:
+            return Report(False, WARN, f"nobody publishes on {deaf[0]} yet", values)
+        return Report(True, OK, status, values)
+
+    def run(self) -> int:
+        """Runs until the mission ends; returns the exit status."""
+        status = self.ending.wait(linger=0.2)
+        if self.ending.renewed:
+            begin_anew()
+        return status
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    give_way()
+    rospy.init_node("simulator")
+    try:
+        return SimulatorNode(package).run()
+    except (DataError, ValueError) as problem:
+        rospy.logfatal("%s", problem)
+        return 3

@@ -1,0 +1,374 @@
+"""The terminal: starts the mission when every node is ready, plays or asks for what the agents do that
+nobody controls, tells people what the strategy wants of them, shows what happens, and says how it ends.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from typing import Dict, List, Optional, Set, Tuple
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import String
+
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.missions import Source
+from pursue_runtime.model import Model
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Alarm,
+    Diagnostics,
+    Ending,
+    Report,
+    begin_anew,
+    give_way,
+    listeners,
+)
+from pursue_runtime.state import WAITING, parse_state
+from pursue_runtime.strategy import Strategy, parse_plan
+from pursue_runtime.ui.board import Board, open_board
+from pursue_runtime.ui.mission import SURE, Mission, Opening, Player, Readiness, Task, answer, menu, openings, tasks
+from pursue_runtime.ui.options import OptionError, Options, read_options
+from pursue_runtime.ui.page import Facts, Request
+from pursue_runtime.ui.players import AtRandom, Scripted, StandStill
+from pursue_runtime.ui.terminal import BAD, GOOD, PLAIN, TOLD, Terminal
+from pursue_runtime.ui.trace import TraceError, read_trace
+from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP, SYSTEM_STATE
+
+GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
+RETRY = 1.0  # real seconds until `_start_` is said again
+TRIES = 10
+REDRAW = 1.0  # real seconds between two progress lines
+VANISHED = 2.0  # real seconds after `Finish!` without a word of the observer
+
+
+class UI:
+    """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for what is heard."""
+
+    def __init__(
+        self, options: Options, membership: Membership, ending: Ending, player: Player, model: Model
+    ) -> None:
+        self.options, self.membership, self.ending, self.model = options, membership, ending, model
+        self.words: Set[str] = {edge.word for automaton in model.automata for edge in automaton.edges}
+        self.mission = Mission(model, player, people(membership.source))
+        self.readiness = Readiness(options.nodes)
+        self.terminal = Terminal(sys.stdout, os.environ)
+        self.lock = threading.RLock()
+        self.phase = GATHERING
+        self.observer = ""
+        self.tries = 0
+        self.concluded = False
+        self.offers: List[Opening] = []
+        self.given: List[Task] = []
+        self.verdict: Optional[Tuple[int, str]] = None
+        self.board: Optional[Board] = None
+        self.gives_up = time.monotonic() + options.wait
+        self.finish_heard: Optional[float] = None
+        self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        self.alarm = Alarm(self.ring)
+        self.alarm.set(patience=options.wait)
+        self.states = rospy.Subscriber(SYSTEM_STATE, String, self.on_state, queue_size=1000, tcp_nodelay=True)
+        rospy.Subscriber(PLAN, String, self.on_plan, queue_size=10, tcp_nodelay=True)
+        rospy.Subscriber(EVENTS, String, self.on_word, queue_size=1000, tcp_nodelay=True)
+        pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
+        Diagnostics(self.report, Links(self.states, pulses, lost=self.master_lost))
+
+    # What is heard ----------------------------------------------------------------------------------------------------
+
+    def on_diagnostics(self, message: DiagnosticArray) -> None:
+        """A node says how it is; when the last one is ready, the mission can start."""
+        with self.lock:
+            for status in message.status:
+                values = {value.key: value.value for value in status.values}
+                ours = values.get("mission") in (None, "", self.membership.source.mission)
+                ready = ours and values.get("ready") == "true"
+                self.readiness.heard(status.hardware_id or status.name.partition(":")[0], ready)
+            if self.phase == GATHERING and self.connected() and not self.readiness.missing():
+                self.gathered()
+            elif self.phase == GATHERING:
+                self.show()
+
+    def on_state(self, message: String) -> None:
+        """A state of the mission."""
+        state = parse_state(message.data)
+        if state is None:
+            return
+        with self.lock:
+            if not self.membership.takes(state):
+                return
+            self.observer = message._connection_header.get("callerid", "")
+            for line in self.mission.on_state(state, rospy.get_time()):
+                self.terminal.line(line)
+            if self.board is not None and self.mission.state is state:
+                self.board.on_state(state, self.mission.elapsed(state.stamp))
+            verdict = self.mission.verdict()
+            if verdict is not None:
+                self.conclude(*verdict)
+            elif state.status != WAITING:
+                if self.phase != RUNNING:
+                    self.phase = RUNNING
+                    self.terminal.line(f"{self.mission.elapsed(rospy.get_time()):8.1f}  the mission runs", TOLD)
+                self.act()
+                self.offer()
+            self.show()
+
+    def on_plan(self, message: String) -> None:
+        """A new plan: what people do in it."""
+        try:
+            plan = parse_plan(message.data)
+            orders = Strategy(plan["people"]) if plan.get("people") else None
+        except DataError as problem:
+            rospy.logerr("cannot use the new plan: %s", problem)
+            return
+        with self.lock:
+            if orders is not None and plan.get("mission", "") in ("", self.membership.source.mission):
+                self.mission.learn(plan["plan"], orders)
+                self.act()
+
+    def on_word(self, message: String) -> None:
+        """`Finish!`: the observer's last word. Its state says how it ended; should that be lost with it, we end too."""
+        if message.data.strip() == FINISH and message._connection_header.get("callerid", "") == self.observer:
+            with self.lock:
+                self.finish_heard = time.monotonic()
+                self.act()
+
+    def on_line(self, text: str) -> None:
+        """The person at the terminal typed a line."""
+        with self.lock:
+            if self.phase == READY and not text.strip():
+                self.start()
+            elif self.phase == RUNNING and not text.strip():
+                self.offer(again=True)
+            else:
+                self.find_offers()
+                word, remark = answer(text, self.offers, self.words, self.given)
+                if remark:
+                    self.terminal.line(f"          {remark}")
+                if word:
+                    self.events.publish(word)
+
+    def obey(self, request: Request) -> str:
+        """Somebody at the page asks for something; what to tell them."""
+        self.find_offers()
+        reports = {task.word for task in self.given}
+        now = {offer.word for offer in self.offers if offer.opens <= SURE}
+        if request.do == "start" and self.phase == READY:
+            self.start()
+        elif request.do == "stop":
+            self.events.publish(STOP)
+        elif (request.do == "done" and request.word in reports) or (request.do == "say" and request.word in now):
+            self.events.publish(request.word)
+        else:
+            return f"{request.word or request.do} is not possible now."
+        return ""
+
+    # What is done -----------------------------------------------------------------------------------------------------
+
+    def gathered(self) -> None:
+        """Everybody is ready."""
+        self.phase = READY
+        self.alarm.set()
+        self.show()
+        if self.options.autostart:
+            self.start()
+        elif self.board is not None:
+            here = ", or press Enter" if self.reads() else ""
+            self.terminal.line(f"Everybody is ready. Start the mission on the page{here}.", TOLD)
+        elif self.reads():
+            self.terminal.line("Everybody is ready. Press Enter to start the mission.", TOLD)
+        else:
+            self.terminal.line("Everybody is ready; the mission starts when somebody publishes _start_.", TOLD)
+
+    def start(self) -> None:
+        """Says `_start_`, again if no state answers it."""
+        if self.tries == TRIES:
+            self.conclude(1, f"The observer does not answer {START}.")
+            return
+        self.phase = STARTING
+        self.tries += 1
+        self.events.publish(START)
+        self.alarm.set(patience=RETRY)
+        self.show()
+
+    def ring(self) -> None:
+        """The alarm."""
+        with self.lock:
+            if self.phase == GATHERING:
+                missing = ", ".join(self.readiness.missing()) or "the connection to the observer"
+                after = f"Not ready after {self.options.wait:g} s: {missing}."
+                if self.membership.again:  # somebody may be switched on later
+                    self.terminal.line(f"{after} Waiting on.", PLAIN)
+                else:
+                    self.conclude(1, f"{after} The mission was not started.")
+            elif self.phase == STARTING:
+                self.start()
+            elif self.phase == RUNNING:
+                self.act()
+
+    def act(self) -> None:
+        """Says what is due, and sleeps until there is more."""
+        if self.phase != RUNNING or self.concluded:
+            return
+        now, real = rospy.get_time(), time.monotonic()
+        if self.finish_heard is not None and real >= self.finish_heard + VANISHED:
+            self.finish_heard = None
+            if self.states.get_num_connections() == 0:
+                after = f"after {self.mission.elapsed(now):.1f} time units"
+                self.conclude(0, f"The observer said {FINISH} and is gone, {after}.")
+                return
+        for word in self.mission.due(now, real):
+            self.events.publish(word)
+        moment, deadline = self.mission.next_moments(now)
+        deadlines = [at for at in (deadline, self.finish_heard and self.finish_heard + VANISHED) if at is not None]
+        if self.terminal.is_terminal and self.options.mode != "ask":
+            self.terminal.progress(self.mission.progress(now))
+            deadlines.append(real + REDRAW)
+        self.alarm.set(moment, max(0.0, min(deadlines) - real) if deadlines else None)
+
+    def offer(self, again: bool = False) -> None:
+        """In mode ask: shows what can be said, if that has changed."""
+        before, given = [offer.word for offer in self.offers], self.given
+        self.find_offers()
+        if self.given and self.given != given and self.reads():
+            names = " or ".join(f"done {task.agent}" for task in self.given)
+            self.terminal.line(f"          type {'done' if len(self.given) == 1 else names} when it is done")
+        if self.options.mode == "ask" and (again or before != [offer.word for offer in self.offers]):
+            for line in menu(self.offers):
+                self.terminal.line(line)
+
+    def find_offers(self) -> None:
+        """What the agents that nobody controls can do now, and what people can report."""
+        state = self.mission.state
+        if state is not None:
+            kinds = ("agent", "human") if self.options.ends else ("agent",)
+            clocks = state.clocks_at(rospy.get_time())
+            self.given = tasks(self.model, state)
+            reports = [Opening(task.word, 0.0, float("inf"), task.agent) for task in self.given]
+            ends = {task.word for task in self.given}
+            offers = openings(self.model, state, clocks, kinds, self.options.ends)
+            self.offers = [*(offer for offer in offers if offer.word not in ends), *reports]
+
+    def conclude(self, status: int, sentence: str) -> None:
+        """The end; only the first one is told."""
+        if self.verdict is not None:
+            return
+        self.verdict = (status, sentence)
+        self.terminal.close()
+        self.terminal.line(sentence, GOOD if status == 0 else BAD)
+        if self.board is not None:
+            self.board.end(self.mission.elapsed(rospy.get_time()), self.verdict)
+        self.ending.end(status)
+
+    def show(self) -> None:
+        """Tells the page how it is."""
+        if self.board is not None:
+            self.board.show()
+
+    # How it is --------------------------------------------------------------------------------------------------------
+
+    def facts(self) -> Facts:
+        """For the page."""
+        state, now = self.mission.state, self.mission.elapsed(rospy.get_time())
+        missing = self.readiness.missing() if self.phase == GATHERING else []
+        at = self.mission.elapsed(state.stamp) if state is not None else 0.0
+        return Facts(self.phase, missing, state, at, now, self.verdict)
+
+    def connected(self) -> bool:
+        """True when the observer and we hear each other."""
+        return bool(self.observer) and self.observer in listeners(self.events)
+
+    def reads(self) -> bool:
+        """True when somebody may type here."""
+        return sys.stdin is not None and not sys.stdin.closed and (self.options.mode == "ask" or on_terminal())
+
+    def master_lost(self, why: str) -> None:
+        """Without a master nobody can start or join."""
+        with self.lock:
+            self.conclude(1, f"The mission cannot go on: {why}.")
+
+    def report(self) -> Report:
+        """For /diagnostics."""
+        with self.lock:
+            missing = self.readiness.missing() if self.phase == GATHERING else []
+            values: Dict[str, object] = {"phase": self.phase, "mode": self.options.mode, "missing": " ".join(missing)}
+            verdict = self.mission.verdict()
+            trouble = self.membership.trouble
+        values["mission"] = self.membership.source.mission
+        level = ERROR if verdict and verdict[0] else WARN if missing or trouble else OK
+        return Report(self.connected() and not trouble, level, verdict[1] if verdict else trouble or self.phase, values)
+
+    def run(self) -> int:
+        """Runs until the mission ends; returns the exit status."""
+        awaited = ", ".join(self.options.nodes) or "the observer"
+        self.terminal.line(f"{self.model.scenario}: waiting for {awaited}", PLAIN)
+        if self.board is not None:
+            self.terminal.line(f"The page is at {self.board.web.url}", TOLD)
+        if self.reads():
+            threading.Thread(target=self.read, name="typed", daemon=True).start()
+        status = self.ending.wait(linger=0.3)
+        if self.board is not None:
+            self.board.web.close()
+        if self.ending.renewed:
+            self.terminal.close()
+            begin_anew()
+        if self.verdict is None:  # interrupted: nobody knows how the mission would have ended
+            self.terminal.close()
+            return 1
+        return status
+
+    def read(self) -> None:
+        """Reads what is typed, until the input ends."""
+        for line in sys.stdin:
+            self.on_line(line)
+
+
+def on_terminal() -> bool:
+    """True where a person reads and writes."""
+    return all(stream is not None and not stream.closed and stream.isatty() for stream in (sys.stdin, sys.stdout))
+
+
+def make_player(options: Options, model: Model) -> Player:
+    """Who plays the agents that nobody controls. Raises TraceError."""
+    if options.mode == "random":
+        return AtRandom(model, options.seed, options.pace)
+    if options.mode == "trace":
+        words = {edge.word for automaton in model.automata for edge in automaton.edges if edge.sync != "receive"}
+        try:
+            with open(options.trace, encoding="utf-8") as file:
+                return Scripted(read_trace(file.read(), options.trace, words))
+        except (OSError, UnicodeDecodeError) as problem:
+            raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
+    return StandStill()
+
+
+def people(source: Source) -> Optional[Strategy]:
+    """The part of the strategy that people carry out, where there are any. Raises DataError."""
+    return Strategy(source.read("people.yaml")) if source.has("people.yaml") else None
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    arguments = rospy.myargv(sys.argv)[1:]
+    if {"-h", "--help"} & set(arguments):
+        read_options(arguments, {}, False, ())  # ends here, and needs no roscore
+    give_way()
+    rospy.init_node("UI")
+    try:
+        ending = Ending()
+        membership = Membership(package, ending)
+        model, settings = Model(membership.source.read("model.yaml")), membership.source.read("ui.yaml")
+        options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
+        player = make_player(options, model)
+        ui = UI(options, membership, ending, player, model)
+        ui.board = open_board(model, options, settings, membership.source, ui)
+    except (DataError, OptionError, TraceError) as problem:
+        print(f"UI: {problem}", file=sys.stderr)
+        return 2
+    return ui.run()

@@ -1,0 +1,175 @@
+"""The journal of a mission: whatever changed it, line by line, so that an observer that was killed goes
+on where it was. No ROS.
+
+A line is one write to a file that is opened for appending: it outlives the process, not a power cut.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.state import SystemState
+
+CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
+TOLD = "told"
+"""The last line: everybody has been told how the mission ended."""
+
+KEPT = 20
+"""So many journals of a scenario are kept."""
+
+Log = Callable[[str, str], None]
+
+
+class Journal:
+    """Calls of a mission, written down before anybody hears of what they changed."""
+
+    def __init__(self, mission: Mission, path: str, header: Mapping[str, Any], log: Log) -> None:
+        """Takes the mission, which is fresh, to where the journal at `path` ends ("": no journal).
+
+        `header` tells missions apart: a journal of another model or another launch is set aside.
+        """
+        self._mission = mission
+        self._log = log
+        self._file: Optional[int] = None
+        self.last = 0.0  # the moment of the last entry, in seconds
+        if not path:
+            return
+        try:
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            self._resume(path, {"format": 1, **header})
+        except OSError as problem:
+            self._fail(problem)
+
+    @property
+    def works(self) -> bool:
+        """True where what happens is written down."""
+        return self._file is not None
+
+    def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
+        """Calls the mission (one of CALLS) at this moment (seconds), and writes down what has changed it."""
+        before = self._mission.mark()
+        states: List[SystemState] = getattr(self._mission, name)(*args, now)
+        if self._mission.mark() != before:
+            self.last = now
+            self._write({"at": now, "call": name, "args": args, **_end_of(self._mission)})
+        return states
+
+    def told(self) -> None:
+        """The mission is over, and everybody knows: the next one begins a journal of its own."""
+        self._write({"call": TOLD})
+
+    def _resume(self, path: str, header: Mapping[str, Any]) -> None:
+        if os.path.exists(path):
+            found, entries, whole = read_journal(path)
+            if found == header and not (entries and entries[-1].get("call") == TOLD):
+                os.truncate(path, whole)
+                self._replay(entries, path)
+            elif entries:
+                _set_aside(path)
+            else:
+                os.remove(path)  # its mission has never begun
+        _forget_old(os.path.dirname(path))
+        self._file = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
+        if os.fstat(self._file).st_size == 0:
+            self._write(header)
+
+    def _replay(self, entries: List[Dict[str, Any]], path: str) -> None:
+        try:
+            replay(self._mission, entries)
+        except DataError as problem:
+            self._log("err", f"{path}: {problem}")
+            self._mission.stop(f"the observer died, and its journal cannot be played again: {problem}", 0.0)
+        else:
+            if entries:
+                self.last = float(entries[-1]["at"])
+                self._log("warn", f"goes on from state {self._mission.seq}, as {path} has it")
+
+    def _write(self, entry: Mapping[str, Any]) -> None:
+        if self._file is None:
+            return
+        try:
+            os.write(self._file, (json.dumps(entry) + "\n").encode())
+        except OSError as problem:
+            self._fail(problem)
+
+    def _fail(self, problem: OSError) -> None:
+        self._file = None
+        self._log("err", f"no journal: {problem}. An observer that is killed cannot go on where it was.")
+
+
+def read_journal(path: str) -> Tuple[Optional[Dict[str, Any]], List[Dict[str, Any]], int]:
+    """The first line, the others, and the length in bytes of all whole lines: a kill may have torn the last one.
+
+    A line that cannot be read is an entry without a call. Raises OSError.
+    """
+    with open(path, "rb") as file:
+        content = file.read()
+    whole = content.rfind(b"\n") + 1
+    lines = [_entry(line) for line in content[:whole].splitlines()]
+    return (lines[0] if lines else None), lines[1:], whole
+
+
+def unfinished(path: str, launch: str) -> Optional[str]:
+    """The id of the mission that was under way when the observer of this launch died ("" for the workspace's own); None
+    where none was, or nobody can tell."""
+    try:
+        header, entries, _ = read_journal(path)
+    except OSError:
+        return None
+    if not header or header.get("launch") != launch or not entries or entries[-1].get("call") == TOLD:
+        return None
+    return str(header.get("mission", ""))
+
+
+def replay(mission: Mission, entries: List[Dict[str, Any]]) -> None:
+    """Takes a fresh mission through the entries. Raises DataError where they are not its own."""
+    for number, entry in enumerate(entries, start=2):
+        try:
+            if entry["call"] not in CALLS:
+                raise ValueError(entry["call"])
+            getattr(mission, entry["call"])(*entry["args"], float(entry["at"]))
+            fits = {key: entry[key] for key in ("seq", "status")} == _end_of(mission)
+        except (KeyError, TypeError, ValueError) as problem:
+            raise DataError(f"line {number} cannot be read: {problem!r}") from problem
+        if not fits:
+            raise DataError(f"line {number} leads to state {mission.seq}, and should not")
+
+
+def _end_of(mission: Mission) -> Dict[str, Any]:
+    return {"seq": mission.seq, "status": mission.status}
+
+
+def _entry(line: bytes) -> Dict[str, Any]:
+    try:
+        entry = json.loads(line)
+    except ValueError:
+        entry = None
+    return entry if isinstance(entry, dict) else {}
+
+
+def _set_aside(path: str) -> None:
+    """Gives the file the next free name."""
+    stem, ending = os.path.splitext(path)
+    number = 1
+    while os.path.exists(f"{stem}-{number}{ending}"):
+        number += 1
+    os.rename(path, f"{stem}-{number}{ending}")
+
+
+def _forget_old(folder: str) -> None:
+    """Deletes the oldest journals."""
+    journals = [entry for entry in os.scandir(folder) if entry.name.startswith("journal-")]
+    for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-KEPT]:
+        with contextlib.suppress(OSError):
+            os.remove(entry.path)
+
+
+def journals_folder(environment: Mapping[str, str], scenario: str) -> str:
+    """Where the journals of a scenario are: in pursue/ under ROS_HOME (~/.ros by default)."""
+    home = environment.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
+    return os.path.join(home, "pursue", scenario)

@@ -1,0 +1,93 @@
+"""The planner: a process of its own that looks for a plan from where the mission is."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shlex
+import signal
+import subprocess
+import threading
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple
+
+from pursue_runtime.observer.planning import PlanRequest
+
+EXTRA = 5.0
+"""Seconds beyond its limit after which a planner is killed."""
+
+Answer = Tuple[int, Optional[Dict[str, Any]], str]
+"""The number of the request, the plan or None, and why there is none."""
+
+
+class Planner:
+    """Runs one planner at a time; what it answers goes to `done`, in a thread of its own."""
+
+    def __init__(self, command: str, game: Mapping[str, Any], limit: float, done: Callable[[Answer], None]) -> None:
+        """`command`: as in a shell, `off` for none; `game`: what the solver has to know; `limit`: seconds."""
+        self._command = [] if command == "off" else shlex.split(command)
+        self._game, self._limit, self._done = game, limit, done
+        self._lock = threading.Lock()
+        self._number = 0
+        self._process: Optional[subprocess.Popen[bytes]] = None
+
+    def want(self, request: Optional[PlanRequest]) -> None:
+        """This plan is wanted now (None: none is); whoever looks for another one is stopped."""
+        number = request.number if request else 0
+        with self._lock:
+            if number == self._number:
+                return
+            self._number = number
+            self._kill()
+        if request is not None:
+            threading.Thread(target=self._run, args=(request,), name="planner", daemon=True).start()
+
+    def _run(self, request: PlanRequest) -> None:
+        plan, why = self._ask(request)
+        self._done((request.number, plan, why))
+
+    def _ask(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
+        """The plan, or None and why there is none."""
+        if not self._command:
+            return None, "planning is switched off (~planner)"
+        what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
+        text = json.dumps({"format": 1, "game": self._game, "limit": self._limit, **what})
+        try:
+            with self._lock:
+                if request.number != self._number:
+                    return None, "another plan is wanted by now"
+                self._process = process = subprocess.Popen(
+                    self._command,
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    start_new_session=True,
+                )
+        except OSError as problem:
+            return None, f"{self._command[0]} cannot be run here: {problem}; set ~planner to the planner's command"
+        try:
+            said, complaint = process.communicate(text.encode(), self._limit + EXTRA)
+        except subprocess.TimeoutExpired:
+            _kill(process)
+            process.communicate()
+            return None, f"none was found within {self._limit:g} s"
+        return _read(said, complaint, process.returncode)
+
+    def _kill(self) -> None:
+        """The thread that waits for its answer notices."""
+        if self._process is not None and self._process.poll() is None:
+            _kill(self._process)
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def _read(said: bytes, complaint: bytes, status: int) -> Tuple[Optional[Dict[str, Any]], str]:
+    try:
+        answer = json.loads(said)
+        return (answer, "") if answer["won"] else (None, str(answer["why"]))
+    except (ValueError, KeyError, TypeError):
+        lines = complaint.decode(errors="replace").strip().splitlines()
+        return None, f"the planner failed (status {status})" + (f": {lines[-1]}" if lines else "")

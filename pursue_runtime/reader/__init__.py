@@ -1,0 +1,1 @@
+"""How a robot checks, keeps and exchanges the missions that it has received."""

@@ -1,0 +1,329 @@
+"""What pursue_reader does with the orders that come from the desk, without ROS; moments are seconds of a real clock.
+
+An order counts once: it holds the ticket that is out, and uses it up. A mission is never exchanged while one runs.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import json
+import math
+import os
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+
+from pursue_runtime.bundle import (
+    ABORT,
+    COMMIT,
+    LIMIT,
+    ORDER_LENGTH,
+    OWN,
+    PREPARE,
+    Keys,
+    Order,
+    Refused,
+    mission_id,
+    new_ticket,
+    read_order,
+    unpack,
+)
+from pursue_runtime.data import DataError, read_data
+from pursue_runtime.model import Model
+from pursue_runtime.reader.store import Log, State, Store, StoreError, manifest
+from pursue_runtime.state import LATE, LIVE, SystemState, older
+from pursue_runtime.strategy import Strategy, read_cover
+from pursue_runtime.trusted_keys import KeyFolder, Tally
+
+PATIENCE = 5.0
+"""Seconds without an observer's word, at the start or after it said that no mission runs, after which none runs."""
+
+FRESH = 1.5
+"""Seconds for which it counts that no mission runs: an observer says it once a second, and one that was started anew,
+and is not connected to us yet, takes longer to begin."""
+
+AGAIN = 10.0
+"""Seconds until an exchange of missions that the disk did not take is tried again."""
+
+CONTROLLER_FILES = ("strategy.yaml", "poses.yaml")
+FILES: Mapping[str, Tuple[str, ...]] = {
+    "observer": ("model.yaml", "cover.yaml", "controllers.yaml", "game.yaml"),
+    "UI": ("model.yaml", "poses.yaml", "ui.yaml", "game.yaml"),
+}
+"""What each package's nodes read; all others are controllers."""
+
+
+class Answer(NamedTuple):
+    """What has become of an order: a word for programs, a sentence for people; `ticket` is the one that it used up."""
+
+    ticket: str
+    ok: bool
+    code: str
+    message: str
+
+
+class Robot(NamedTuple):
+    """Where this is: the robot's name, the scenario of its workspace, the packages with data of a mission that this
+    machine has, and the bytes of the largest bundle that it takes."""
+
+    name: str
+    scenario: str
+    packages: Tuple[str, ...]
+    limit: int = LIMIT
+
+
+class Reader:
+    """Takes orders and states one by one, keeps the store, and says how it stands."""
+
+    def __init__(
+        self, robot: Robot, store: Store, keys: KeyFolder, now: float, log: Log, patience: float = PATIENCE
+    ) -> None:
+        self.robot = robot
+        self.ticket = new_ticket()
+        self.answer: Optional[Answer] = None
+        self.refusals = Tally(lambda text: log("warn", text))
+        self.counts = dict.fromkeys((PREPARE, COMMIT, ABORT, "exchanged"), 0)
+        self._store = store
+        self._keys = keys
+        self._log = log
+        self._patience = patience
+        self._known: Optional[SystemState] = None
+        self._heard = now
+        self._failures = Tally(lambda text: log("err", text))
+
+    # What is heard ----------------------------------------------------------------------------------------------------
+
+    def handle(self, text: str, now: float) -> Answer:
+        """A message on local_mission. Whatever it is, it is answered; only orders that count change anything."""
+        try:
+            order, bundle = self._read(text)
+        except Refused as refused:
+            return self._refuse("", refused, now)
+        self.ticket = new_ticket()
+        try:
+            self.answer = self._obey(order, bundle, now)
+        except Refused as refused:
+            self.answer = self._refuse(order.ticket, refused, now)
+        except StoreError as problem:
+            self.answer = self._refuse(order.ticket, Refused("failed", str(problem)), now)
+        else:
+            self._log("info", self.answer.message)
+        return self.answer
+
+    def see(self, state: SystemState, now: float) -> bool:
+        """A state of the mission. True where it matters: a mission has begun or ended, or was exchanged."""
+        known, before = self._known, self.mission_runs
+        late = known is not None and now < self._heard + LATE and older(state, known)
+        if not late or state.status in LIVE:
+            self._known, self._heard = state, now
+        return self.tick(now) or self.mission_runs != before
+
+    def tick(self, now: float) -> bool:
+        """Exchanges missions if that is wanted, and can be. True if it was done."""
+        state = self._store.state
+        if state.next is None or not self._free(now):
+            return False
+        try:
+            self._exchange(state, state.next)
+        except (Refused, StoreError) as problem:
+            self._failures.count("failed", str(problem), now)
+            return isinstance(problem, Refused)
+        return True
+
+    def wake(self, now: float) -> Optional[float]:
+        """In how many seconds to call `tick` if nothing is heard; None: no need."""
+        if self._store.state.next is None or self.mission_runs:
+            return None
+        sure = self._heard + self._patience
+        return sure - now if now < sure else AGAIN
+
+    # What is said -----------------------------------------------------------------------------------------------------
+
+    @property
+    def mission_runs(self) -> bool:
+        """True while the last state that was heard is one of a mission that goes on."""
+        return self._known is not None and self._known.status in LIVE
+
+    def keys(self) -> Keys:
+        """Those whose orders count."""
+        return self._keys.keys()
+
+    def trouble(self) -> str:
+        """What keeps it from taking orders: a sentence, "" for nothing."""
+        found = [] if self.keys() else [
+            f"no key is trusted, every order is refused: put the desk's public key into {self._keys.folder}"
+        ]
+        return "; ".join([*found, *self._keys.problems])
+
+    def status(self) -> Dict[str, Any]:
+        """How it stands, for mission_status."""
+        state = self._store.state
+        return {
+            "format": 1,
+            "robot": self.robot.name,
+            "ticket": self.ticket,
+            "current": state.current,
+            "next": state.next,
+            "prepared": state.prepared,
+            "kept": self._store.kept(),
+            "history": list(state.history),
+            "scenario": self._store.scenario(state.current) if state.current else self.robot.scenario,
+            "packages": list(self.robot.packages),
+            "mission_runs": self.mission_runs,
+            "limit": self.robot.limit,
+            "answer": self.answer._asdict() if self.answer else None,
+        }
+
+    # Orders -----------------------------------------------------------------------------------------------------------
+
+    def _refuse(self, ticket: str, refused: Refused, now: float) -> Answer:
+        answer = Answer(ticket, False, refused.code, str(refused))
+        self.refusals.count(refused.code, f"refused ({refused.code}): {refused}", now)
+        return answer
+
+    def _read(self, text: str) -> Tuple[Order, object]:
+        """The order in a message, if it counts, and the bundle as it came. Raises Refused."""
+        keys = self.keys()
+        if not keys:
+            raise Refused("no_keys", self.trouble())
+        if len(text) > 4 * (self.robot.limit // 3 + 1) + ORDER_LENGTH + 100:
+            raise Refused("too_large", f"the message has {len(text)} characters")
+        if text.count("{") > 1 or text.count(",") > 1 or "[" in text:  # nothing that would grow when it is read
+            raise Refused("bad_order", "not a message for this robot")
+        try:
+            message = json.loads(text)
+        except (ValueError, RecursionError) as problem:
+            raise Refused("bad_order", "not a message for this robot") from problem
+        if not (isinstance(message, dict) and isinstance(message.get("order"), str)):
+            raise Refused("bad_order", "there is no order in the message")
+        order = read_order(message["order"], keys)
+        if order.robot != self.robot.name:
+            raise Refused("wrong_robot", f"the order is for {order.robot[:100]!r}, and this is {self.robot.name!r}")
+        if order.ticket != self.ticket:
+            raise Refused("old_ticket", "the ticket is not the one that is out; the status has that")
+        return order, message.get("bundle")
+
+    def _obey(self, order: Order, bundle: object, now: float) -> Answer:
+        content = self._content(order, bundle)
+        act = {PREPARE: self._prepare, COMMIT: self._commit, ABORT: self._abort}[order.action]
+        code, message = act(order.mission, content, now)
+        self.counts[order.action] += 1
+        return Answer(order.ticket, True, code, message)
+
+    def _content(self, order: Order, bundle: object) -> bytes:
+        """The bundle that travels with the order, empty for none. Raises Refused."""
+        if not order.size:
+            if bundle:
+                raise Refused("bad_bundle", "the order says nothing of the bundle that came with it")
+            return b""
+        if order.action != PREPARE:
+            raise Refused("bad_order", "a bundle comes with prepare only")
+        if order.size > self.robot.limit:
+            raise Refused("too_large", f"the bundle has {order.size} bytes; at most {self.robot.limit} are taken")
+        content = b""
+        if isinstance(bundle, str) and len(bundle) == 4 * ((order.size + 2) // 3):
+            try:
+                content = base64.b64decode(bundle.encode("ascii"), validate=True)
+            except (ValueError, binascii.Error):
+                content = b""
+        if len(content) != order.size or hashlib.sha256(content).hexdigest() != order.bundle:
+            raise Refused("bad_bundle", "what came is not the bundle that the order is about")
+        return content
+
+    def _prepare(self, mission: str, content: bytes, now: float) -> Tuple[str, str]:
+        name = mission_id(mission)
+        if content:
+            bundle = unpack(content, self.keys(), self.robot.limit)
+            if bundle.digest != mission:
+                raise Refused("bad_bundle", "the bundle holds another mission than the order says")
+            self._store.put(bundle, content, lambda folder: self._check(folder, bundle.manifest.files))
+        elif mission != OWN:
+            if not self._store.whole(mission):
+                raise Refused("unknown_mission", f"mission {name} is not here: send it with its bundle")
+            folder = os.path.join(self._store.folder, mission)
+            self._check(folder, manifest(self._store.folder, mission)["files"])
+        self._store.save(self._store.state._replace(prepared=mission))
+        return "prepared", f"mission {name} is prepared"
+
+    def _commit(self, mission: str, content: bytes, now: float) -> Tuple[str, str]:
+        state, name = self._store.state, mission_id(mission)
+        if mission not in (state.current, state.next, state.prepared):
+            raise Refused("not_prepared", f"mission {name} is not prepared")
+        prepared = None if state.prepared == mission else state.prepared
+        if state.next not in (None, mission):
+            prepared = state.next  # the desk may take it all back: then that one waits again
+        if mission == state.current:
+            self._store.save(state._replace(next=None, prepared=prepared))
+            return "committed", f"mission {name} counts, as before"
+        if self._free(now):
+            self._exchange(state._replace(prepared=prepared), mission)
+            return "committed", f"mission {name} counts from now on"
+        self._store.save(state._replace(next=mission, prepared=prepared))
+        return "waiting", f"mission {name} counts as soon as no mission runs"
+
+    def _abort(self, mission: str, content: bytes, now: float) -> Tuple[str, str]:
+        """Forgets that this mission was prepared, or committed and waits; others stay as they are."""
+        state = self._store.state
+        prepared = None if state.prepared == mission else state.prepared
+        following = None if state.next == mission else state.next
+        self._store.save(state._replace(prepared=prepared, next=following))
+        return "aborted", f"mission {mission_id(mission)} is neither prepared nor next"
+
+    # Missions ---------------------------------------------------------------------------------------------------------
+
+    def _free(self, now: float) -> bool:
+        """True where no mission can be under way: the observer has just said so, or there is none."""
+        fresh = self._known is not None and now <= self._heard + FRESH
+        return not self.mission_runs and (fresh or now >= self._heard + self._patience)
+
+    def _exchange(self, state: State, mission: str) -> None:
+        """Makes this mission the current one. Raises Refused where it is damaged: then nothing is next."""
+        if mission != OWN and not self._store.whole(mission):
+            self._store.save(self._store.state._replace(next=None))
+            raise Refused("unknown_mission", f"mission {mission_id(mission)} is damaged: send it again with its bundle")
+        history = [name for name in (*state.history, state.current) if name != mission]
+        history = [name for number, name in enumerate(history) if name not in history[number + 1:]]
+        self._store.save(state._replace(current=mission, next=None, history=tuple(history)))
+        self.counts["exchanged"] += 1
+        self._log("info", f"mission {mission_id(mission)} takes the place of {mission_id(state.current)}")
+
+    def _check(self, folder: str, files: Iterable[str]) -> None:
+        """Raises Refused where the nodes of this machine could not read their part of a mission."""
+        packages = {path.split("/")[0] for path in files}
+        for package in packages & set(self.robot.packages):
+            for name in sorted({*FILES.get(package, CONTROLLER_FILES), *_names(package, files)}):
+                try:
+                    check_data(os.path.join(folder, package, name))
+                except Exception as problem:  # whatever a reader makes of such data
+                    text = str(problem).replace(folder + os.sep, "")
+                    raise Refused("bad_bundle", f"{package}/{name} cannot be used: {text}") from problem
+
+
+def _names(package: str, files: Iterable[str]) -> List[str]:
+    return [path.split("/")[1] for path in files if path.split("/")[0] == package]
+
+
+def check_data(path: str) -> None:
+    """Reads a data file as the nodes do. Raises DataError, or whatever is raised then."""
+    data, name = read_data(path), os.path.basename(path)
+    readers: Dict[str, Callable[[Mapping[str, Any]], object]] = {
+        "strategy.yaml": Strategy,
+        "people.yaml": Strategy,
+        "cover.yaml": read_cover,
+        "model.yaml": Model,
+        "poses.yaml": _check_poses,
+        "controllers.yaml": _check_controllers,
+    }
+    if name in readers:
+        readers[name](data)
+
+
+def _check_poses(data: Mapping[str, Any]) -> None:
+    for name, pose in data["poses"].items():
+        if len(pose) != 7 or not all(math.isfinite(float(number)) for number in pose):
+            raise DataError(f"the pose of {name} is not seven numbers")
+
+
+def _check_controllers(data: Mapping[str, Any]) -> None:
+    if not all(isinstance(name, str) for name in data["controllers"]):
+        raise DataError("controllers are not a list of names")

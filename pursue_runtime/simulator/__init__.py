@@ -1,0 +1,1 @@
+"""When the movements and actions of simulated agents end, and simulated time."""

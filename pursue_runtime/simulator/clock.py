@@ -1,0 +1,93 @@
+"""The clock of a mission that runs faster than life, without ROS.
+
+Simulated time goes in small steps, never catches up after a delay of the machine, and stands still for a moment after
+every message: so what the nodes do in answer to a message takes (nearly) no simulated time, however busy the machine.
+A clock that was killed goes on where it was: it keeps its time in a file.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from dataclasses import dataclass
+from typing import Optional
+
+START = 1.0  # seconds; 0 means "no time yet" to rospy
+KEPT = 20  # so many files of clocks are kept in a folder
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How the clock goes: `speed` simulated seconds per real one, in steps of `step` simulated seconds at most.
+
+    After a message the clock holds for `hold` real seconds.
+    """
+
+    speed: float = 5.0
+    step: float = 0.02
+    hold: float = 0.1
+
+    def __post_init__(self) -> None:
+        for name, value, least in (("speed", self.speed, 0.0), ("step", self.step, 0.0), ("hold", self.hold, -1e-9)):
+            if not least < value < float("inf"):
+                raise ValueError(f"~{name} is {value:g}; expected a number greater than 0")
+
+    @property
+    def tick(self) -> float:
+        """Real seconds between two steps."""
+        return self.step / self.speed
+
+
+class SimClock:
+    """Simulated time, moved on by `tick`."""
+
+    def __init__(self, pace: Pace, start: float = START) -> None:
+        self._pace = pace
+        self._start = start
+        self._steps = 0
+        self._held_until = float("-inf")
+
+    @property
+    def now(self) -> float:
+        """Simulated seconds."""
+        return self._start + self._steps * self._pace.step
+
+    def heard(self, real: float) -> None:
+        """A message was heard at this moment of the real clock."""
+        self._held_until = max(self._held_until, real + self._pace.hold)
+
+    def tick(self, real: float) -> float:
+        """One step on, unless the clock holds; the simulated time to publish (also while it holds)."""
+        if real >= self._held_until:
+            self._steps += 1
+        return self.now
+
+
+class Memory:
+    """The last time that was published, in a file that outlives a kill (not a failure of the machine).
+
+    `last`: what the file held, None where there is none yet. Raises OSError where the file cannot be written.
+    """
+
+    def __init__(self, path: str) -> None:
+        folder = os.path.dirname(path)
+        os.makedirs(folder, exist_ok=True)
+        self._file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+        self.last: Optional[float] = None
+        with contextlib.suppress(ValueError):  # empty: it is new
+            self.last = float(os.pread(self._file, 64, 0))
+        clocks = sorted((entry for entry in os.scandir(folder) if entry.name.startswith("clock-")), key=_changed)
+        for entry in clocks[:-KEPT]:
+            with contextlib.suppress(OSError):
+                os.remove(entry.path)
+
+    def keep(self, moment: float) -> None:
+        """Writes the time down, in one piece and always as long. Raises OSError."""
+        os.pwrite(self._file, b"%030.9f\n" % moment, 0)
+
+
+def _changed(entry: "os.DirEntry[str]") -> float:
+    try:
+        return entry.stat().st_mtime
+    except OSError:
+        return 0.0  # somebody else has removed it

@@ -1,0 +1,191 @@
+"""The simulated robots, people and other agents: when each of their movements and actions ends. Without ROS.
+
+A robot sets out when it gets its goal, everybody else when the observer has taken the start. The end comes a drawn
+delay later, inside the model's window, and is reported once; the state that follows is the receipt.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
+
+from pursue_runtime.model import Automaton, Model
+from pursue_runtime.state import LIVE, SystemState, older
+from pursue_runtime.words import Word, format_word
+
+ACTING = ("robot", "human", "agent")
+DELAYS = ("random", "early", "middle", "late")
+
+FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0  # real seconds without any new state after which a report counts as lost
+INSIDE = (0.1, 0.2)  # time units: how far inside its window an end stays; more where being late would break it
+SAME = 0.5  # time units: starts that are closer than this are one start (no two can follow that fast)
+EARLY = 1.5  # time units by which a goal may seem older than the start it is for: two nodes have two clocks
+
+
+class Window(NamedTuple):
+    """The end `event` of what an agent does there: its clock is in (low, high], in time units."""
+
+    event: str
+    clock: str
+    low: float
+    high: float
+
+
+@dataclass
+class Activity:
+    """A movement or an action that goes on; moments are seconds of ROS time, `sent` of the real clock."""
+
+    location: str
+    since: float
+    word: str
+    shortest: float
+    moment: float
+    under_way: bool
+    sends: int = 0
+    sent: float = 0.0
+
+
+def is_end(source: str, target: str) -> bool:
+    """True for the end of a movement or an action: it leaves a `going_…` or `doing_…` location."""
+    return source != target and source.startswith(("going_", "doing_"))
+
+
+def window_at(automaton: Automaton, location: str) -> Optional[Window]:
+    """When what the agent does in this location ends; None where it does nothing that ends."""
+    for edge in automaton.edges_from(location):
+        if edge.sync == "receive" or not is_end(edge.source, edge.target):
+            continue
+        lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
+        for bound in automaton.invariants[location]:
+            if bound.left in lows:
+                return Window(edge.word, bound.left, lows[bound.left], bound.bound)
+    return None
+
+
+def spoken(model: Model, agent: str, event: str) -> str:
+    """The word of a report: with the agent's name only where somebody else could mean the same."""
+    able = {a.name for a in model.automata for edge in a.edges if edge.word == event and edge.sync != "receive"}
+    return format_word(Word(agent if able - {agent} else "", event))
+
+
+class Durations(Protocol):
+    """Draws how long activities take."""
+
+    def draw(self, window: Window, agent: str, number: int) -> float:
+        """Return time units from the start of the agent's `number`-th activity to its end, which is in the window."""
+
+
+class Delays:
+    """Where in its window each end falls: `early`, `middle`, `late`, or at random, the same for the same seed."""
+
+    def __init__(self, choice: str = "random", seed: int = 0) -> None:
+        if choice not in DELAYS:
+            raise ValueError(f"~delays is {choice!r}; expected one of {', '.join(DELAYS)}")
+        self._choice = choice
+        self._seed = seed
+
+    def draw(self, window: Window, agent: str, number: int) -> float:
+        """Time units from the start of the agent's `number`-th activity to its end."""
+        shares = {"early": 0.0, "middle": 0.5, "late": 1.0}
+        # One generator for each activity: the order in which messages arrive must not change what is drawn.
+        share = shares.get(self._choice, random.Random(f"{self._seed}/{agent}/{number}").random())
+        width = min(1.0, window.high - window.low)
+        first, last = window.low + INSIDE[0] * width, window.high - INSIDE[1] * width
+        return first + share * (last - first)
+
+
+class Simulator:
+    """What everybody does, from the states of the mission and the goals that robots get."""
+
+    def __init__(self, model: Model, reports: Collection[str], delays: Durations) -> None:
+        """`reports`: the agents whose ends come from here."""
+        self._agents = [automaton for automaton in model.of_kind(*ACTING) if automaton.name in reports]
+        unknown = set(reports) - {automaton.name for automaton in model.of_kind(*ACTING)}
+        if unknown:
+            known = ", ".join(automaton.name for automaton in model.of_kind(*ACTING))
+            raise ValueError(f"~reports names {', '.join(sorted(unknown))}; the agents are {known}")
+        self._model = model
+        self._delays = delays
+        self._state: Optional[SystemState] = None
+        self._heard = 0.0
+        self._goals: Dict[str, float] = {}
+        self._counts: Dict[str, int] = {}
+        self._activities: Dict[str, Activity] = {}
+
+    def on_state(self, state: SystemState, real: float) -> None:
+        """A state came, at this moment of the real clock."""
+        before = self._state
+        if before is not None and older(state, before):
+            return
+        self._state = state
+        if before is None or before.seq != state.seq:
+            self._heard = real
+            for activity in self._activities.values():
+                activity.sends = min(activity.sends, 1)
+        if state.status not in LIVE:
+            self._activities.clear()
+            return
+        for automaton in self._agents:
+            # Whoever is on the way already when we start was on the way before: its goal came before our time.
+            self._follow(automaton, state, newborn=before is None)
+
+    def on_goal(self, robot: str, now: float) -> None:
+        """The robot got a goal or an action, at this moment of ROS time."""
+        activity = self._activities.get(robot)
+        if activity is not None and not activity.under_way:
+            self._set_out(activity, now)
+        else:  # the state that it is for comes later
+            self._goals[robot] = now
+
+    def due(self, now: float, real: float) -> List[str]:
+        """The words to publish at this moment (of ROS time; of the real clock)."""
+        words = []
+        for activity in self._activities.values():
+            ended = activity.under_way and now >= activity.moment - 1e-6
+            if ended and (activity.sends == 0 or self._lost(activity, real)):
+                activity.sends += 1
+                activity.sent = real
+                words.append(activity.word)
+        return words
+
+    def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
+        """When `due` should be asked again: in ROS time, and on the real clock; None: not before the next message."""
+        ends = [a.moment for a in self._activities.values() if a.under_way and a.sends == 0]
+        receipts = [self._patience(a) for a in self._activities.values() if a.sends]
+        return min(ends, default=None), min(receipts, default=None)
+
+    def _follow(self, automaton: Automaton, state: SystemState, newborn: bool) -> None:
+        name = automaton.name
+        location = state.locations.get(name, "")
+        window = window_at(automaton, location)
+        if window is None or window.clock not in state.clocks:
+            self._activities.pop(name, None)
+            return
+        since = state.stamp - state.clocks[window.clock] * state.unit
+        known = self._activities.get(name)
+        if known is not None and known.location == location and abs(known.since - since) < SAME * state.unit:
+            return
+        number = self._counts[name] = self._counts.get(name, 0) + 1
+        activity = Activity(
+            location, since, spoken(self._model, name, window.event), window.low * state.unit,
+            since + self._delays.draw(window, name, number) * state.unit,
+            under_way=automaton.kind != "robot" or newborn,
+        )
+        self._activities[name] = activity
+        goal = self._goals.pop(name, None)  # it starts one activity
+        if not activity.under_way and goal is not None and goal >= since - EARLY * state.unit:
+            self._set_out(activity, goal)
+
+    @staticmethod
+    def _set_out(activity: Activity, now: float) -> None:
+        """The robot got its goal: a goal that was long under way makes it late, as it would a real one."""
+        activity.under_way = True
+        activity.moment = max(activity.moment, now + activity.shortest)
+
+    def _patience(self, activity: Activity) -> float:
+        patience = min(FIRST_PATIENCE * 2.0 ** (activity.sends - 1), LAST_PATIENCE)
+        return max(activity.sent, self._heard) + patience
+
+    def _lost(self, activity: Activity, real: float) -> bool:
+        return real >= self._patience(activity)

@@ -1,0 +1,112 @@
+"""The state of the mission, and its text on `pursue/system_state`.
+
+Clocks are in time units, stamps in seconds of ROS time.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Dict, Iterable, NamedTuple, Optional, Tuple
+
+WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
+LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
+
+LATE = 60.0
+"""Seconds of real time for which a state counts as older than the one that was heard last, if it says so: after that a
+clock was set back."""
+
+
+class SystemState(NamedTuple):
+    """One state of the mission: where every automaton is, variables, clocks (at `stamp`), and what led here.
+
+    `unit` is how many seconds a time unit lasts, `plan` the number of the plan in force (0: the workspace's own),
+    `lost` names the agents that nothing is expected of any more. `mission` is the id of the mission whose state
+    this is, "" for the one of the workspace.
+    """
+
+    seq: int
+    stamp: float
+    locations: Dict[str, str]
+    values: Dict[str, int]
+    clocks: Dict[str, float]
+    event: str = ""
+    agent: str = ""
+    status: str = RUNNING
+    reason: str = ""
+    unit: float = 1.0
+    plan: int = 0
+    lost: Tuple[str, ...] = ()
+    mission: str = ""
+
+    def clocks_at(self, stamp: float) -> Dict[str, float]:
+        """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""
+        passed = max(0.0, stamp - self.stamp) / self.unit
+        return {clock: value + passed for clock, value in self.clocks.items()}
+
+    def discrete(self) -> Dict[str, str]:
+        """automaton or variable → its location or value, as text."""
+        everything = dict(self.locations)
+        everything.update((name, str(value)) for name, value in self.values.items())
+        return everything
+
+
+def older(state: SystemState, known: SystemState) -> bool:
+    """True for a state that was published before the known one: a link that was cut brings it late.
+
+    Only the stamp: an observer whose clock was set back. Only the number: one that has started anew. Each mission
+    counts from 0: of two missions the stamps alone tell which was later.
+    """
+    if state.mission != known.mission:
+        return state.stamp < known.stamp
+    if state.seq == known.seq:
+        return state.stamp < known.stamp
+    return state.seq < known.seq and state.stamp <= known.stamp  # in simulated time two states may have one stamp
+
+
+def format_state(state: SystemState) -> str:
+    """The text on pursue/system_state: the thesis's, with a first line for us."""
+    head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
+    led_by = ("event", state.event), ("agent", state.agent), ("lost", ",".join(state.lost))
+    facts = (("mission", state.mission), ("plan", state.plan), *led_by)
+    head += [f"{key}={value}" for key, value in facts if value]
+    head.append("status=" + state.status)
+    if state.reason:
+        head.append("reason=" + " ".join(state.reason.split()))
+    lines = [" ".join(head)]
+    lines += [f"{name}={location}" for name, location in state.locations.items()]
+    lines += [f"{name}={value}" for name, value in state.values.items()]
+    lines.append("")
+    lines += [f"{name}={value:.9f}" for name, value in state.clocks.items()]
+    return "\n".join(lines)
+
+
+def parse_state(text: str) -> Optional[SystemState]:
+    """Reads what format_state writes, skipping lines that it does not know; None where the first line is not ours."""
+    discrete, _, continuous = text.strip().partition("\n\n")
+    head, _, discrete = discrete.partition("\n")
+    head, _, reason = head.partition(" reason=")
+    facts = dict(part.split("=", 1) for part in head.split() if "=" in part)
+    try:
+        seq, stamp, unit = int(facts["seq"]), float(facts["stamp"]), float(facts.get("unit", 1.0))
+        plan = int(facts.get("plan", 0))
+    except (KeyError, ValueError):
+        return None
+    locations: Dict[str, str] = {}
+    values: Dict[str, int] = {}
+    for name, value in _pairs(discrete):
+        if re.fullmatch(r"-?\d+", value):
+            values[name] = int(value)
+        else:
+            locations[name] = value
+    clocks = {name: float(value) for name, value in _pairs(continuous) if re.fullmatch(r"-?\d+(\.\d+)?", value)}
+    event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
+    lost = tuple(name for name in facts.get("lost", "").split(",") if name)
+    led_by = event, agent, status, reason, unit, plan, lost
+    return SystemState(seq, stamp, locations, values, clocks, *led_by, facts.get("mission", ""))
+
+
+def _pairs(text: str) -> Iterable[Tuple[str, str]]:
+    for line in text.splitlines():
+        name, equals, value = line.strip().partition("=")
+        if equals and name and value:
+            yield name, value

@@ -1,0 +1,147 @@
+"""What a strategy does in a state, and when its next command is due.
+
+Clocks, bounds and delays are in time units, stamps in seconds of ROS time.
+"""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any, Dict, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
+
+from pursue_runtime.data import DataError
+from pursue_runtime.state import SystemState
+from pursue_runtime.zones import EPSILON, Zone, due, parse_zone
+
+Payload = TypeVar("Payload")
+
+
+class StateTable(Generic[Payload]):
+    """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are."""
+
+    def __init__(self, entries: Iterable[Tuple[Mapping[str, object], Payload]]) -> None:
+        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
+        for state, payload in entries:
+            names = tuple(sorted(state))
+            table = self._tables.setdefault(names, {})
+            table.setdefault(tuple(str(state[name]) for name in names), []).append(payload)
+
+    def find(self, state: SystemState) -> List[Payload]:
+        """What was entered for this state, in order of entry."""
+        everything = state.discrete()
+        found: List[Payload] = []
+        for names, table in self._tables.items():
+            found += table.get(tuple(everything.get(name, "") for name in names), [])
+        return found
+
+    def __len__(self) -> int:
+        return sum(len(table) for table in self._tables.values())
+
+
+class Command(NamedTuple):
+    """In any of the zones `when`, the agent does it: it goes from `origin` to `target`."""
+
+    event: str
+    agent: str
+    origin: str
+    target: str
+    when: Tuple[Zone, ...]
+
+
+def read_cover(data: Mapping[str, Any]) -> StateTable[Tuple[Zone, ...]]:
+    """For each state the zones in which the strategy knows what to do, from cover.yaml. Raises DataError."""
+    try:
+        return StateTable((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
+    except (KeyError, TypeError, ValueError) as problem:
+        raise DataError(f"cover.yaml lacks or misspells something: {problem!r}") from problem
+
+
+class Strategy:
+    """One controller's part of the strategy, from strategy.yaml."""
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        try:
+            self.agents: List[str] = list(data["commands_agents"])
+            self.reaction = float(Fraction(str(data["reaction"])))
+            entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
+            self._table = StateTable(entries)
+            self._instant = {
+                (command.agent, command.event, command.target)
+                for _, commands in entries
+                for command in commands
+                if command.origin == command.target
+            }
+        except (KeyError, TypeError, ValueError) as problem:
+            raise DataError(f"strategy.yaml lacks or misspells something: {problem!r}") from problem
+
+    def commands(self, state: SystemState) -> List[Command]:
+        """The commands of this controller in this discrete state."""
+        return [command for commands in self._table.find(state) for command in commands]
+
+    def instant(self, agent: str, event: str, location: str) -> bool:
+        """True for a command that is done at once: it leaves the agent at this location, where it was."""
+        return (agent, event, location) in self._instant
+
+    def next_command(self, state: SystemState, now: float) -> Optional[Tuple[float, Command]]:
+        """The first command that is due from `now` (seconds) on, and its moment; None: nothing until the next state."""
+        clocks = state.clocks_at(now)
+        margin = self.reaction / 4 if self.reaction else 0.02
+        moments = [(due(command.when, clocks, margin), command) for command in self.commands(state)]
+        later = [(now + delay * state.unit, command) for delay, command in moments if delay is not None]
+        return min(later, key=lambda moment: moment[0]) if later else None
+
+    def decided(self, state: SystemState, now: float) -> Optional[Tuple[float, Command]]:
+        """The first command that is due from the moment of the state on, and its moment, which may be past.
+
+        It stands until the reaction is over, also where time has left its zone before the state came here: the proof
+        takes it for decided. Whoever is later than that looks from `now` on.
+        """
+        first = self.next_command(state, state.stamp)
+        if first is not None and now > first[0] + self.lateness(state) + EPSILON:
+            return self.next_command(state, now)
+        return first
+
+    def lateness(self, state: SystemState) -> float:
+        """Seconds by which a command may be sent after its moment: the reaction that the proof allows for."""
+        return max(self.reaction, 0.02) * state.unit
+
+    def __len__(self) -> int:
+        return len(self._table)
+
+
+class Plans:
+    """The strategies of one node by the number of their plan: 0 is the workspace's own, later ones were made during the
+    mission. Each state says which plan is in force, so that everybody goes from one to the next in one step."""
+
+    def __init__(self, own: Strategy) -> None:
+        self._strategies = {0: own}
+        self._in_force = 0
+
+    def learn(self, number: int, strategy: Strategy) -> None:
+        """Keeps a plan for when it is in force, and forgets those that never will be again.
+
+        Not every plan comes into force: the one that is may be older than others.
+        """
+        self._strategies = {known: old for known, old in self._strategies.items() if known >= self._in_force}
+        self._strategies[number] = strategy
+
+    def at(self, state: SystemState) -> Optional[Strategy]:
+        """The strategy that is in force; None where its plan has not come here yet."""
+        self._in_force = state.plan
+        return self._strategies.get(state.plan)
+
+
+def _command(data: Mapping[str, Any]) -> Command:
+    zones = tuple(parse_zone(zone) for zone in data["when"])
+    return Command(str(data["do"]), str(data["agent"]), str(data["from"]), str(data["to"]), zones)
+
+
+def parse_plan(text: str) -> Dict[str, Any]:
+    """The data of a plan on pursue/plan. Raises DataError."""
+    try:
+        data = json.loads(text)
+    except ValueError as problem:
+        raise DataError(f"not a plan: {problem}") from problem
+    if not isinstance(data, dict) or data.get("format") != 1 or not isinstance(data.get("plan"), int):
+        raise DataError("not a plan of format 1")
+    return data

@@ -1,0 +1,94 @@
+"""Between the node and the page: what pages are told when, and what becomes of what they ask for. """
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import Any, Dict, Mapping, Optional, Protocol, Tuple
+
+from pursue_runtime.missions import Source
+from pursue_runtime.model import Model
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.options import OptionError, Options
+from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, Request, read_plan, read_request
+
+STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
+"""The folder of the page's files."""
+
+
+class Node(Protocol):
+    """The node that has a page."""
+
+    lock: threading.RLock
+
+    def facts(self) -> Facts:
+        """How it is."""
+
+    def obey(self, request: Request) -> str:
+        """Somebody at a page wants something; what to tell them ("" for nothing)."""
+
+
+class Board:
+    """What there is to see; everything that is new goes to every page."""
+
+    def __init__(self, page: Page, node: Node) -> None:
+        self._page, self._node = page, node
+        self._shown = 0
+        self.web: Any = None
+
+    def on_state(self, state: SystemState, at: float) -> None:
+        """A state came, `at` time units after the start."""
+        self._page.on_state(state, at)
+
+    def end(self, at: float, verdict: Tuple[int, str]) -> None:
+        """The mission has ended: the exit status, and a sentence."""
+        self._page.note(at, verdict[1], BAD if verdict[0] else GOOD)
+        self.show()
+
+    def show(self) -> None:
+        """Tells every page how it is now."""
+        fresh = [entry for entry in self._page.log if entry["n"] > self._shown]
+        self._shown = fresh[-1]["n"] if fresh else self._shown
+        self.web.send({"type": "view", "view": self._page.view(self._node.facts()), "log": fresh})
+
+    # What the server asks, in its own thread --------------------------------------------------------------------------
+
+    def welcome(self) -> Dict[str, Any]:
+        """What a page is told first."""
+        with self._node.lock:
+            view = self._page.view(self._node.facts())
+            return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log}
+
+    def asked(self, message: Any) -> str:
+        """A page asks for something. Raises ValueError where that cannot be understood."""
+        request = read_request(message)
+        with self._node.lock:
+            return self._node.obey(request)
+
+    def moment(self) -> Optional[float]:
+        """The present in time units since the start; None while time does not count."""
+        with self._node.lock:
+            facts = self._node.facts()
+        return facts.now if facts.live else None
+
+
+def open_board(
+    model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: Node
+) -> Optional[Board]:
+    """Serves a page, where one is wanted. Raises OptionError and DataError."""
+    if not options.web:
+        return None
+    try:
+        from pursue_runtime.ui.web import Web, WebError
+    except ImportError as problem:
+        raise OptionError(f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out") from None
+    poses = source.read("poses.yaml")
+    board = Board(Page(model, read_plan(poses, settings), options.ends), node)
+    try:
+        board.web = Web(
+            STATIC, options.host, options.port, options.token, board.welcome, board.asked, board.moment
+        )
+    except WebError as problem:
+        raise OptionError(str(problem)) from None
+    board.web.start()
+    return board

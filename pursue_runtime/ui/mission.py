@@ -1,0 +1,275 @@
+"""The mission as the person at the terminal sees it: who is ready, what can be done, what happens, how it ends.
+
+Without ROS. Moments are seconds of ROS time, `real` ones of the real clock; `at` and `opens` are in time units.
+"""
+
+from __future__ import annotations
+
+from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
+
+from pursue_runtime.model import Edge, Model
+from pursue_runtime.simulator.simulator import is_end, spoken
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older
+from pursue_runtime.strategy import Plans, Strategy
+from pursue_runtime.words import START, Word, format_word
+from pursue_runtime.zones import due
+
+RECEIPT = 0.5  # real seconds without a new state after which an order counts as lost
+SURE = 0.05  # time units: how far inside an open bound something counts as possible
+
+
+class Opening(NamedTuple):
+    """`word` can be said from `opens` to `closes`, time units from now, unless something else happens first."""
+
+    word: str
+    opens: float
+    closes: float
+    agent: str = ""
+
+
+class Task(NamedTuple):
+    """What a person is to do, in words, and the word that reports its end."""
+
+    agent: str
+    text: str
+    word: str
+
+
+def openings(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
+             ends: bool = False) -> List[Opening]:
+    """What agents of these kinds can start (and with `ends` also end) in this state, in system order."""
+    found: Dict[str, Opening] = {}
+    for automaton in model.of_kind(*kinds):
+        location = state.locations.get(automaton.name, "")
+        for edge in automaton.edges_from(location):
+            if edge.sync == "receive" or (is_end(edge.source, edge.target) and not ends):
+                continue
+            zone = edge.when + automaton.invariants[location]
+            opens = due([zone], clocks, SURE) if edge.allowed(state.values) else None
+            if opens is None:
+                continue
+            closes = min([bound.bound - clocks[bound.left] for bound in zone if bound.left], default=float("inf"))
+            word = spoken(model, automaton.name, edge.word)
+            found.setdefault(word, Opening(word, opens, closes, automaton.name))
+    return list(found.values())
+
+
+def tasks(model: Model, state: SystemState) -> List[Task]:
+    """What people are at, in system order. They say themselves when it is done: a report counts at any moment."""
+    found = []
+    for automaton in model.of_kind("human"):
+        location = state.locations.get(automaton.name, "")
+        begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
+        end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
+        if begin is not None and end is not None:
+            text = _told(begin, automaton.edges)
+            found.append(Task(automaton.name, text, spoken(model, automaton.name, end.word)))
+    return found
+
+
+class Readiness:
+    """Which of the expected nodes have said that they are ready."""
+
+    def __init__(self, nodes: Sequence[str]) -> None:
+        self._ready = {node.strip("/"): False for node in nodes}
+
+    def heard(self, node: str, ready: bool) -> None:
+        """A node's diagnostics came."""
+        if node.strip("/") in self._ready:
+            self._ready[node.strip("/")] = ready
+
+    def missing(self) -> List[str]:
+        """The nodes that are not ready, in the order in which they are expected."""
+        return [node for node, ready in self._ready.items() if not ready]
+
+
+class Player(Protocol):
+    """Plays the agents that nobody controls."""
+
+    def on_state(self, state: SystemState, start: float, now: float) -> None:
+        """A state came; the mission started at `start`."""
+
+    def due(self, now: float) -> List[str]:
+        """The words to say now."""
+
+    def next_moment(self) -> Optional[float]:
+        """When `due` has something to say, if no other state comes."""
+
+
+class Mission:
+    """One mission, from its states: what to say, what to print, and how it ends."""
+
+    def __init__(self, model: Model, player: Player, orders: Optional[Strategy] = None) -> None:
+        """`orders`: the part of the strategy that people carry out."""
+        self.state: Optional[SystemState] = None
+        self.start: Optional[float] = None
+        self._model = model
+        self._player = player
+        self._orders = None if orders is None else Plans(orders)
+        self._ordered: Tuple[int, float] = (-1, 0.0)  # the state an order was given in, and when (real)
+        self._people = {automaton.name for automaton in model.of_kind("human")}
+
+    def elapsed(self, now: float) -> float:
+        """Time units since the start (0 before it)."""
+        if self.start is None or self.state is None:
+            return 0.0
+        return max(0.0, now - self.start) / self.state.unit
+
+    def learn(self, plan: int, orders: Strategy) -> None:
+        """What people do by a new plan."""
+        if self._orders is not None:
+            self._orders.learn(plan, orders)
+
+    def on_state(self, state: SystemState, now: float) -> List[str]:
+        """A state came; the lines to print."""
+        if self.state is not None and older(state, self.state):
+            return []
+        news = self.state is None or self.state.seq != state.seq or self.state.status != state.status
+        self.state = state
+        if self.start is None and state.seq > 0:
+            # Whoever comes later, after a restart, still finds the time since the start on the oldest clock.
+            age = 0.0 if state.event == START else max(state.clocks.values(), default=0.0)
+            self.start = state.stamp - age * state.unit
+        if self.start is None or not news:
+            return []
+        if state.status in LIVE:
+            self._player.on_state(state, self.start, now)
+        return self._news(state)
+
+    def due(self, now: float, real: float) -> List[str]:
+        """The words to publish at this moment."""
+        if self.state is None or self.state.status not in LIVE:
+            return []
+        words = self._player.due(now)
+        order = self._next_order(now) if real >= self._silent_until() else None
+        if order is not None and order[0] <= now + 1e-6:
+            self._ordered = (self.state.seq, real)
+            words.append(format_word(order[1]))
+        return words
+
+    def next_moments(self, now: float) -> Tuple[Optional[float], Optional[float]]:
+        """When to ask `due` again: in ROS time, and on the real clock; None: not before the next state."""
+        if self.state is None or self.state.status not in LIVE:
+            return None, None
+        moments = [self._player.next_moment()]
+        order = self._next_order(now)
+        given = self._ordered[0] == self.state.seq
+        if order is not None and not given:
+            moments.append(order[0])
+        return (
+            min((moment for moment in moments if moment is not None), default=None),
+            self._silent_until() if order is not None and given else None,
+        )
+
+    def verdict(self) -> Optional[Tuple[int, str]]:
+        """The exit status and what to say; None while the mission goes on."""
+        state = self.state
+        if state is None or state.status not in ENDED:
+            return None
+        after = f"after {self.elapsed(state.stamp):.1f} time units"
+        if state.status == WON:
+            goal = "The goal is reached" if self._model.goal else "The objective was kept to the end"
+            return 0, f"{goal}, {after}."
+        if state.status == LOST:
+            return 1, f"The mission is lost, {after}: {state.reason or 'the safety objective is broken'}."
+        return 1, f"The mission was stopped, {after}: {state.reason or 'somebody said _stop_'}."
+
+    def progress(self, now: float) -> str:
+        """One line on where everybody is."""
+        if self.state is None:
+            return "waiting for the first state"
+        places = [
+            f"{automaton.name} {self.state.locations.get(automaton.name, '?')}"
+            for automaton in self._model.of_kind("robot", "human", "agent")
+        ]
+        return f"{self.elapsed(now):8.1f}  " + "  ".join(places)
+
+    def _silent_until(self) -> float:
+        """The real moment before which the last order may still be on its way."""
+        given, real = self._ordered
+        return real + RECEIPT if self.state is not None and given == self.state.seq else float("-inf")
+
+    def _next_order(self, now: float) -> Optional[Tuple[float, Word]]:
+        if self._orders is None or self.state is None or self.state.status != RUNNING:
+            return None
+        orders = self._orders.at(self.state)
+        order = orders.decided(self.state, now) if orders else None
+        if order is None:
+            return None
+        return order[0], Word(order[1].agent, order[1].event, self.state.seq)
+
+    def _news(self, state: SystemState) -> List[str]:
+        lines = []
+        if state.event:
+            who = f"  ({state.agent})" if state.agent and not state.event.startswith(state.agent) else ""
+            lines.append(f"{self.elapsed(state.stamp):8.1f}  {state.event}{who}")
+        if state.status == HOLDING:
+            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {state.reason}")
+        if state.agent in self._people and state.status == RUNNING:
+            instruction = self._instruction(state)
+            lines += [f"          {instruction}"] if instruction else []
+        return lines
+
+    def _instruction(self, state: SystemState) -> str:
+        """What the person whose event this is must do now; "" where it is over."""
+        automaton = self._model.automaton(state.agent)
+        for edge in automaton.edges:
+            if edge.word == state.event and edge.target == state.locations.get(state.agent):
+                told = "" if is_end(edge.source, edge.target) else _told(edge, automaton.edges, " now")
+                return told and f"{state.agent}: {told}"
+        return ""
+
+
+def _told(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
+    """What a person does who takes this edge."""
+    if edge.target.startswith("going_"):
+        return f"go from {edge.source} to {_arrival(edges, edge)}{when}"
+    return f"do {edge.word}{when}, at {edge.source}"
+
+
+def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
+    """Where a movement leads to."""
+    return next(edge.target for edge in edges if edge.source == departure.target != edge.target)
+
+
+def menu(offers: Sequence[Opening]) -> List[str]:
+    """What the person at the terminal can say now."""
+    lines = []
+    for number, (word, opens, closes, _) in enumerate(offers, start=1):
+        until = f", for {closes - opens:.1f} time units" if closes != float("inf") else ""
+        lines.append(f"  {number:2}  {word}" + (f"  (in {opens:.1f} time units{until})" if opens > SURE else ""))
+    lines.append("  a number, a word for pursue/events, done, ping or stop; Enter shows this again")
+    return lines
+
+
+def done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
+    """Somebody ("": the only one at work) says that the task is done: the word to publish, and what to tell them."""
+    meant = [task for task in given if who in ("", task.agent)]
+    if len(meant) == 1:
+        return meant[0].word, ""
+    if not meant:
+        return "", f"{who} has nothing to do now" if who else "there is nothing to do now"
+    return "", f"who? expected {' or '.join(f'done {task.agent}' for task in meant)}"
+
+
+def answer(
+    text: str, offers: Sequence[Opening], words: Collection[str], given: Sequence[Task] = ()
+) -> Tuple[str, str]:
+    """What the person typed: the word to publish ("" for none) and what to tell them ("" for nothing)."""
+    text = text.strip()
+    if text in ("ping", "stop"):
+        return f"_{text}_", ""
+    if text.split(None, 1)[:1] == ["done"] and "done" not in words:
+        return done(text[len("done"):].strip(), given)
+    if text.isdigit():
+        number = int(text)
+        if not 1 <= number <= len(offers):
+            return "", f"there is no number {number}" + (f"; expected 1 to {len(offers)}" if offers else " now")
+        offer = offers[number - 1]
+        if offer.opens > SURE:
+            return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
+        return offer.word, ""
+    event = text.partition("@")[0].rpartition(":")[2]
+    if event in words or text.startswith("_") or text == "Finish!":
+        return text, ""
+    return text, f"nobody in this scenario knows {text}: sent all the same" if text else ""

@@ -1,0 +1,142 @@
+"""What the UI is asked to do: parameters of its node, and the same on the command line, which wins."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from typing import Any, Mapping, Sequence, Tuple
+
+MODES = {
+    "ask": "you say what the agents do that nobody controls",
+    "still": "they stand still",
+    "random": "they do something possible at random moments",
+    "trace": "they do what a trace file says",
+}
+
+SHORTEST = 8  # characters of a token
+
+
+class OptionError(ValueError):
+    """An option that cannot be; the message says what was expected."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """`wait` is in real seconds, `pace` in time units; a page for browsers on `host` and `port` if `web`."""
+
+    mode: str
+    trace: str
+    seed: int
+    autostart: bool
+    wait: float
+    nodes: Tuple[str, ...]
+    pace: float
+    ends: bool
+    web: bool = False
+    host: str = "127.0.0.1"
+    port: int = 8080
+    token: str = ""
+
+
+def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: bool, nodes: Sequence[str]) -> Options:
+    """The options, from the command line, the node's parameters, and what fits a terminal or none.
+
+    Raises OptionError; argparse ends the program on `--help` and on an unknown argument.
+    """
+    told = vars(_parser().parse_args(list(arguments)))
+    found = dict(params)
+    found.update((name, value) for name, value in told.items() if value is not None)
+    trace = str(found.get("trace") or "")
+    mode = str(found.get("mode") or ("trace" if trace else "ask" if terminal else "still"))
+    if mode not in MODES:
+        raise OptionError(f"mode is {mode!r}; expected one of {', '.join(MODES)}")
+    if mode == "trace" and not trace:
+        raise OptionError("mode trace needs a trace file: --trace FILE or the parameter ~trace")
+    web = _flag(found, "web", False)
+    port = _number(found, "port", 8080, least=0)
+    if port > 65535 or port != int(port):
+        raise OptionError(f"port is {found['port']!r}; expected a whole number from 0 (any that is free) to 65535")
+    token = str(found.get("token") or "")
+    if token and len(token) < SHORTEST:
+        raise OptionError(f"token has {len(token)} characters; expected {SHORTEST} at least, or none: one is made")
+    return Options(
+        mode=mode,
+        trace=trace,
+        seed=int(_number(found, "seed", 0)),
+        autostart=_flag(found, "autostart", not terminal and not web),
+        wait=_number(found, "wait", 30.0, least=0.0),
+        nodes=expected(found, nodes),
+        pace=_number(found, "pace", 5.0, least=1e-6),
+        ends=_flag(found, "ends", False),
+        web=web,
+        host=str(found.get("host") or "127.0.0.1"),
+        port=int(port),
+        token=token,
+    )
+
+
+def expected(params: Mapping[str, Any], listed: Sequence[str]) -> Tuple[str, ...]:
+    """The nodes to wait for: ~nodes, or those that the mission lists `~without` some and `~also` others.
+
+    Raises OptionError.
+    """
+    if "nodes" in params:
+        return names(params["nodes"], "nodes")
+    without, also = names(params.get("without", ""), "without"), names(params.get("also", ""), "also")
+    return tuple(node for node in listed if node not in without) + also
+
+
+def names(value: Any, option: str) -> Tuple[str, ...]:
+    """A list of names: a YAML list, or a text with commas or blanks between them. Raises OptionError."""
+    if isinstance(value, str):
+        value = value.replace(",", " ").split()
+    if not isinstance(value, (list, tuple)) or not all(isinstance(name, str) for name in value):
+        raise OptionError(f"{option} is {value!r}; expected a list of names")
+    return tuple(value)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="rosrun UI UI", description="Starts the mission, shows what happens, and says how it ends.",
+        epilog="Exit status: 0 the goal is reached, 1 not, 2 the options are wrong. "
+        "Every option is also a parameter of the node (~mode, ~trace and so on).",
+    )
+    parser.add_argument("--mode", metavar="MODE", help="; ".join(f"{mode}: {what}" for mode, what in MODES.items()))
+    parser.add_argument("--trace", metavar="FILE", help="YAML list of {at: time units, do: word}; implies --mode trace")
+    parser.add_argument("--seed", metavar="N", help="for --mode random (default 0)")
+    parser.add_argument("--pace", metavar="T", help="for --mode random: mean time units between two events (default 5)")
+    parser.add_argument("--wait", metavar="S", help="seconds to wait for the other nodes (default 30)")
+    parser.add_argument("--nodes", metavar="NAMES", help="the nodes to wait for (default: those in ui.yaml)")
+    parser.add_argument(
+        "--autostart", action="store_true", default=None, help="start as soon as they are ready, without Enter"
+    )
+    parser.add_argument(
+        "--ends", action="store_true", default=None, help="without a simulator: list also the ends of what people do"
+    )
+    parser.add_argument("--web", action="store_true", default=None, help="serve a page for browsers as well")
+    parser.add_argument("--host", metavar="ADDRESS", help="of --web: 127.0.0.1 (default), 0.0.0.0 for all")
+    parser.add_argument("--port", metavar="N", help="of --web (default 8080; 0: any that is free)")
+    parser.add_argument("--token", metavar="WORD", help="of --web: who opens the page must know it; one is made for "
+                        "every address but loopback")
+    return parser
+
+
+def _number(found: Mapping[str, Any], name: str, default: float, least: float = float("-inf")) -> float:
+    value = found.get(name, default)
+    try:
+        number = float("nan") if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not least <= number < float("inf"):
+        bound = f" of at least {least:g}" if least > float("-inf") else ""
+        raise OptionError(f"{name} is {value!r}; expected a number{bound}")
+    return number
+
+
+def _flag(found: Mapping[str, Any], name: str, default: bool) -> bool:
+    value = found.get(name, default)
+    if isinstance(value, str) and value.lower() in ("true", "false"):
+        value = value.lower() == "true"
+    if not isinstance(value, bool):
+        raise OptionError(f"{name} is {value!r}; expected true or false")
+    return value

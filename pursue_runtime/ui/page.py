@@ -1,0 +1,289 @@
+"""What the page shows, as values for JSON, and what it may ask for. Without ROS and without a web server.
+
+Moments are time units since the start of the mission.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.model import Automaton, Edge, Model
+from pursue_runtime.simulator.simulator import ACTING, is_end, spoken, window_at
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
+from pursue_runtime.ui.mission import openings, tasks
+from pursue_runtime.words import START
+
+KEPT = 300  # entries of the log
+REQUESTS = {"start": False, "stop": False, "say": True, "done": True}
+"""What a page may ask for, and whether a word belongs to it."""
+
+NOTE, GOOD, BAD = "note", "good", "bad"
+
+
+class Request(NamedTuple):
+    """What somebody wants who looks at the page."""
+
+    do: str
+    word: str = ""
+
+
+def read_request(text: Any) -> Request:
+    """Reads a message of the page. Raises ValueError with what was expected."""
+    try:
+        data = json.loads(text)
+    except (TypeError, ValueError, RecursionError) as problem:
+        raise ValueError(f"not JSON; {_expected()}") from problem
+    known = isinstance(data, dict) and isinstance(data.get("do"), str) and data["do"] in REQUESTS
+    word = data.get("word", "") if known else None
+    if not isinstance(word, str) or bool(word) != REQUESTS[data["do"]]:
+        raise ValueError(_expected())
+    return Request(data["do"], word)
+
+
+def _expected() -> str:
+    return 'expected {"do": "start"}, {"do": "stop"}, {"do": "say", "word": …} or {"do": "done", "word": …}'
+
+
+class Plan(NamedTuple):
+    """Where the points of interest are (metres), and which of them are connected, at which distance."""
+
+    places: Dict[str, Tuple[float, float]]
+    ways: Tuple[Tuple[str, str, float], ...]
+
+
+def read_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> Plan:
+    """The map, from poses.yaml and ui.yaml. Raises DataError."""
+    try:
+        places = {str(name): (float(pose[0]), float(pose[1])) for name, pose in poses["poses"].items()}
+        ways = tuple((str(a), str(b), float(length)) for a, b, length in settings.get("connections", ()))
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as problem:
+        raise DataError(f"poses.yaml or ui.yaml lacks or misspells something: {problem!r}") from problem
+    return Plan(places, tuple(way for way in ways if way[0] in places and way[1] in places))
+
+
+class Facts(NamedTuple):
+    """What the node knows: its phase, who is missing, the last state and its moment, the end, and the present."""
+
+    phase: str
+    missing: Sequence[str]
+    state: Optional[SystemState]
+    at: float
+    now: float
+    verdict: Optional[Tuple[int, str]] = None
+
+    @property
+    def live(self) -> bool:
+        """True while time counts."""
+        return self.state is not None and self.state.status in LIVE
+
+
+class Page:
+    """What there is to show, from the states of one mission."""
+
+    def __init__(self, model: Model, plan: Plan, ends: bool = False) -> None:
+        """`ends`: buttons also for the ends of what agents do that nobody controls."""
+        self._model = model
+        self._plan = plan
+        self._ends = ends
+        self._acting = model.of_kind(*ACTING)
+        self._last: Optional[SystemState] = None
+        self._number = 0
+        self.log: List[Dict[str, Any]] = []
+
+    def scene(self) -> Dict[str, Any]:
+        """What stays as it is: the map, who takes part, and a button for each thing that nobody controls."""
+        return {
+            "scenario": self._model.scenario,
+            "places": {name: list(place) for name, place in self._plan.places.items()},
+            "ways": [list(way) for way in self._plan.ways],
+            "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
+            "buttons": [button for automaton in self._model.of_kind("agent") for button in self._buttons(automaton)],
+        }
+
+    def view(self, facts: Facts) -> Dict[str, Any]:
+        """What changes."""
+        state = facts.state or self._unstarted()
+        offers = openings(self._model, state, state.clocks, ACTING, ends=True) if state.status in LIVE else []
+        opens = {offer.word: [_round(facts.at + offer.opens), _end(facts.at, offer.closes)] for offer in offers}
+        agents = [self._agent(automaton, state, facts.at) for automaton in self._acting]
+        for agent in agents:
+            agent["next"] = [
+                {"label": self._label(agent["name"], offer.word), "opens": opens[offer.word][0],
+                 "closes": opens[offer.word][1]}
+                for offer in offers if offer.agent == agent["name"]
+            ]
+        others = [automaton.name for automaton in self._model.automata if automaton not in self._acting]
+        return {
+            "phase": facts.phase, "missing": list(facts.missing), "status": state.status, "reason": state.reason,
+            "verdict": facts.verdict[1] if facts.verdict else "", "good": bool(facts.verdict and not facts.verdict[0]),
+            "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
+            "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
+            "clocks": {name: _round(value) for name, value in state.clocks.items()},
+            "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
+            "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
+        }
+
+    def on_state(self, state: SystemState, at: float) -> List[Dict[str, Any]]:
+        """A state came; what is new in the log."""
+        last, self._last = self._last, state
+        fresh: List[Dict[str, Any]] = []
+        if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
+            fresh.append(self.note(at, "the mission starts"))
+        if state.seq and state.event not in ("", START) and (last is None or last.seq != state.seq):
+            fresh.append(self.note(at, self._sentence(state, last), self._kind(state.agent), state.event))
+        for name in state.lost if last is None else sorted(set(state.lost) - set(last.lost)):
+            fresh.append(self.note(at, f"{name} counts as lost", BAD))
+        if last is not None:
+            for name in sorted(set(last.lost) - set(state.lost)):
+                fresh.append(self.note(at, f"{name} is back"))
+            if last.plan != state.plan:
+                fresh.append(self.note(at, f"plan {state.plan} is in force"))
+        if state.status == HOLDING and (last is None or (last.status, last.reason) != (HOLDING, state.reason)):
+            fresh.append(self.note(at, f"the mission holds: {state.reason or 'no reason is given'}", BAD))
+        if last is not None and last.status == HOLDING and state.status == RUNNING:
+            fresh.append(self.note(at, "the mission goes on"))
+        return fresh
+
+    def note(self, at: float, text: str, kind: str = NOTE, word: str = "") -> Dict[str, Any]:
+        """Adds an entry to the log, and returns it."""
+        self._number += 1
+        entry = {"n": self._number, "at": _round(at), "text": text, "kind": kind, "word": word}
+        self.log = [*self.log, entry][-KEPT:]
+        return entry
+
+    # Agents -----------------------------------------------------------------------------------------------------------
+
+    def _agent(self, automaton: Automaton, state: SystemState, at: float) -> Dict[str, Any]:
+        """Where an agent is, what it does, and between which moments that ends."""
+        location = state.locations.get(automaton.name, automaton.initial)
+        place, to = self._where(automaton, location)
+        window = window_at(automaton, location)
+        agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to, "doing": f"at {place or location}",
+                                 "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
+        begin = _begin(automaton, location)
+        if to:
+            agent["doing"] = f"from {place} to {to}"
+        elif begin is not None and location.startswith("doing_"):
+            agent["doing"] = f"{begin.word}, at {place or begin.source}"
+        if window is not None and window.clock in state.clocks:
+            since = at - state.clocks[window.clock]
+            agent.update(since=_round(since), low=_round(since + window.low), high=_end(since, window.high))
+        return agent
+
+    def _where(self, automaton: Automaton, location: str) -> Tuple[str, str]:
+        """The point of interest where that is, and the one that it leads to ("" where there is none)."""
+        if location in self._plan.places:
+            return location, ""
+        end = next((edge.target for edge in automaton.edges_from(location) if is_end(location, edge.target)), "")
+        begin = _begin(automaton, location)
+        if location.startswith("going_") and begin is not None and end:
+            return begin.source, end
+        # An action ends where it began; it may be on a way.
+        return self._where(automaton, end) if end and end != location and not end.startswith("doing_") else ("", "")
+
+    def _turn(self, agents: Sequence[Mapping[str, Any]], state: SystemState) -> str:
+        """Whom the mission waits for, in a sentence."""
+        if state.status == HOLDING:
+            return "Nobody is told anything while the mission holds."
+        if state.status != RUNNING:
+            return ""
+        present = [agent for agent in agents if not agent["lost"]]
+        free = [agent["name"] for agent in present if agent["since"] is None and agent["next"]]
+        alone = {automaton.name for automaton in self._model.of_kind("agent")}
+        groups = {
+            "Under way": [agent["name"] for agent in present if agent["since"] is not None],
+            "The strategy decides": [name for name in free if name not in alone],
+            "Nobody controls": [name for name in free if name in alone],
+        }
+        return " ".join(f"{what}: {', '.join(names)}." for what, names in groups.items() if names)
+
+    def _tasks(self, state: SystemState, agents: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
+        """What people are to do now, and the word with which they say that it is done."""
+        if state.status not in LIVE:
+            return []
+        windows = {agent["name"]: {key: agent[key] for key in ("since", "low", "high")} for agent in agents}
+        return [{**task._asdict(), **windows[task.agent]} for task in tasks(self._model, state)]
+
+    # Words ------------------------------------------------------------------------------------------------------------
+
+    def _buttons(self, automaton: Automaton) -> List[Dict[str, str]]:
+        """One for each word that the agent may say, whether it is possible now or not: nothing moves under a finger."""
+        found: Dict[str, Dict[str, str]] = {}
+        for edge in automaton.edges:
+            if edge.sync != "receive" and (self._ends or not is_end(edge.source, edge.target)):
+                word = spoken(self._model, automaton.name, edge.word)
+                label = self._label(automaton.name, word)
+                found.setdefault(word, {"agent": automaton.name, "word": word, "label": label})
+        return list(found.values())
+
+    def _label(self, agent: str, word: str) -> str:
+        """What its agent does with a word, for a button."""
+        automaton = self._model.automaton(agent)
+        event = word.rpartition(":")[2]
+        edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
+        edge = next(edges, None)
+        return _phrase(automaton, edge).label if edge is not None else event
+
+    def _sentence(self, state: SystemState, last: Optional[SystemState]) -> str:
+        """What has happened."""
+        automaton = next((automaton for automaton in self._model.automata if automaton.name == state.agent), None)
+        if automaton is None:
+            return state.event
+        here = state.locations.get(state.agent, "")
+        if automaton not in self._acting:
+            return f"{state.agent}: {here}"
+        before = last.locations.get(state.agent, "") if last is not None else ""
+        edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
+        edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
+        told = _phrase(automaton, edge).told if edge is not None and edge.source != edge.target else ""
+        return f"{state.agent} {told or 'does ' + state.event}"
+
+    def _kind(self, agent: str) -> str:
+        return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)
+
+    def _unstarted(self) -> SystemState:
+        """Before the first state."""
+        start = self._model.initial()
+        return SystemState(0, 0.0, start.locations, start.values, start.clocks, status=WAITING)
+
+
+class _Phrase(NamedTuple):
+    """An edge in words: on a button, and after it was taken."""
+
+    label: str
+    told: str
+
+
+def _phrase(automaton: Automaton, edge: Edge) -> _Phrase:
+    begin = _begin(automaton, edge.source)
+    if is_end(edge.source, edge.target):
+        if edge.source.startswith("going_"):
+            return _Phrase(f"arrive at {edge.target}", f"arrives at {edge.target}")
+        word = begin.word if begin is not None else edge.word
+        return _Phrase(f"{word} is done", f"has done {word}")
+    if edge.target.startswith("going_"):
+        ends = (end.target for end in automaton.edges_from(edge.target) if is_end(end.source, end.target))
+        to = next(ends, "?")
+        return _Phrase(f"{edge.source} → {to}", f"sets out from {edge.source} to {to}")
+    if edge.target.startswith("doing_"):
+        return _Phrase(edge.word, f"begins {edge.word}")
+    return _Phrase(edge.word, f"does {edge.word}")
+
+
+def _begin(automaton: Automaton, location: str) -> Optional[Edge]:
+    """The edge that led into a movement or an action."""
+    if not location.startswith(("going_", "doing_")):
+        return None
+    return next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
+
+
+def _round(number: float) -> float:
+    """Milliseconds are enough, and short."""
+    return round(number, 3)
+
+
+def _end(start: float, after: float) -> Optional[float]:
+    """The moment that long after the start; None: never."""
+    return None if after == float("inf") else _round(start + after)

@@ -1,0 +1,108 @@
+"""Who plays the agents that nobody controls: nobody (they stand still), chance, or a trace. Without ROS."""
+
+from __future__ import annotations
+
+import random
+from typing import List, Optional, Sequence, Tuple
+
+from pursue_runtime.model import Model
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.mission import SURE, openings
+from pursue_runtime.ui.trace import Step
+
+AGAIN = 1.0  # time units after which something that was said without effect may be followed by something else
+LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
+
+
+class StandStill:
+    """Does nothing."""
+
+    def on_state(self, state: SystemState, start: float, now: float) -> None:
+        """Nothing comes of a state."""
+
+    def due(self, now: float) -> List[str]:
+        """Nothing to say."""
+        return []
+
+    def next_moment(self) -> Optional[float]:
+        """Never."""
+        return None
+
+
+class AtRandom:
+    """Starts something possible at random moments, `pace` time units apart on average; the same for the same seed
+    and the same states."""
+
+    def __init__(self, model: Model, seed: int = 0, pace: float = 5.0) -> None:
+        if not 0 < pace < float("inf"):
+            raise ValueError(f"~pace is {pace:g}; expected a number of time units greater than 0")
+        self._model = model
+        self._random = random.Random(seed)
+        self._pace = pace
+        self._state: Optional[SystemState] = None
+        self._plan: Optional[Tuple[float, str]] = None
+
+    def on_state(self, state: SystemState, start: float, now: float) -> None:
+        """Chooses anew: what was planned may not be possible any more. Waiting times have no memory, so nothing is
+        delayed by that."""
+        self._state = state
+        self._choose(now, pause=0.0)
+
+    def due(self, now: float) -> List[str]:
+        """The planned word, when its moment has come."""
+        if self._plan is None or now < self._plan[0] - 1e-6:
+            return []
+        word = self._plan[1]
+        self._choose(now, pause=AGAIN)
+        return [word]
+
+    def next_moment(self) -> Optional[float]:
+        """The planned moment."""
+        return self._plan[0] if self._plan else None
+
+    def _choose(self, now: float, pause: float) -> None:
+        self._plan = None
+        if self._state is None:
+            return
+        delay = pause + self._random.expovariate(1.0 / self._pace)
+        offers = openings(self._model, self._state, self._state.clocks_at(now))
+        then = [offer for offer in offers if offer.opens <= delay and delay <= offer.closes - SURE]
+        if then:
+            self._plan = (now + delay * self._state.unit, self._random.choice(then).word)
+            return
+        later = [offer for offer in offers if offer.opens > delay]
+        if later:
+            first = min(later, key=lambda offer: offer.opens)
+            self._plan = (now + first.opens * self._state.unit, first.word)
+
+
+class Scripted:
+    """Says the words of a trace at their moments, possible or not."""
+
+    def __init__(self, steps: Sequence[Step]) -> None:
+        self._steps = tuple(steps)
+        self._unit = 1.0
+        self._next = 0
+        self._start: Optional[float] = None
+
+    def on_state(self, state: SystemState, start: float, now: float) -> None:
+        """The first state tells when the mission started; what a restart has missed is skipped."""
+        if self._start is None:
+            self._start, self._unit = start, state.unit
+            while self._next < len(self._steps) and self._moment() < now - LATE * self._unit:
+                self._next += 1
+
+    def due(self, now: float) -> List[str]:
+        """The words whose moments have come."""
+        words = []
+        while self._start is not None and self._next < len(self._steps) and self._moment() <= now + 1e-6:
+            words.append(self._steps[self._next].word)
+            self._next += 1
+        return words
+
+    def next_moment(self) -> Optional[float]:
+        """The moment of the next step."""
+        return self._moment() if self._start is not None and self._next < len(self._steps) else None
+
+    def _moment(self) -> float:
+        return (self._start or 0.0) + self._steps[self._next].at * self._unit

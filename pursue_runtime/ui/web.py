@@ -1,0 +1,383 @@
+"""Serves the page: three files, and a WebSocket on which it hears the mission and asks for things. Without ROS.
+
+Who may speak here: pages that this server has served (`Host` and `Origin` are checked, against other sites and rebound
+names), and for any address but loopback only those who know the token. It comes once in the address, then in a cookie.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+import hmac
+import html
+import ipaddress
+import json
+import os
+import re
+import secrets
+import socket
+import threading
+from typing import Any, Callable, List, Mapping, Optional, Set
+from urllib.parse import urlsplit
+
+from tornado.iostream import StreamBufferFullError
+from tornado.netutil import bind_sockets
+from tornado.web import Application, HTTPError, RequestHandler
+from tornado.websocket import WebSocketClosedError, WebSocketHandler
+
+from pursue_runtime.http_server import Door, without_chunks
+
+FILES = {
+    "/": ("index.html", "text/html"),
+    "/page.js": ("page.js", "text/javascript"),
+    "/page.css": ("page.css", "text/css"),
+}
+TICK = 0.5  # real seconds between two words on what time it is
+PATIENCE = 30.0  # real seconds that a request may take to arrive
+LONGEST = 120.0  # real seconds that a connection may last that does not become a page that listens
+CONNECTIONS = 64  # of those at a time
+LARGEST = 4096  # bytes that a page may send in a message or a request
+BEHIND = 1 << 20  # bytes that a page may be behind
+PAGES = 50  # pages at a time
+JUNK = 20  # messages of a page that cannot be understood until it is closed
+
+WHY = {
+    400: "This request cannot be understood.",
+    411: "This request is refused: nothing is taken here in chunks.",
+    401: "This page needs its token: open the whole link that the UI has printed.",
+    403: "This is not allowed: the token is wrong, or the request comes from another site.",
+    404: "There is nothing here.",
+    405: "There is nothing here.",
+}
+
+
+class WebError(Exception):
+    """The page cannot be served; the message says why, and what to do."""
+
+
+def is_loopback(host: str) -> bool:
+    """True for an address that only this machine reaches."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def is_address(host: str) -> bool:
+    """True for an IP address."""
+    try:
+        return bool(ipaddress.ip_address(host))
+    except ValueError:
+        return False
+
+
+class Web:
+    """The server, with an event loop in a thread of its own."""
+
+    def __init__(
+        self,
+        folder: str,
+        host: str,
+        port: int,
+        token: str,
+        welcome: Callable[[], Mapping[str, Any]],
+        asked: Callable[[str], str],
+        moment: Callable[[], Optional[float]],
+    ) -> None:
+        """Binds the address (port 0: any that is free) and reads the page from `folder`; serves after `start`.
+
+        `welcome` is what a page is told first, `asked` takes its messages (ValueError: junk) and returns a remark,
+        `moment` is the present, None while time does not count. They are called in the thread of the server.
+        Raises WebError.
+        """
+        self.generated = not token and not is_loopback(host)
+        self.token = secrets.token_urlsafe(16) if self.generated else token
+        self.welcome, self.asked, self._moment = welcome, asked, moment
+        self._pages: Set[Live] = set()
+        try:
+            self._files = {path: (_read(folder, name), kind) for path, (name, kind) in FILES.items()}
+            self._sockets = bind_sockets(port, host)
+        except (OSError, UnicodeError) as problem:
+            hint = "choose another --port (0: any that is free) or --host"
+            raise WebError(f"cannot serve the page on {host}, port {port}: {problem}; {hint}") from problem
+        self.host, self.port = host, int(self._sockets[0].getsockname()[1])
+        self._loop = asyncio.new_event_loop()
+        self._closing = False
+        self._closed: Optional[asyncio.Event] = None  # belongs to the loop, and is made there
+        self._thread = threading.Thread(target=self._run, name="web", daemon=True)
+
+    @property
+    def url(self) -> str:
+        """Where the page is; with the token, if that was made here."""
+        everywhere = self.host in ("", "0.0.0.0", "::")
+        name = _own_address() if everywhere else self.host
+        name = f"[{name}]" if ":" in name else name
+        told = self.token if self.generated else "<your token>"
+        return f"http://{name}:{self.port}/" + (f"?token={told}" if self.token else "")
+
+    @property
+    def cookie(self) -> str:
+        """The name of the cookie; browsers do not tell ports of one machine apart."""
+        return f"pursue_ui_{self.port}"
+
+    def start(self) -> None:
+        """Serves, until `close`."""
+        self._thread.start()
+
+    def send(self, message: Mapping[str, Any]) -> None:
+        """Tells every page; from any thread."""
+        text = json.dumps(message, allow_nan=False)
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._tell, text)
+
+    def close(self) -> None:
+        """Lets what was sent go out, closes every page, and ends."""
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._finish)
+        if self._thread.is_alive():
+            self._thread.join(3.0)
+
+    # In the thread of the server --------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        try:
+            self._loop.run_until_complete(self._serve())
+        finally:
+            self._loop.close()
+
+    async def _serve(self) -> None:
+        paths: List[Any] = [(path, File, {"web": self}) for path in FILES]
+        application = _Requests(
+            [*paths, ("/live", Live, {"web": self})],
+            default_handler_class=Nothing, default_handler_args={"web": self}, log_function=lambda _: None,
+            websocket_max_message_size=LARGEST, websocket_ping_interval=10, websocket_ping_timeout=30,
+        )
+        server = Door(
+            application, max_header_size=4 * LARGEST, max_body_size=LARGEST, max_buffer_size=16 * LARGEST,
+            idle_connection_timeout=PATIENCE, body_timeout=PATIENCE,
+        )
+        server.limit(CONNECTIONS, LONGEST, lambda: None)
+        server.add_sockets(self._sockets)
+        self._closed = asyncio.Event()
+        while not self._closing:
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._closed.wait(), TICK)
+            now = self._moment() if self._pages else None
+            if now is not None:
+                self._tell(json.dumps({"type": "tick", "now": now}))
+        server.stop()
+        for page in list(self._pages):
+            page.close(1000, "the mission has ended")
+        await asyncio.sleep(0.2)
+        await server.close_all_connections()
+
+    def _finish(self) -> None:
+        self._closing = True
+        if self._closed is not None:
+            self._closed.set()
+
+    def _tell(self, text: str) -> None:
+        for page in list(self._pages):
+            page.tell(text)
+
+    def file(self, path: str) -> Any:
+        """The content of a file, and what it is."""
+        return self._files[path]
+
+    def enter(self, page: "Live") -> bool:
+        """A page wants to listen; False: there are too many."""
+        if len(self._pages) >= PAGES:
+            return False
+        self._pages.add(page)
+        return True
+
+    def leave(self, page: "Live") -> None:
+        """It has gone."""
+        self._pages.discard(page)
+
+    def key(self) -> str:
+        """What the cookie holds: not the token itself, and the same after a restart with the same token."""
+        return hashlib.sha256(b"pursue ui " + self.token.encode()).hexdigest()
+
+    def serves(self, netloc: str) -> bool:
+        """True where `Host` names this machine: its address, or a name that nobody else can point to it."""
+        try:
+            name = urlsplit(f"//{netloc}").hostname or ""
+        except ValueError:
+            return False
+        own = socket.gethostname().lower()
+        return is_address(name) or name in {"localhost", self.host.lower(), own, f"{own}.local"}
+
+
+def _read(folder: str, name: str) -> bytes:
+    with open(os.path.join(folder, name), "rb") as file:
+        return file.read()
+
+
+def _own_address() -> str:
+    """The address that others reach this machine at, as far as it knows."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # an address for documentation: nothing is sent
+            return str(probe.getsockname()[0])
+        except OSError:
+            return socket.gethostname()
+
+
+class _Requests(Application):
+    def find_handler(self, request: Any, **more: Any) -> Any:
+        """Called with the head of a request, before anything of its body is read."""
+        if without_chunks(request.headers):
+            request.headers.pop("Content-Length", None)
+            return self.get_handler_delegate(request, Chunked, self.settings["default_handler_args"])
+        return super().find_handler(request, **more)
+
+
+# What is served -------------------------------------------------------------------------------------------------------
+
+
+class Guarded(RequestHandler):
+    """What all requests have in common: who may, the headers, and pages that say why not."""
+
+    web: Web
+
+    def initialize(self, web: Web) -> None:
+        self.web = web
+
+    def set_default_headers(self) -> None:
+        """Nothing but our own files and our own WebSocket; nothing is kept; nobody frames us."""
+        live = " ".join(f"{scheme}://{self.request.host}" for scheme in ("ws", "wss"))
+        connect = f"'self' {live}" if re.fullmatch(r"[\w.:\[\]-]+", self.request.host, re.ASCII) else "'self'"
+        self.set_header(
+            "Content-Security-Policy",
+            f"default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src {connect}; "
+            "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        )
+        self.set_header("X-Content-Type-Options", "nosniff")
+        self.set_header("X-Frame-Options", "DENY")
+        self.set_header("Referrer-Policy", "no-referrer")
+        self.set_header("Cross-Origin-Resource-Policy", "same-origin")
+        self.set_header("Cache-Control", "no-store")
+        self.clear_header("Server")
+
+    def prepare(self) -> None:
+        """Who may."""
+        if not self.web.serves(self.request.host):
+            raise HTTPError(403)
+        if not self.web.token:
+            return
+        told = self.get_query_argument("token", None)
+        if told is not None:
+            if not _same(told, self.web.token):
+                raise HTTPError(403)
+        elif not _same(self.get_cookie(self.web.cookie) or "", self.web.key()):
+            raise HTTPError(401)
+
+    def write_error(self, status_code: int, **_: Any) -> None:
+        """A page that says why."""
+        why = html.escape(WHY.get(status_code, "Something went wrong."))
+        self.finish(f"<!DOCTYPE html><html lang=en><title>{status_code}</title><h1>{why}</h1>")
+
+    def log_exception(self, *_: Any) -> None:
+        """Requests that are refused are no news, and what strangers send does not belong on our terminal."""
+
+
+class Chunked(Guarded):
+    """Whatever came with chunks: they are not read, and the connection ends with the answer."""
+
+    def set_default_headers(self) -> None:
+        """As of all."""
+        super().set_default_headers()
+        self.set_header("Connection", "close")
+
+    def prepare(self) -> None:
+        """Nobody may."""
+        raise HTTPError(411)
+
+    def on_finish(self) -> None:
+        """What follows is a body that was not read, and no request."""
+        connection: Any = self.request.connection
+        connection.stream.close()
+
+
+class File(Guarded):
+    """A file of the page."""
+
+    def get(self) -> None:
+        """The file; a token in the address becomes a cookie, and leaves the address."""
+        if self.web.token and self.get_query_argument("token", None) is not None:
+            # Lax: with Strict the cookie would not come along where a link in another page led here.
+            self.set_cookie(self.web.cookie, self.web.key(), httponly=True, samesite="Lax")
+            self.redirect(self.request.path, status=303)
+            return
+        content, kind = self.web.file(self.request.path)
+        self.set_header("Content-Type", f"{kind}; charset=utf-8")
+        self.finish(content)
+
+
+class Nothing(Guarded):
+    """Everything else."""
+
+    def prepare(self) -> None:
+        """Those who may are told that there is nothing."""
+        super().prepare()
+        raise HTTPError(404)
+
+
+class Live(Guarded, WebSocketHandler):
+    """One page that listens."""
+
+    def prepare(self) -> None:
+        """Browsers tell which page opens a WebSocket; only our own may."""
+        super().prepare()
+        origin = urlsplit(self.request.headers.get("Origin", ""))
+        if origin.scheme not in ("http", "https") or origin.netloc.lower() != self.request.host.lower():
+            raise HTTPError(403)
+        self.junk = 0
+
+    def check_origin(self, origin: str) -> bool:
+        """Checked above, also where there is none."""
+        return True
+
+    def open(self, *_: str, **__: str) -> None:
+        """A page listens from now on."""
+        if not self.web.enter(self):
+            self.close(1013, "too many pages")
+            return
+        assert self.ws_connection is not None and self.ws_connection.stream is not None
+        self.ws_connection.stream.max_write_buffer_size = BEHIND
+        self.tell(json.dumps(self.web.welcome(), allow_nan=False))
+
+    def on_message(self, message: Any) -> None:
+        """A page asks for something."""
+        try:
+            remark = self.web.asked(message)
+        except ValueError as problem:
+            self.junk += 1
+            remark = str(problem)
+        if self.junk >= JUNK:
+            self.close(1008, "too much that cannot be understood")
+        elif remark:
+            self.tell(json.dumps({"type": "remark", "text": remark}))
+
+    def on_close(self) -> None:
+        """It has gone."""
+        self.web.leave(self)
+
+    def tell(self, text: str) -> None:
+        """Sends; a page that is too far behind is closed, and comes back by itself."""
+        try:
+            sent = self.write_message(text)
+        except WebSocketClosedError:
+            self.web.leave(self)
+        except StreamBufferFullError:
+            self.web.leave(self)
+            self.close(1013, "too far behind")
+        else:
+            sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # it has gone: on_close says so
+
+
+def _same(told: str, wanted: str) -> bool:
+    return hmac.compare_digest(told.encode(), wanted.encode())
