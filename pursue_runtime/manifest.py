@@ -1,6 +1,7 @@
 """Which mission the data of a workspace is: its manifest, the digest of that, and the short name in states and logs.
 
-It needs Python alone, so that nodes which only have to know their mission's name do not need `cryptography`.
+It needs Python and PyYAML alone, so that nodes which only have to know their mission's name do not need
+`cryptography`.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ import json
 import re
 from dataclasses import dataclass
 from typing import Mapping, Tuple
+
+import yaml
 
 FORMAT = 1
 ID_LENGTH = 12
@@ -56,8 +59,9 @@ def make_manifest(scenario: str, generator: str, controllers: Tuple[str, ...], f
 
 def mission_file(digest: str, scenario: str) -> bytes:
     """The text of mission.yaml, which stands beside the data of each package."""
-    head = "# Which mission the files of this folder are part of."
-    return f'{head}\nformat: {FORMAT}\nmission: "{digest}"\nscenario: "{scenario}"\n'.encode()
+    head = "# Which mission the files of this folder are part of.\n"
+    data = {"format": FORMAT, "mission": digest, "scenario": scenario}
+    return (head + yaml.safe_dump(data, sort_keys=False)).encode()
 
 
 def mission_id(digest: str) -> str:

@@ -5,7 +5,6 @@ Pure: the same arguments give the same bytes, with no date and no path of the ma
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import replace
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
@@ -18,6 +17,7 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.partition import SubStrategy, partition, strategy_file
+from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
@@ -192,33 +192,35 @@ def _expected(
 
 def _poses(scenario: Scenario, where: Mapping[str, Pose], computed: bool) -> bytes:
     """The text of poses.yaml."""
-    lines = [f"# Where the points of {scenario.name} are, in frame map, written by pursue-gen {__version__}."]
+    head = [f"Where the points of {scenario.name} are, in frame map, written by pursue-gen {__version__}."]
     if computed:
         given = {poi.name for poi in scenario.pois if poi.pose is not None}
         missing = [name for name in where if name not in given]
-        lines.append(f"# Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
-    lines.append("# [x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
-    lines += ["format: 1", f"computed: {str(computed).lower()}", "poses:"]
-    for name, p in where.items():
-        numbers = ", ".join(repr(float(number)) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw))
-        lines.append(f'  "{name}": [{numbers}]')
-    return ("\n".join(lines) + "\n").encode()
+        head.append(f"Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
+    head.append("[x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
+    numbers = {
+        name: inline([float(number) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw)]) for name, p in where.items()
+    }
+    return yaml_text({"format": 1, "computed": computed, "poses": numbers}, head).encode()
 
 
 def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
     """The text of ui.yaml: the nodes that the UI waits for before the mission, whose ends the simulator tells, and the
     connections of the map with their lengths."""
-    nodes = ", ".join(("observer", *values["controllers"], "simulator"))
-    reports = ", ".join(json.dumps(name) for name in values["reported"])
-    head = f"# Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
-    ways = ", ".join(json.dumps([way.a, way.b, way.distance]) for way in scenario.connections)
-    return f"{head}\nformat: 1\nnodes: [{nodes}]\nreports: [{reports}]\nconnections: [{ways}]\n".encode()
+    data = {
+        "format": 1,
+        "nodes": inline(("observer", *values["controllers"], "simulator")),
+        "reports": inline(values["reported"]),
+        "connections": inline([[way.a, way.b, way.distance] for way in scenario.connections]),
+    }
+    head = f"Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
+    return yaml_text(data, [head]).encode()
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:
     """The text of controllers.yaml: the nodes that the observer listens for, and that a new plan goes to."""
-    head = f"# Written by pursue-gen {__version__} for the observer of {values['scenario']}."
-    return f"{head}\nformat: 1\ncontrollers: [{', '.join(values['controllers'])}]\n".encode()
+    head = f"Written by pursue-gen {__version__} for the observer of {values['scenario']}."
+    return yaml_text({"format": 1, "controllers": inline(values["controllers"])}, [head]).encode()
 
 
 def _beside(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:

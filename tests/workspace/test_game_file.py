@@ -51,7 +51,7 @@ def test_every_scenario_is_in_its_file_word_for_word() -> None:
         scenario = load(str(path))
         text = render(scenario, Options(), "0")
         assert read(text)["scenario"] == scenario.text
-        assert "|2+" in text, "line by line, as people read it"
+        assert "\nscenario: |\n" in text, "line by line, as people read it"
 
 
 ODD_LINES = ("  a", "", "\t", "b: c # d", '"\\', "  ", "- e", "é", "\x85", "...", "---")
