@@ -133,7 +133,7 @@ def test_the_program_names_what_is_missing() -> None:
     nothing = ["env", "-i", sys.executable, "-I", "-S", ROOT / "bin" / "pursue-gen", "--version"]
     done = called(nothing, ROOT, dict(os.environ))
     assert done.returncode == 6
-    assert "python3-lark" in done.stdout and "Traceback" not in done.stdout
+    assert "python3-lark" in done.stdout and "PyYAML" in done.stdout and "Traceback" not in done.stdout
 
 
 # ./run ----------------------------------------------------------------------------------------------------------------
