@@ -6,8 +6,10 @@ Every function here raises ValueError with a sentence; the reader adds the place
 from __future__ import annotations
 
 import re
+from collections import deque
 from dataclasses import dataclass
-from typing import AbstractSet, List, Optional, Sequence, Tuple, Union
+from itertools import islice
+from typing import AbstractSet, Deque, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.tga.network import Clause, ClockBound, Guard, Sync, Test
 
@@ -16,6 +18,10 @@ _NAME = re.compile(r"[A-Za-z_]\w*\Z")
 _SYNC = re.compile(r"\s*([A-Za-z_]\w*)\s*([!?])\s*\Z")
 _OPERATORS = ("<", "<=", ">", ">=", "==")
 _WORDS = {"and": "&&", "or": "||"}
+_DEPTH = 50
+"""So many parentheses may be open at once."""
+_DIGITS = 18
+"""The longest number; it fits 64 bits."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +131,8 @@ def integer(words: Sequence[str]) -> int:
     sign, digits = (-1, words[1:]) if words and words[0] == "-" else (1, words)
     if len(digits) != 1 or not digits[0].isdigit():
         raise ValueError(f"'{' '.join(words)}' stands where a number was expected")
+    if len(digits[0]) > _DIGITS:
+        raise ValueError(f"a number has more than {_DIGITS} digits")
     return sign * int(digits[0])
 
 
@@ -142,12 +150,12 @@ def _split(words: Sequence[str], separator: str) -> List[List[str]]:
 
 
 def _conjuncts(text: str) -> Tuple[_Expression, ...]:
-    words = [_WORDS.get(word, word) for word in tokens(text)]
+    words = deque(_WORDS.get(word, word) for word in tokens(text))
     if not words:
         return ()
-    expression, rest = _junction(words, "||")
-    if rest:
-        raise ValueError(f"'{rest[0]}' was not expected in '{text.strip()}'")
+    expression = _junction(words, "||", 0)
+    if words:
+        raise ValueError(f"'{words[0]}' was not expected in '{text.strip()}'")
     return _parts(expression, "&&")
 
 
@@ -158,31 +166,37 @@ def _parts(expression: _Expression, op: str) -> Tuple[_Expression, ...]:
     return (expression,)
 
 
-def _junction(words: List[str], op: str) -> Tuple[_Expression, List[str]]:
-    """An expression of operands joined by `op`, and the words after it. `&&` binds closer than `||`."""
-    parts = []
+def _junction(words: Deque[str], op: str, depth: int) -> _Expression:
+    """Takes an expression of operands joined by `op` from the words. `&&` binds closer than `||`."""
+    parts: List[_Expression] = []
     while True:
-        part, words = _junction(words, "&&") if op == "||" else _operand(words)
-        parts.append(part)
-        if words[:1] != [op]:
-            return (parts[0] if len(parts) == 1 else _Junction(op, tuple(parts))), words
-        words = words[1:]
+        parts.append(_junction(words, "&&", depth) if op == "||" else _operand(words, depth))
+        if not words or words[0] != op:
+            return parts[0] if len(parts) == 1 else _Junction(op, tuple(parts))
+        words.popleft()
 
 
-def _operand(words: List[str]) -> Tuple[_Expression, List[str]]:
-    if words[:1] == ["("]:
-        expression, rest = _junction(words[1:], "||")
-        if rest[:1] != [")"]:
+def _operand(words: Deque[str], depth: int) -> _Expression:
+    """Takes a comparison, a constant or an expression in parentheses from the words; `depth` of them are open."""
+    if words and words[0] == "(":
+        if depth == _DEPTH:
+            raise ValueError(f"more than {_DEPTH} parentheses are open at once")
+        words.popleft()
+        expression = _junction(words, "||", depth + 1)
+        if not words or words.popleft() != ")":
             raise ValueError("a parenthesis is not closed")
-        return expression, rest[1:]
+        return expression
     if words and words[0] in _CONSTANTS:
-        return _CONSTANTS[words[0]], words[1:]
-    if len(words) < 3 or not _NAME.match(words[0]):
-        raise ValueError(f"'{' '.join(words[:3])}' stands where 'name operator number' was expected")
-    length = 4 if words[2] == "-" else 3
-    if words[1] not in _OPERATORS:
-        raise ValueError(f"'{' '.join(words[:length])}': the operator {words[1]} is not one of {' '.join(_OPERATORS)}")
-    return _Comparison(words[0], words[1], integer(words[2:length])), words[length:]
+        return _CONSTANTS[words.popleft()]
+    parts = list(islice(words, 4))
+    if len(parts) < 3 or not _NAME.match(parts[0]):
+        raise ValueError(f"'{' '.join(parts[:3])}' stands where 'name operator number' was expected")
+    length = 4 if parts[2] == "-" else 3
+    if parts[1] not in _OPERATORS:
+        raise ValueError(f"'{' '.join(parts[:length])}': the operator {parts[1]} is not one of {' '.join(_OPERATORS)}")
+    for _ in parts[:length]:
+        words.popleft()
+    return _Comparison(parts[0], parts[1], integer(parts[2:length]))
 
 
 def _alternatives(expression: _Expression) -> Tuple[_Comparison, ...]:

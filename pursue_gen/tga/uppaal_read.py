@@ -9,9 +9,10 @@ TGA005 a query.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import Callable, Dict, List, Optional, Tuple, TypeVar
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.uppaal_labels import (
     Names,
@@ -23,20 +24,20 @@ from pursue_gen.tga.uppaal_labels import (
     parse_update,
     tokens,
 )
-from pursue_gen.tga.uppaal_markup import Element, Source, read_markup
+from pursue_gen.tga.uppaal_markup import Element, read_markup
 
 T = TypeVar("T")
 Raw = TypeVar("Raw")
 
-_COMMENTS = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_COMMENTS = re.compile(r"//[^\n]*|/\*.*?(?:\*/|(?P<unclosed>\Z))", re.DOTALL)
 _KINDS_IGNORED = ("comments", "testcodeEnter", "testcodeExit", "testcode")
 
 
 def read_network(text: str, file: str) -> Network:
     """The network of a file, its automata in the order of its system line.
 
-    Lenient: text beside elements is ignored, ids need to be unique in their template only. A `states` automaton
-    without edges (an older translator wrote one where a scenario has no states) is treated as absent.
+    Text beside elements is ignored, and ids need to be unique in their template only. A `states` automaton without
+    edges (an older translator wrote one where a scenario has no states) is treated as absent.
     Raises PursueError with the place.
     """
     nta = read_markup(text, file)
@@ -60,7 +61,7 @@ def read_query(text: str, file: str) -> Objective:
 
     Raises PursueError where the file has another query, none, or several.
     """
-    words = "".join(_COMMENTS.sub("", text).split())
+    words = "".join(_uncommented(text, "").split())
     place = r"(\w+)\.(\w+)"
     bad = rf"(?:not\({place}\)|!\(?{place}\)?|not{place})"
     reach = re.fullmatch(rf"control:A<>\(?{place}\)?", words)
@@ -74,9 +75,14 @@ def read_query(text: str, file: str) -> Objective:
         return Objective(Kind.REACH_WHILE_SAFE, goal=_pair(both.groups()[-2:]), bad=_pair(both.groups()[:-2]))
     hint = "control: A<> x.win, control: A[] not(x.lose) or control: A[ not(x.lose) U y.win ], and only one of them"
     lines = text.rstrip().split("\n")
-    span = Source(text, file).span(0, len(text.rstrip()))
+    span = Span(file, 1, 1, len(lines), len(lines[-1]) + 1)
     shown = lines[0].strip() if lines[0].strip() else "an empty file"
     raise PursueError([error("TGA005", f"'{shown}' is not a query that this tool can play", span, hint)])
+
+
+def _uncommented(text: str, instead: str = " ") -> str:
+    """The text with `instead` for each comment; one that is never closed stays, and is no declaration."""
+    return _COMMENTS.sub(lambda match: instead if match.group("unclosed") is None else match.group(), text)
 
 
 def _pair(groups: Tuple[Optional[str], ...]) -> Tuple[str, str]:
@@ -91,7 +97,7 @@ def _declarations(nta: Element) -> Tuple[List[str], List[Tuple[str, int]], List[
     channels: List[str] = []
     if declaration is None:
         return clocks, variables, channels
-    for statement in _COMMENTS.sub(" ", declaration.text).split(";"):
+    for statement in _uncommented(declaration.text).split(";"):
         words = _labelled(declaration, statement, tokens)
         if not words:
             continue
@@ -137,7 +143,7 @@ def _automaton(template: Element, names: Names) -> Automaton:
     parameter, local = template.one("parameter"), template.one("declaration")
     if parameter and parameter.text.strip():
         parameter.fail("TGA002", f"template {name} has parameters", "write one template for each automaton")
-    if local and _COMMENTS.sub("", local.text).strip():
+    if local and _uncommented(local.text).strip():
         local.fail("TGA002", f"template {name} has declarations of its own", "move them to the global declaration")
     locations: Dict[str, Location] = {}
     for element in template.all("location"):
@@ -229,15 +235,16 @@ def _system(nta: Element, templates: Dict[str, Automaton]) -> List[str]:
     system = nta.one("system")
     if system is None:
         nta.fail("TGA001", "there is no <system>")
-    match = re.fullmatch(r"\s*system\b([\w\s,]*);\s*", _COMMENTS.sub(" ", system.text))
+    match = re.fullmatch(r"\s*system\b([\w\s,]*);\s*", _uncommented(system.text))
     if match is None:
         system.fail(
             "TGA002", "the system is not one line 'system a, b, c;' of templates", "instantiations are not supported"
         )
     order = match.group(1).replace(",", " ").split()
+    times = Counter(order)
     for name in order:
         if name not in templates:
             system.fail("TGA003", f"the system names {name}, but there is no template of that name")
-        if order.count(name) > 1:
+        if times[name] > 1:
             system.fail("TGA003", f"the system names {name} twice")
     return order

@@ -9,15 +9,14 @@ dot of an id as the name of a nameless location.
 from __future__ import annotations
 
 from collections import Counter
-from typing import Dict, Iterable, Iterator, List, Tuple
-from xml.sax.saxutils import escape, quoteattr
+from typing import Dict, Iterable, Iterator, List, Optional, Tuple
+from xml.dom import minidom
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 
-_HEADER = """<?xml version="1.0" encoding="utf-8"?>
-<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.6//EN' \
-'http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd'>"""
+_PUBLIC = "-//Uppaal Team//DTD Flat System 1.6//EN"
+_SYSTEM = "http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd"
 
 _COLUMNS = 6
 _WIDTH, _HEIGHT = 340, 204
@@ -34,15 +33,20 @@ def write_network(network: Network, objective: Objective) -> str:
     if network.start:
         message = "UPPAAL has no way to write a network whose clocks do not start at 0"
         raise PursueError([error("TGA030", message, hint="write the network of the scenario, from its beginning")])
-    lines = [_HEADER, "<nta>", _tag("declaration", "\n".join(_declarations(network)), "\t")]
+    implementation = minidom.getDOMImplementation()
+    assert implementation is not None, "minidom is its own"
+    document = implementation.createDocument(None, "nta", implementation.createDocumentType("nta", _PUBLIC, _SYSTEM))
+    nta = document.documentElement
+    assert nta is not None, "it has just been created"
+    _add(nta, "declaration", "\n".join(_declarations(network)))
     ids = _ids(network)
     for automaton in network.automata:
-        lines += _template(automaton, ids[automaton.name])
-    system = f"system {', '.join(automaton.name for automaton in network.automata)};"
-    lines.append(_tag("system", system, "\t"))
-    query = [_tag("formula", _formula(objective), "\t\t\t"), "\t\t\t<comment/>"]
-    lines += ["\t<queries>", "\t\t<query>", *query, "\t\t</query>", "\t</queries>", "</nta>"]
-    return "\n".join(lines) + "\n"
+        _template(nta, automaton, ids[automaton.name])
+    _add(nta, "system", f"system {', '.join(automaton.name for automaton in network.automata)};")
+    query = _add(_add(nta, "queries"), "query")
+    _add(query, "formula", _formula(objective))
+    _add(query, "comment")
+    return document.toprettyxml(indent="\t", encoding="utf-8").decode()
 
 
 def write_query(objective: Objective) -> str:
@@ -84,44 +88,44 @@ def _ids(network: Network) -> Dict[str, Dict[str, str]]:
     }
 
 
-def _template(automaton: Automaton, ids: Dict[str, str]) -> Iterator[str]:
+def _template(nta: minidom.Element, automaton: Automaton, ids: Dict[str, str]) -> None:
     places = {location.name: _place(number) for number, location in enumerate(automaton.locations)}
-    yield "\t<template>"
-    yield _tag("name", automaton.name, "\t\t")
+    template = _add(nta, "template")
+    _add(template, "name", automaton.name)
     for location in automaton.locations:
-        yield from _location(location, ids[location.name], places[location.name])
-    yield f"\t\t<init ref={quoteattr(ids[automaton.initial])}/>"
+        _location(template, location, ids[location.name], places[location.name])
+    _add(template, "init", ref=ids[automaton.initial])
     for edge in automaton.edges:
-        yield from _transition(edge, ids, places)
-    yield "\t</template>"
+        _transition(template, edge, ids, places)
 
 
 def _place(number: int) -> _Point:
     return number % _COLUMNS * _WIDTH, number // _COLUMNS * _HEIGHT
 
 
-def _location(location: Location, identifier: str, place: _Point) -> Iterator[str]:
+def _location(template: minidom.Element, location: Location, identifier: str, place: _Point) -> None:
     x, y = place
-    yield f"\t\t<location id={quoteattr(identifier)}{_at(place)}>"
+    element = _add(template, "location", "", place, id=identifier)
     if location.named:
-        yield _tag("name", location.name, "\t\t\t", _at((x - 10, y - 34)))
+        _add(element, "name", location.name, (x - 10, y - 34))
     if location.invariant:
-        yield _label("invariant", _bounds(location.invariant), (x - 10, y + 17))
-    yield "\t\t</location>"
+        _add(element, "label", _bounds(location.invariant), (x - 10, y + 17), kind="invariant")
 
 
-def _transition(edge: Edge, ids: Dict[str, str], places: Dict[str, _Point]) -> Iterator[str]:
+def _transition(template: minidom.Element, edge: Edge, ids: Dict[str, str], places: Dict[str, _Point]) -> None:
     (x, y), (to_x, to_y) = places[edge.source], places[edge.target]
     middle_x, middle_y = (x + to_x) // 2, (y + to_y) // 2
-    yield "\t\t<transition>" if edge.controllable else '\t\t<transition controllable="false">'
-    yield f"\t\t\t<source ref={quoteattr(ids[edge.source])}/>"
-    yield f"\t\t\t<target ref={quoteattr(ids[edge.target])}/>"
+    transition = _add(template, "transition")
+    if not edge.controllable:
+        transition.setAttribute("controllable", "false")
+    _add(transition, "source", ref=ids[edge.source])
+    _add(transition, "target", ref=ids[edge.target])
     for number, (kind, text) in enumerate(_labels(edge)):
-        yield _label(kind, text, (middle_x + 18, middle_y - 51 + 17 * number))
+        _add(transition, "label", text, (middle_x + 18, middle_y - 51 + 17 * number), kind=kind)
     if edge.source == edge.target:
         # Without nails a loop has no length, and nobody would see it.
-        yield from (f"\t\t\t<nail{_at((x + dx, y - 50))}/>" for dx in (-30, 30))
-    yield "\t\t</transition>"
+        for dx in (-30, 30):
+            _add(transition, "nail", "", (x + dx, y - 50))
 
 
 def _labels(edge: Edge) -> List[Tuple[str, str]]:
@@ -147,13 +151,17 @@ def _bounds(bounds: Iterable[ClockBound]) -> str:
     return " && ".join(f"{bound.clock} {bound.op} {bound.bound}" for bound in bounds)
 
 
-def _label(kind: str, text: str, place: _Point) -> str:
-    return _tag("label", text, "\t\t\t", f' kind="{kind}"{_at(place)}')
-
-
-def _at(place: _Point) -> str:
-    return f' x="{place[0]}" y="{place[1]}"'
-
-
-def _tag(name: str, text: str, indent: str, attributes: str = "") -> str:
-    return f"{indent}<{name}{attributes}>{escape(text)}</{name}>"
+def _add(
+    parent: minidom.Element, name: str, text: str = "", place: Optional[_Point] = None, **attributes: str
+) -> minidom.Element:
+    """A new element at the end of the parent, with this text and at this place of the drawing."""
+    document = parent.ownerDocument
+    assert document is not None, "it was made by its document"
+    element = document.createElement(name)
+    drawn = {} if place is None else {"x": str(place[0]), "y": str(place[1])}
+    for attribute, value in {**attributes, **drawn}.items():
+        element.setAttribute(attribute, value)
+    if text:
+        element.appendChild(document.createTextNode(text))
+    parent.appendChild(element)
+    return element

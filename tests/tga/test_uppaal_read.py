@@ -1,12 +1,14 @@
-"""Reading UPPAAL's files: lenient about the form, strict about what a network can hold, errors with their place."""
+"""Reading UPPAAL's files: any well-formed XML, strict about what a network can hold, errors with their place."""
 
 from __future__ import annotations
+
+from typing import Tuple
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.tga.network import ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
 from pursue_gen.tga.uppaal import read_network, read_query, write_network
 from tests.tga.networks import BOTH, REACH, SAFETY, networks
@@ -161,6 +163,112 @@ def test_other_files_are_told(text: str) -> None:
     with pytest.raises(PursueError) as raised:
         read_network(text, "page.html")
     assert raised.value.diagnostics[0].code == "TGA001"
+
+
+def refused(text: str) -> Diagnostic:
+    """The one error that the text gets."""
+    with pytest.raises(PursueError) as raised:
+        read_network(text, "TGA.xml")
+    (found,) = raised.value.diagnostics
+    assert found.span is not None and found.hint
+    return found
+
+
+def place(found: Diagnostic) -> Tuple[int, int]:
+    """Line and column."""
+    assert found.span is not None
+    return found.span.line, found.span.column
+
+
+LAUGHS = (
+    '<!ENTITY a0 "ha">'
+    + "".join(f'<!ENTITY a{n + 1} "{f"&a{n};" * 10}">' for n in range(9))
+    + '<!ENTITY file SYSTEM "file:///etc/passwd">'
+)
+
+
+@pytest.mark.parametrize(
+    "subset",
+    [
+        LAUGHS,
+        '<!ENTITY % p SYSTEM "http://localhost:1/x.dtd"> %p;',
+        '<!ATTLIST transition controllable CDATA "false">',
+        "",
+    ],
+)
+def test_a_document_type_with_declarations_is_refused(subset: str) -> None:
+    found = refused(f"<!DOCTYPE nta [{subset}]>\n<nta>&a9;&file;</nta>")
+    assert (found.code, place(found)[0]) == ("TGA001", 1)
+    assert "declarations of its own" in found.message
+
+
+def test_the_document_type_that_uppaal_writes_is_read_and_not_fetched() -> None:
+    head = '<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE nta PUBLIC "-//Uppaal//" "http://localhost:1/flat.dtd">'
+    assert read_network(head + SLOPPY, "f") == read_network(SLOPPY, "f")
+    found = refused(head + SLOPPY.replace("rules", "é &file;"))
+    assert (found.message, place(found)) == ("&file; is not defined", (11, 3))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message", "shift"),
+    [
+        ("go!", "go! & stop!", "invalid token", 5),
+        ("go!", "é🤖 <", "invalid token", 4),
+        ("go!", "&nothing;", "undefined entity", 0),
+        ("go!", "</label></label>", "</label> stands where </transition> was expected", 10),
+        ("<name>end</name>", "<name>end</nam>", "</nam> stands where </name> was expected", 11),
+    ],
+)
+def test_what_is_no_xml_has_its_place(old: str, new: str, message: str, shift: int) -> None:
+    text = SLOPPY.replace(old, new, 1)
+    found = refused(text)
+    start = SLOPPY.index(old)
+    line, column = SLOPPY.count("\n", 0, start) + 1, start - SLOPPY.rindex("\n", 0, start)
+    assert message in found.message
+    assert place(found) == (line, column + shift)
+
+
+def test_an_element_has_the_place_from_its_beginning_to_its_end() -> None:
+    label = '<label kind="synchronisation">é🤖 &gt; &#955;</label>'
+    for old, new in (
+        ('<label kind="synchronisation">go!</label>', label),
+        ('<init ref = "start"/>', '<init  ref="x" />'),
+    ):
+        text = SLOPPY.replace(old, new, 1)
+        with pytest.raises(PursueError) as raised:
+            read_network(text, "TGA.xml")
+        span = raised.value.diagnostics[0].span
+        assert span is not None and span.line == span.end_line
+        assert text.splitlines()[span.line - 1][span.column - 1 : span.end_column - 1] == new
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<nta>" + "<a>" * 5000 + "</a>" * 5000 + "</nta>", "nested more than"),
+        ("<nta>" + "<a/>" * 100_000 + "</nta>", "too many elements"),
+        ("<nta>" + " " * 10_000_000 + "</nta>", "more than 10000000 letters"),
+    ],
+)
+def test_texts_beyond_all_networks_are_refused(text: str, message: str) -> None:
+    found = refused(text)
+    assert found.code == "TGA001" and message in found.message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("( P==1||P == -2 )", "(" * 100_000, "parentheses are open at once"),
+        ("( P==1||P == -2 )", "P==1 &amp;&amp; " * 100_000 + "Q", "'Q && Q': the operator"),
+        ("Q = -12", "Q = " + "9" * 100_000, "digits"),
+        ("clock x, y;", "clock x, y;" + "/*" * 100_000, "is not supported"),
+    ],
+)
+def test_long_labels_and_declarations_end_in_a_message(old: str, new: str, message: str) -> None:
+    assert old in SLOPPY
+    with pytest.raises(PursueError) as raised:
+        read_network(SLOPPY.replace(old, new), "TGA.xml")
+    assert message in raised.value.diagnostics[0].message
 
 
 @given(networks(), st.data())

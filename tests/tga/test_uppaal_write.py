@@ -134,3 +134,16 @@ def test_signs_of_xml_are_escaped() -> None:
     }
     assert transition.attrib == {"controllable": "false"}
     assert "&&" not in text
+
+
+def test_the_file_is_for_people_too() -> None:
+    lines = write_network(one_automaton(Edge("a", "b")), REACH).splitlines()
+    assert lines[:5] == [
+        '<?xml version="1.0" encoding="utf-8"?>',
+        "<!DOCTYPE nta",
+        "  PUBLIC '-//Uppaal Team//DTD Flat System 1.6//EN'",
+        "  'http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd'>",
+        "<nta>",
+    ]
+    assert '\t\t<location id="m.a" x="0" y="0">' in lines
+    assert '\t\t\t<source ref="m.a"/>' in lines
