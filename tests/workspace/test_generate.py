@@ -240,6 +240,37 @@ def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:
     assert "computed from the distances" in files("thesis/scenario_1")["README.md"].decode()
 
 
+@pytest.mark.parametrize("loader", ["SafeLoader", "CSafeLoader"])
+def test_names_that_yaml_misreads_are_found_in_every_file(loader: str) -> None:
+    if not hasattr(yaml, loader):
+        pytest.skip("PyYAML was built without libyaml")
+    text = """
+        poi "on" poi "null" poi "y"
+        connect on and null distance 2
+        connect null and y distance 3
+        event "off" location y
+        agent "no" controllable mobile 1 location on can_do off
+        reach_objective: do off
+    """
+    found = {
+        path: yaml.load(content, Loader=getattr(yaml, loader))
+        for path, content in generate_text(text, "yes").items()
+        if path.endswith(".yaml")
+    }
+    assert found["src/observer/config/mission.yaml"]["scenario"] == "yes"
+    assert len(found["src/observer/config/mission.yaml"]["mission"]) == 64
+    assert found["src/observer/config/game.yaml"]["name"] == "yes"
+    assert found["src/observer/config/controllers.yaml"]["controllers"][0] == "controller_no"
+    assert set(found["src/UI/config/poses.yaml"]["poses"]) == {"on", "null", "y"}
+    assert found["src/UI/config/ui.yaml"]["reports"] == ["no"]
+    assert found["src/UI/config/ui.yaml"]["connections"] == [["on", "null", 2], ["null", "y", 3]]
+    strategy = found["src/controller_no/config/strategy.yaml"]
+    assert strategy["commands_agents"] == ["no"] and strategy["strategy"][0]["state"]["no"] == "on"
+    model = found["src/observer/config/model.yaml"]
+    assert [automaton["name"] for automaton in model["automata"]] == ["no", "reachObj"]
+    assert all("no" in entry["state"] for entry in found["src/observer/config/cover.yaml"]["cover"])
+
+
 def test_expectations_of_the_launch_tests() -> None:
     expected = json.loads(files("thesis/catch_the_thief")["src/catch_the_thief_bringup/test/expected.json"])
     assert expected["reach"] is True
