@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, Mapping, Sequence, Union
 
 import yaml
 
@@ -19,6 +19,7 @@ _READABLE = re.compile(r"[\n -~\xa1-\u2027\u2030-\ud7ff\uff00-\uffef]*")
 """Texts that may stand as they are; others are escaped, since the two emitters differ in when they would do so."""
 _OPEN = ("\n", "\n\n")
 """How texts end that libyaml closes with a mark of its own if they are blocks."""
+_RESOLVER: Any = yaml.resolver.Resolver()
 _WIDTH = 1_000_000
 """Columns of the longest line: nothing is folded, a key and its value share one line."""
 
@@ -67,20 +68,17 @@ def _events(value: Any) -> Iterator[yaml.Event]:
 
 
 def _scalar(value: Union[str, int, float, bool, None]) -> yaml.Event:
-    return _text(value) if isinstance(value, str) else _written(value)
+    if isinstance(value, str):
+        return _text(value)
+    node = yaml.representer.SafeRepresenter().represent_data(value)
+    return yaml.ScalarEvent(None, None, (True, False), node.value)
 
 
 @lru_cache(maxsize=4096)
 def _text(value: str) -> yaml.Event:
-    """The text; one of several lines is a block."""
+    """The text: a block where it has several lines, in quotes where PyYAML would read something else without."""
+    style = "|" if "\n" in value else None
     if not _READABLE.fullmatch(value) or value[-2:] in _OPEN:
-        return _written(value, '"')
-    return _written(value, "|" if "\n" in value else None)
-
-
-def _written(value: Any, style: Optional[str] = None) -> yaml.Event:
-    """The scalar; PyYAML decides how it is spelled and whether it needs quotes."""
-    node = yaml.representer.SafeRepresenter().represent_data(value)
-    resolver: Any = yaml.resolver.Resolver()
-    plain = resolver.resolve(yaml.ScalarNode, node.value, (True, False)) == node.tag
-    return yaml.ScalarEvent(None, None, (plain, True), node.value, style=style)
+        style = '"'
+    plain = _RESOLVER.resolve(yaml.ScalarNode, value, (True, False)) == "tag:yaml.org,2002:str"
+    return yaml.ScalarEvent(None, None, (plain, True), value, style=style)
