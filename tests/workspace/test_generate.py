@@ -103,13 +103,18 @@ def reached(text: str, generated: Dict[str, bytes]) -> Set[str]:
                 path = f"src/{RUNTIME}/src/{module.replace('.', '/')}.py"
                 if path in generated:
                     waiting.append(ast.parse(generated[path].decode()))
-        found |= imports(ast.unparse(tree))
+        found |= imported(tree)
     return found
 
 
 def imports(text: str) -> Set[str]:
+    return imported(ast.parse(text))
+
+
+def imported(tree: ast.AST) -> Set[str]:
+    """The top-level names of what is imported anywhere in it."""
     found = set()
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(tree):
         names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
         names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         found |= {name.split(".")[0] for name in names}
