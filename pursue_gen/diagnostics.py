@@ -66,6 +66,16 @@ def warning(code: str, message: str, span: Optional[Span] = None, hint: str = ""
     return Diagnostic(Severity.WARNING, code, message, span, hint)
 
 
+def usage_error(message: str, hint: str) -> PursueError:
+    """The error of a command line that cannot be used (exit status 2)."""
+    return PursueError([error("CLI004", message, hint=hint)], exit_status=2)
+
+
+def counted(number: int, noun: str) -> str:
+    """`1 error`, `2 errors`."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
     """The diagnostics by file, line and column; those without a place last."""
 

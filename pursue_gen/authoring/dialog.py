@@ -26,8 +26,7 @@ from pursue_gen.authoring.wishes import (
     slow_enough,
     unused,
 )
-from pursue_gen.cli.console import usage
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import PursueError, usage_error
 
 Answer = TypeVar("Answer")
 
@@ -118,7 +117,7 @@ def _places(dialog: Dialog, kind: str, given: Optional[str]) -> Tuple[str, ...]:
         return accept(given)
     except ValueError as problem:
         hint = f"for example --places {','.join(_PLACES)}"
-        raise usage(f"--places {given}: {problem}", hint) from None
+        raise usage_error(f"--places {given}: {problem}", hint) from None
 
 
 def _team(dialog: Dialog, kind: str, places: Tuple[str, ...], names: Tuple[str, ...]) -> Tuple[Robot, ...]:
@@ -186,4 +185,4 @@ def _pace(
 
 
 def _ended(message: str) -> PursueError:
-    return usage(message, "nothing was written; answer all questions, or take the suggestions with --yes")
+    return usage_error(message, "nothing was written; answer all questions, or take the suggestions with --yes")

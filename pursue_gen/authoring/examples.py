@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Tuple
 
-from pursue_gen.cli.console import usage
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import read_text, write_texts
 
 _COMMENT = re.compile(r"\s*((?://[^\n]*\n?[ \t]*)+|/\*.*?\*/)", re.S)
@@ -55,11 +55,13 @@ def example(name: str) -> Example:
     if len(found) == 1:
         return found[0]
     if found:
-        raise usage(f"there are {len(found)} examples {wanted}", "name one: " + ", ".join(each.name for each in found))
+        raise usage_error(
+            f"there are {len(found)} examples {wanted}", "name one: " + ", ".join(each.name for each in found)
+        )
     words = {word: each.name for each in known for word in (each.file.stem, each.name)}
     close = difflib.get_close_matches(wanted, list(words), n=1)
     hint = f"did you mean {words[close[0]]}?" if close else "pursue-gen examples lists them"
-    raise usage(f"there is no example {name}", hint)
+    raise usage_error(f"there is no example {name}", hint)
 
 
 def copied(wanted: Example, folder: Path, force: bool) -> Path:
@@ -70,7 +72,7 @@ def copied(wanted: Example, folder: Path, force: bool) -> Path:
     file, text = folder / wanted.file.name, read_text(wanted.file, "an example")
     if file.exists() and not force and not (file.is_file() and read_text(file, "another place with -o") == text):
         hint = "name another folder with -o, or replace it with --force"
-        raise usage(f"{file} is there already, and is not this example", hint)
+        raise usage_error(f"{file} is there already, and is not this example", hint)
     write_texts({file: text})
     return file
 

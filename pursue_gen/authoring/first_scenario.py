@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Iterable, List, Optional
 
 from pursue_gen.authoring.wishes import AVOID, CATCH, KINDS, NEVER_WITH, REACH, RESPOND, Task, Wishes, deadline, unused
-from pursue_gen.cli.console import usage
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.names import check_names
@@ -145,7 +145,7 @@ def place_for(name: str, output: Optional[Path]) -> Path:
     for word in (place.stem, file.stem):
         if any(check_names(parse("", file=word, name=word))):
             hint = "use letters, digits and _, a letter first: pursue-gen new my_floor"
-            raise usage(f"{word!r} cannot be the name of a scenario", hint)
+            raise usage_error(f"{word!r} cannot be the name of a scenario", hint)
     return file
 
 

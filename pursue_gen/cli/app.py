@@ -11,7 +11,7 @@ import typer
 
 from pursue_gen import __version__
 from pursue_gen.cli.bundle import bundle
-from pursue_gen.cli.console import count, guarded, quoted, show, suggest, tell, usage
+from pursue_gen.cli.console import guarded, show, suggest, tell
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain as explain_code
 from pursue_gen.cli.fmt import fmt
@@ -44,7 +44,8 @@ from pursue_gen.cli.report import report
 from pursue_gen.cli.send import send
 from pursue_gen.cli.sim import sim
 from pursue_gen.cli.ws import ws
-from pursue_gen.diagnostics import PursueError, Severity, as_json
+from pursue_gen.diagnostics import PursueError, Severity, as_json, counted, usage_error
+from pursue_gen.files import shell_quoted
 
 app = typer.Typer(
     name="pursue-gen",
@@ -104,11 +105,11 @@ def check(
     else:
         show(findings, sys.stdout)
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
-    tell(f"{count(len(files), 'file')}: {count(errors, 'error')}, {count(len(findings) - errors, 'warning')}")
+    tell(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
     if errors:
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(3)
-    suggest(f"pursue-gen ws {quoted(files[0])}")
+    suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
@@ -133,7 +134,7 @@ def tga(
     model, query = folder / "TGA.xml", folder / "TCTL.q"
     write_texts({model: write_network(network, objective), query: write_query(objective)})
     print(model, query, sep="\n")
-    suggest(f"pursue-gen solve {quoted(model)} {quoted(query)}")
+    suggest(f"pursue-gen solve {shell_quoted(model)} {shell_quoted(query)}")
 
 
 @app.command(
@@ -199,7 +200,7 @@ def solve(
     tell(verdict_text(rules, won))
     tell(margins_told(won, *found))
     if len(files) == 1:
-        suggest(f"pursue-gen ws {quoted(files[0])}")
+        suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
@@ -222,7 +223,7 @@ def verify(
     from pursue_gen.solving.options import asked_limits, games_to_try, in_words
 
     if len(files) < 2:
-        raise usage("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
+        raise usage_error("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
     network, objective = game_in(files[:-1])
     games = games_to_try(network, value(ends), reaction, slack)
     tried = try_plan(files[-1], network, objective, games, asked_limits(limit, memory))

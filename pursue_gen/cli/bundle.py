@@ -7,7 +7,7 @@ from typing import List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, quoted, suggest, tell, usage
+from pursue_gen.cli.console import guarded, suggest, tell
 from pursue_gen.cli.options import (
     COMPUTED_POSES,
     CONTROLLERS,
@@ -31,6 +31,8 @@ from pursue_gen.cli.options import (
     Solver,
     value,
 )
+from pursue_gen.diagnostics import usage_error
+from pursue_gen.files import shell_quoted
 
 
 @guarded
@@ -73,14 +75,16 @@ def bundle(
     folder = keys or keys_folder()
     if check is not None:
         if scenario is not None or output is not None:
-            raise usage("--check looks at a bundle that is there", "leave out SCENARIO and -o")
+            raise usage_error("--check looks at a bundle that is there", "leave out SCENARIO and -o")
         _tell_bundle(check, folder)
         return
     if scenario is None:
-        raise usage("a scenario is missing", "pursue-gen bundle my_floor.pur, or pursue-gen bundle --check FILE.pursue")
+        raise usage_error(
+            "a scenario is missing", "pursue-gen bundle my_floor.pur, or pursue-gen bundle --check FILE.pursue"
+        )
     target = output or Path(f"{scenario.stem}{SUFFIX}")
     if target.suffix != SUFFIX:
-        raise usage(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
+        raise usage_error(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
     private = load_private(key, folder)  # before the work: it may be missing
     how = (value(solver), verifytga, value(optimize), asked_limits(limit, memory), poses, computed_poses)
     asked = AskedMission(controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan, *how)
@@ -88,7 +92,7 @@ def bundle(
     write_bytes({target: sign(manifest, files, private)})
     print(target, manifest.digest, sep="\n")
     tell(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
-    suggest(f"pursue-gen send {quoted(target)} --to robots.yaml")
+    suggest(f"pursue-gen send {shell_quoted(target)} --to robots.yaml")
 
 
 def _tell_bundle(file: Path, folder: Path) -> None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import functools
 import os
-import shlex
 import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Optional, TextIO
 
 import typer
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, error, render
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
 
 INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
 """Exit statuses beside those of PursueError: a fault of ours; Ctrl-C; nobody reads what we print."""
@@ -42,21 +41,6 @@ def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> 
                 sources[file] = _source(file)
             source = sources[file]
         print(_painted(diagnostic, render(diagnostic, source), out), file=out)
-
-
-def quoted(path: Path) -> str:
-    """The path as a shell takes it."""
-    return shlex.quote(str(path))
-
-
-def count(number: int, noun: str) -> str:
-    """`1 error`, `2 errors`."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
-
-
-def usage(message: str, hint: str) -> PursueError:
-    """What is wrong with the command line."""
-    return PursueError([error("CLI004", message, hint=hint)], exit_status=2)
 
 
 def guarded(command: Callable[..., None]) -> Callable[..., None]:

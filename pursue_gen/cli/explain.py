@@ -7,7 +7,8 @@ from typing import List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, usage
+from pursue_gen.cli.console import guarded
+from pursue_gen.diagnostics import usage_error
 
 
 @guarded
@@ -22,7 +23,7 @@ def explain(
         return
     wanted = code.strip().upper()
     if wanted not in known:
-        raise usage(f"there is no message with the code {code[:40]}", _proposal(wanted, known))
+        raise usage_error(f"there is no message with the code {code[:40]}", _proposal(wanted, known))
     print((pages_dir() / f"{wanted}.md").read_text(encoding="utf-8"), end="")
 
 

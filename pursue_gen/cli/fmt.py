@@ -8,8 +8,8 @@ from typing import List
 
 import typer
 
-from pursue_gen.cli.console import count, guarded, tell, usage
-from pursue_gen.diagnostics import Diagnostic, PursueError
+from pursue_gen.cli.console import guarded, tell
+from pursue_gen.diagnostics import Diagnostic, PursueError, counted, usage_error
 
 
 @guarded
@@ -26,7 +26,7 @@ def fmt(
 
     stdin = files == [Path("-")]
     if Path("-") in files and not stdin:
-        raise usage("- stands for stdin, and there are files as well", "name files, or - alone")
+        raise usage_error("- stands for stdin, and there are files as well", "name files, or - alone")
     layouts: List[Layout] = []
     problems: List[PursueError] = []
     for file in files:
@@ -49,7 +49,7 @@ def fmt(
         sys.stdout.write(layouts[0].after)
     elif not stdin:
         word = "would change" if check or diff else "changed"
-        tell(f"{count(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} as it should be")
+        tell(f"{counted(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} as it should be")
     if problems:
         findings: List[Diagnostic] = [finding for problem in problems for finding in problem.diagnostics]
         raise PursueError(findings, problems[0].exit_status)

@@ -7,7 +7,8 @@ from typing import Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, quoted, show, suggest, tell
+from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.files import shell_quoted
 
 keys = typer.Typer(
     no_args_is_help=True,
@@ -38,7 +39,7 @@ def new(
     print(private)
     tell(f"{private} signs missions: keep it to yourself.")
     tell(f"{public} goes to every robot, into $ROS_HOME/pursue/keys (~/.ros/pursue/keys).")
-    copied = f"ssh robot1 mkdir -p .ros/pursue/keys && scp {quoted(public)} robot1:.ros/pursue/keys/"
+    copied = f"ssh robot1 mkdir -p .ros/pursue/keys && scp {shell_quoted(public)} robot1:.ros/pursue/keys/"
     suggest(copied, "pursue-gen bundle SCENARIO.pur")
 
 

@@ -11,8 +11,8 @@ from typing import Optional
 import typer
 
 from pursue_gen.authoring.wishes import MOST_ROBOTS
-from pursue_gen.cli.console import guarded, show, suggest, tell, usage
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.diagnostics import PursueError, usage_error
 
 
 class Goal(str, Enum):
@@ -48,7 +48,7 @@ def new(
 
     file = place_for(name, output)
     if file.exists() and not force:
-        raise usage(f"{file} is there already", "choose another name, or replace it with --force")
+        raise usage_error(f"{file} is there already", "choose another name, or replace it with --force")
     dialog = Dialog(sys.stdin, sys.stderr, quiet=yes)
     dialog.say("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
     text = scenario_text(wishes(dialog, None if kind is None else kind.value, places, robots), str(file))

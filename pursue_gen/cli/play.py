@@ -9,8 +9,9 @@ from typing import List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, usage
+from pursue_gen.cli.console import guarded
 from pursue_gen.cli.options import ENDS, LIMIT, MEMORY, REACTION, SCENARIO, SLACK, Ends, value
+from pursue_gen.diagnostics import usage_error
 
 _PROMPT = "> "
 
@@ -58,7 +59,7 @@ def play(
     if side is not None and (side is Side.ROBOTS) != is_robots:
         can, whom = ("cannot", "robots") if is_robots else ("can", "others")
         message = f"with these rules the objective {can} be met, so you can only play the {whom}"
-        raise usage(message, f"leave out --as {side.value}, or change the rules")
+        raise usage_error(message, f"leave out --as {side.value}, or change the rules")
     print("\n".join(opening(session)), flush=True)
     interactive = sys.stdin.isatty()
     while True:

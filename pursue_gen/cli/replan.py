@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import sys
 
-from pursue_gen.cli.console import guarded, usage
+from pursue_gen.cli.console import guarded
+from pursue_gen.diagnostics import usage_error
 
 
 @guarded
@@ -20,5 +21,5 @@ def replan() -> None:
     try:
         request = json.loads(sys.stdin.buffer.read().decode("utf-8"))
     except (ValueError, RecursionError) as problem:
-        raise usage(f"the request is not JSON: {problem}", "see docs/run_time.md, 'Planning again'") from None
+        raise usage_error(f"the request is not JSON: {problem}", "see docs/run_time.md, 'Planning again'") from None
     print(json.dumps(answer(request)))

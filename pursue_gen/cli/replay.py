@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, tell, usage
+from pursue_gen.cli.console import guarded, tell
 from pursue_gen.cli.options import ENDS, JSON, LIMIT, MEMORY, REACTION, SLACK, Ends, value
+from pursue_gen.diagnostics import usage_error
 
 if TYPE_CHECKING:
     from pursue_gen.replay import Findings, Game, Record
@@ -75,7 +76,7 @@ def _draw(record: Record, game: Game, recording: Path, timeline: Path) -> None:
 
     shown = from_record(record, game.scenario, game.network, recording.name)
     if shown is None:
-        raise usage(f"the mission never starts in {recording}", "leave out --timeline: there is nothing to draw")
+        raise usage_error(f"the mission never starts in {recording}", "leave out --timeline: there is nothing to draw")
     write(shown, timeline)
     tell(f"{timeline} shows the mission")
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Optional
 
 import typer
 
-from pursue_gen.cli.console import count, guarded, quoted, show, suggest, tell, usage
+from pursue_gen.cli.console import guarded, show, suggest, tell
 from pursue_gen.cli.options import JSON, LIMIT, MEMORY, OPTIMIZE, SCENARIO, Optimize, value
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, counted, error, usage_error
+from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -52,7 +53,7 @@ def report(
     With --html or --pictures: show the scenario, its strategy and its workspace instead. A scenario that cannot be won
     gets a page that says why.
     """
-    from pursue_gen.report.floor import read_floor
+    from pursue_gen.drawing.floor import read_floor
     from pursue_gen.report.make import Asked
     from pursue_gen.solving.inputs import scenario_in
     from pursue_gen.solving.options import asked_limits
@@ -78,11 +79,11 @@ def report(
 
 def _check_options(seen: bool, html: bool, file: Optional[Path], floor: Optional[Path], as_json_: bool) -> None:
     if file is not None and not html:
-        raise usage(f"{file} has no meaning here", f"to write a page: pursue-gen report SCENARIO --html {file}")
+        raise usage_error(f"{file} has no meaning here", f"to write a page: pursue-gen report SCENARIO --html {file}")
     if floor is not None and not seen:
-        raise usage("--map is for pages and pictures", "add --html or --pictures DIR")
+        raise usage_error("--map is for pages and pictures", "add --html or --pictures DIR")
     if as_json_ and seen:
-        raise usage("--json is for the tables alone", "leave it out, or leave --html and --pictures out")
+        raise usage_error("--json is for the tables alone", "leave it out, or leave --html and --pictures out")
 
 
 def _check_target(target: Path) -> None:
@@ -91,7 +92,7 @@ def _check_target(target: Path) -> None:
         return
     with open(target, encoding="utf-8", errors="replace") as stream:
         if _MARK not in stream.read(4000):
-            raise usage(f"{target} is there and is no report", "name another file, or replace it with --force")
+            raise usage_error(f"{target} is there and is no report", "name another file, or replace it with --force")
 
 
 def _print_tables(
@@ -158,7 +159,7 @@ def _write_pictures(made: Report, folder: Path) -> None:
         print(file)
     if missing:
         reason = "graphviz could not draw them" if graphviz.installed() else graphviz.HOW_TO_GET
-        message = f"{count(len(missing), 'picture')} could not be drawn: {', '.join(missing)}"
+        message = f"{counted(len(missing), 'picture')} could not be drawn: {', '.join(missing)}"
         raise PursueError([error("REP005", message, hint=reason)], exit_status=6)
 
 
@@ -171,4 +172,4 @@ def _write_page(made: Report, target: Path) -> None:
     print(target)
     if not graphviz.installed():
         tell(f"Some pictures are missing in it: {graphviz.HOW_TO_GET}.")
-    suggest(f"xdg-open {quoted(target)}")
+    suggest(f"xdg-open {shell_quoted(target)}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, List, Optional, Sequence
 
 import typer
 
-from pursue_gen.cli.console import guarded, quoted, suggest, tell, usage
+from pursue_gen.cli.console import guarded, suggest, tell
 from pursue_gen.cli.options import (
     COMPUTED_POSES,
     CONTROLLERS,
@@ -33,6 +33,8 @@ from pursue_gen.cli.options import (
     Solver,
     value,
 )
+from pursue_gen.diagnostics import usage_error
+from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.transport.bundles import AskedMission
@@ -107,7 +109,9 @@ def send(
         rows = after_waiting(sent, wait_for(robots, sent.mission, wait))
     _show(rows, as_json_, mission=sent.mission, done=sent.done, unchanged=sent.unchanged, trouble=sent.trouble)
     tell(success(sent, rows, wait, to))
-    suggest(f"pursue-gen send --status --to {quoted(to)}", "rostopic pub -1 pursue/events std_msgs/String _start_")
+    suggest(
+        f"pursue-gen send --status --to {shell_quoted(to)}", "rostopic pub -1 pursue/events std_msgs/String _start_"
+    )
 
 
 def _check_usage(mission: Optional[str], status: bool, back: bool, asked: AskedMission) -> None:
@@ -115,12 +119,16 @@ def _check_usage(mission: Optional[str], status: bool, back: bool, asked: AskedM
     from pursue_gen.transport.bundles import SUFFIX, AskedMission
 
     if status and (back or mission is not None):
-        raise usage("--status sends nothing", "leave out --back and the mission")
+        raise usage_error("--status sends nothing", "leave out --back and the mission")
     if not (status or back) and mission is None:
-        raise usage("a mission is missing", "pursue-gen send my_floor.pur --to robots.yaml, or a bundle (*.pursue)")
+        raise usage_error(
+            "a mission is missing", "pursue-gen send my_floor.pur --to robots.yaml, or a bundle (*.pursue)"
+        )
     plain = asked == AskedMission(limits=asked.limits)
     if not plain and (status or back or str(mission).endswith(SUFFIX)):
-        raise usage("there is no scenario to make a plan for", "leave out the options of the game, such as --reaction")
+        raise usage_error(
+            "there is no scenario to make a plan for", "leave out the options of the game, such as --reaction"
+        )
 
 
 def _sent(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional
 
 import typer
 
-from pursue_gen.cli.console import count, guarded, quoted, suggest, tell, usage
+from pursue_gen.cli.console import guarded, suggest, tell
 from pursue_gen.cli.options import (
     CONTROLLERS,
     ENDS,
@@ -28,6 +28,8 @@ from pursue_gen.cli.options import (
     Optimize,
     value,
 )
+from pursue_gen.diagnostics import counted, usage_error
+from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.simulation.runs import Case, Summary
@@ -106,7 +108,7 @@ def sim(
     _print(case, summary, facts, as_json_)
     if summary.failed:
         raise typer.Exit(1)
-    suggest(f"pursue-gen ws {quoted(scenario)}")
+    suggest(f"pursue-gen ws {shell_quoted(scenario)}")
 
 
 def _check_timeline(timeline: Path, runs: int, seed: int) -> None:
@@ -114,7 +116,7 @@ def _check_timeline(timeline: Path, runs: int, seed: int) -> None:
 
     check_name(timeline)
     if runs != 1:
-        raise usage("a timeline shows one mission", f"add --runs 1, and --seed {seed} or another")
+        raise usage_error("a timeline shows one mission", f"add --runs 1, and --seed {seed} or another")
 
 
 def _draw(case: Case, seed: int, timeline: Path) -> None:
@@ -133,7 +135,7 @@ def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) 
     else:
         print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
     if summary.failed:
-        tell(f"{count(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
+        tell(f"{counted(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
         for outcome in summary.failures:
             tell("\n".join(failure(outcome, _again(outcome.seed))))
 

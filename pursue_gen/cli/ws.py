@@ -7,7 +7,7 @@ from typing import List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, quoted, suggest, tell
+from pursue_gen.cli.console import guarded, suggest, tell
 from pursue_gen.cli.options import (
     ENDS,
     EXPLAIN,
@@ -27,6 +27,7 @@ from pursue_gen.cli.options import (
     Solver,
     value,
 )
+from pursue_gen.files import shell_quoted
 
 
 @guarded
@@ -74,4 +75,4 @@ def ws(
     print(place)
     tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
     launch = f"roslaunch {read.name}_bringup mission.launch"
-    suggest(f"cd {quoted(place)} && catkin_make", "source devel/setup.bash", launch)
+    suggest(f"cd {shell_quoted(place)} && catkin_make", "source devel/setup.bash", launch)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Dict, List, Mapping, Optional, Tuple
 
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, svg, tag, text
 from pursue_gen.language.scenario import Agent, Pose, Scenario
-from pursue_gen.report.floor import Floor
-from pursue_gen.report.words import kind_words, speed_words
+from pursue_gen.language.wording import kind_words, speed_words
 
 _WIDTH, _WIDEST = 640.0, 1600.0
 _MARGIN = 80.0

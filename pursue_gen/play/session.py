@@ -13,6 +13,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.words import time_text
+from pursue_gen.language.wording import objective_words
 from pursue_gen.play.counter import Robots
 from pursue_gen.play.saving import save
 from pursue_gen.play.table import RUNNING, Board, Plan, Table, taken
@@ -26,7 +27,6 @@ from pursue_gen.play.words import (
     window_text,
 )
 from pursue_gen.play.world import Offer, World
-from pursue_gen.report.words import objective_words
 
 GameOf = Union[World, Robots]
 
@@ -83,8 +83,10 @@ def opening(session: Session) -> Tuple[str, ...]:
         plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
         first = ("The robots can see to it, whatever others do.", f"You play everybody else, {plays}")
     else:
-        first = ("The robots cannot be sure of it.",
-                 "You play the robots; the program plays the others, and can always prevent it.")
+        first = (
+            "The robots cannot be sure of it.",
+            "You play the robots; the program plays the others, and can always prevent it.",
+        )
     hint = "Times are in time units from the start. Type help for what you can say."
     return (*wants, *first, hint, "", *shown(session))
 
@@ -163,8 +165,13 @@ def answer(session: Session, text: str) -> Reply:
     if wait:
         return _wait(session, wait.group(1) is not None, wait.group(2))
     if word.lower() == "wait" or word.isdigit():
-        return Reply(session, (f"'{line}' is not clear. For example: wait, wait 2, wait @ 7, 2, 2 @ 3.5 "
-                               "(a moment has at most three decimals).",))
+        return Reply(
+            session,
+            (
+                f"'{line}' is not clear. For example: wait, wait 2, wait @ 7, 2, 2 @ 3.5 "
+                "(a moment has at most three decimals).",
+            ),
+        )
     known = "a number from the list, wait, undo, map, why, help, quit"
     return Reply(session, (f"'{line[:60]}' is not known here. Say {known} …",))
 
@@ -236,12 +243,15 @@ def _told(session: Session, first: int) -> List[str]:
 
 def _missed(before: Session, table: Table) -> List[str]:
     """Plans that came to nothing: something else was faster, and now they are not possible any more."""
-    done = {(deed.agent, deed.word) for deed in table.deeds[len(before.table.deeds):]}
+    done = {(deed.agent, deed.word) for deed in table.deeds[len(before.table.deeds) :]}
     kept = {(plan.agent, plan.word) for plan in table.plans}
     known = {(offer.agent, offer.word): _offered(before, offer)[0] for offer in before.game.offers(before.table)}
     gone = [plan for plan in before.table.plans if (plan.agent, plan.word) not in done | kept]
-    return [f"           {known[plan.agent, plan.word]}: not possible any more"
-            for plan in gone if (plan.agent, plan.word) in known]
+    return [
+        f"           {known[plan.agent, plan.word]}: not possible any more"
+        for plan in gone
+        if (plan.agent, plan.word) in known
+    ]
 
 
 def _again(session: Session, before: Session) -> List[str]:
@@ -257,16 +267,14 @@ def _again(session: Session, before: Session) -> List[str]:
 def _undo(session: Session) -> Reply:
     if not session.past:
         return Reply(session, ("This is where it began.",))
-    fresh = replace(session, table=session.past[-1], past=session.past[:-1],
-                    future=(*session.future, session.table))
+    fresh = replace(session, table=session.past[-1], past=session.past[:-1], future=(*session.future, session.table))
     return Reply(fresh, shown(fresh))
 
 
 def _redo(session: Session) -> Reply:
     if not session.future:
         return Reply(session, ("There is nothing to do again.",))
-    fresh = replace(session, table=session.future[-1], past=(*session.past, session.table),
-                    future=session.future[:-1])
+    fresh = replace(session, table=session.future[-1], past=(*session.past, session.table), future=session.future[:-1])
     return Reply(fresh, shown(fresh))
 
 
@@ -286,13 +294,13 @@ def _why(session: Session) -> Sequence[str]:
         first = holding.command.moves[0]
         said = session.words.order(first.automaton, first.edge)
         says = said if first.automaton not in board.agents else f"{first.automaton}: {said}"
-    when = f": {session.words.told.when(holding.zone)}" if holding.zone else " nothing else happens"
+    when = f": {session.words.network.when(holding.zone)}" if holding.zone else " nothing else happens"
     lines.append(f"It says {says}, as long as{when}.")
     for command in holding.block.commands:
         if command is not holding.command:
             first = command.moves[0]
             said = session.words.order(first.automaton, first.edge)
-            when = " or ".join(session.words.told.when(zone) for zone in command.zones)
+            when = " or ".join(session.words.network.when(zone) for zone in command.zones)
             lines.append(f"At other moments here: {first.automaton}: {said}, as long as: {when}.")
     return lines
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Dict, Iterator, List, Mapping, Tuple
 
+from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.words import time_text
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.play.table import LOST, WON, Board, Deed, Table, overdue
-from pursue_gen.report import words as report_words
 from pursue_gen.synthesis.game import JointMove
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge, Network
@@ -19,16 +19,16 @@ from pursue_gen.tga.positions import directions
 
 @dataclass(frozen=True)
 class Words:
-    """The words of one scenario: those of reports, and what somebody can be told to do ("set off from a to b") by
+    """The words of one scenario: those of reports (`network`), and commands ("set off from a to b") by
     (automaton, channel or "", location left by a step of its own)."""
 
-    told: report_words.Words
+    network: network_words.Words
     orders: Mapping[Tuple[str, str, str], str]
 
     def order(self, owner: str, edge: Edge) -> str:
-        """What that automaton is told to do by this edge."""
+        """The command for this edge of that automaton."""
         key = (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
-        return self.orders.get(key, self.told.move(owner, edge))
+        return self.orders.get(key, self.network.move(owner, edge))
 
 
 def words_of(scenario: Scenario, network: Network) -> Words:
@@ -42,7 +42,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         for a, b in ways:
             orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {a} to {b}"
             orders[agent.name, "", names.going(a, b)] = f"arrive at {b}"
-    return Words(report_words.words_of(scenario, network), orders)
+    return Words(network_words.words_of(scenario, network), orders)
 
 
 # What there is --------------------------------------------------------------------------------------------------------
@@ -54,7 +54,7 @@ def situation(board: Board, words: Words, table: Table) -> Iterator[str]:
     widest = max(map(len, board.agents), default=0)
     for agent in board.agents:
         place = board.game.automata[where[agent]].locations[table.here.state.locations[where[agent]]]
-        yield f"  {agent:<{widest}}  {words.told.place(agent, place)}{_lasting(board, table, where[agent])}"
+        yield f"  {agent:<{widest}}  {words.network.place(agent, place)}{_lasting(board, table, where[agent])}"
     values = dict(zip(board.game.variables, table.here.state.values))
     for state in board.scenario.states:
         value = values.get(names.state_value(state.name), int(state.initially))
@@ -94,14 +94,14 @@ def _objective(board: Board, table: Table, where: Mapping[str, int]) -> Iterator
 
 def deed_text(board: Board, words: Words, deed: Deed) -> str:
     """A step that was made."""
-    said = words.told.move(deed.agent, board.game.origins[deed.edges[0]])
+    said = words.network.move(deed.agent, board.game.origins[deed.edges[0]])
     return said if deed.agent not in board.agents else f"{deed.agent} {said}"
 
 
 def move_text(board: Board, words: Words, move: JointMove) -> str:
     """A step that will be made: who, and what."""
     owner = board.owner(move)
-    said = words.told.move(owner, board.game.origins[move.edges[0]])
+    said = words.network.move(owner, board.game.origins[move.edges[0]])
     return said if owner not in board.agents else f"{owner} {said}"
 
 
@@ -147,7 +147,7 @@ def _lost(board: Board, words: Words, table: Table) -> str:
 def _place(board: Board, words: Words, table: Table, name: str) -> str:
     for automaton, location in zip(board.game.automata, table.here.state.locations):
         if automaton.name == name:
-            return words.told.place(name, automaton.locations[location])
+            return words.network.place(name, automaton.locations[location])
     return name
 
 
@@ -169,5 +169,3 @@ def overview(board: Board, words: Words, table: Table) -> Iterator[str]:
     for place, people in at.items():
         if place.startswith("on the way"):
             yield f"  {place}: {', '.join(people)}"
-
-

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional, Union
 
-from pursue_gen.cli.console import usage
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import read_text
 from pursue_gen.language import load
 from pursue_gen.replay.game import Source, from_data, from_workspace
@@ -24,11 +24,13 @@ def source_of(
     """
     if workspace is not None:
         if scenario is not None or asked != Asked(limits=asked.limits):
-            raise usage("a workspace says which game it plays", "leave out SCENARIO, --ends, --reaction and --slack")
+            raise usage_error(
+                "a workspace says which game it plays", "leave out SCENARIO, --ends, --reaction and --slack"
+            )
         return from_workspace(workspace)
     if scenario is not None:
         rules = asked.rules(translate(load(str(scenario))))
         return Source(scenario.stem, read_text(scenario, "a scenario"), str(scenario), rules)
     if not isinstance(found, Journal) and found.game is not None:
         return from_data(found.game, str(file))
-    raise usage(f"{file} does not hold its scenario", f"pursue-gen replay {file} SCENARIO.pur")
+    raise usage_error(f"{file} does not hold its scenario", f"pursue-gen replay {file} SCENARIO.pur")

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import Callable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.explanation.explain import DEFAULT_SECONDS, explain
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.margin import told
 from pursue_gen.report import tables
 from pursue_gen.report.commands import Game
-from pursue_gen.report.floor import Floor
 from pursue_gen.report.recording import simulated
 from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Tuple
 
+from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
-from pursue_gen.report.words import Words, words_of, zone_texts
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.game import Game, State, compile_game, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import DiscreteState, Zone

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Dict, Optional, Sequence, Tuple
 
 from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import poses
 from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.report import animation, automata, graphviz, ros_graph, strategy, tables, timeline, verdict
 from pursue_gen.report.commands import CommandsTable
-from pursue_gen.report.floor import Floor
 from pursue_gen.report.html import Section, figure, page
 from pursue_gen.report.recording import Recording
 from pursue_gen.report.strategy_data import Book, book_of

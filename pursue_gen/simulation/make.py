@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Optional, Tuple
 
-from pursue_gen.cli.console import tell, usage
+from pursue_gen.cli.console import tell
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
@@ -21,7 +22,7 @@ _LONGEST = 1e6
 def check_until(until: Optional[float]) -> None:
     """Raises PursueError (exit status 2) for what is no end of a mission, in time units."""
     if until is not None and not 0 < until < _LONGEST:
-        raise usage(f"--until is {until:g}", "a number of time units greater than 0, such as 200")
+        raise usage_error(f"--until is {until:g}", "a number of time units greater than 0, such as 200")
 
 
 def make_case(

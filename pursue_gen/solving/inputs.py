@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Sequence, Tuple
 
 from pursue_gen import language
-from pursue_gen.cli.console import show, usage
-from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order
+from pursue_gen.cli.console import show
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
 from pursue_gen.files import read_text
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
@@ -33,7 +33,7 @@ def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
 def scenario_in(file: Path) -> Scenario:
     """The scenario in a file; its warnings are told. Raises PursueError."""
     if file.suffix == ".xml":
-        raise usage(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
+        raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
     scenario = language.load(file)
     show(findings_in(file))
     return scenario
@@ -49,7 +49,9 @@ def game_in(files: Sequence[Path]) -> Tuple[Network, Objective]:
     if len(files) == 1 and files[0].suffix != ".xml":
         return game_of(scenario_in(files[0]))
     if len(files) != 2:
-        raise usage("expected one scenario, or a network and its query", "pursue-gen solve SCENARIO | TGA.xml TCTL.q")
+        raise usage_error(
+            "expected one scenario, or a network and its query", "pursue-gen solve SCENARIO | TGA.xml TCTL.q"
+        )
     model, query = files
     network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

@@ -5,8 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Optional, Sequence, Tuple
 
-from pursue_gen.cli.console import count, usage
-from pursue_gen.diagnostics import Diagnostic, as_json
+from pursue_gen.diagnostics import Diagnostic, as_json, counted, usage_error
 from pursue_gen.proof.margin import Margin, decides_ends, told
 from pursue_gen.proof.margin import as_json as margin_json
 from pursue_gen.proof.margin import in_words as margin_in_words
@@ -23,7 +22,7 @@ def asked_rules(network: Network, ends: Optional[str], reaction: Optional[str], 
     delay = DEFAULT.reaction if reaction is None else _fraction(reaction)
     rules = Rules(ends or DEFAULT.ends, delay, _slack(network, slack))
     if rules.slack and rules.ends == CONTROLLABLE:
-        raise usage("slack has no meaning where the plan decides the ends", "use it with --ends reported")
+        raise usage_error("slack has no meaning where the plan decides the ends", "use it with --ends reported")
     return rules
 
 
@@ -46,9 +45,9 @@ def _fraction(text: str) -> Fraction:
     try:
         value = Fraction(text)
     except (ValueError, ZeroDivisionError):
-        raise usage(f"the reaction is '{text}'", hint) from None
+        raise usage_error(f"the reaction is '{text}'", hint) from None
     if value < 0 or value > 1000 or value.denominator > 1000:
-        raise usage(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
+        raise usage_error(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
     return value
 
 
@@ -58,7 +57,7 @@ def _slack(network: Network, options: Sequence[str]) -> Dict[str, int]:
     for option in options:
         agent, named, number = option.rpartition("=")
         if not (number.isascii() and number.isdigit()) or (named and not agent):
-            raise usage(f"the slack is '{option}'", "a number of time units such as 2, or for one agent bot1=2")
+            raise usage_error(f"the slack is '{option}'", "a number of time units such as 2, or for one agent bot1=2")
         controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
         slack.update((name, int(number)) for name in ([agent] if named else controlled))
     return slack
@@ -68,7 +67,7 @@ def verdict_text(rules: Rules, won: Solution) -> str:
     """What is said about a game that is won: what it took, and how long a play takes, where that is known."""
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    text = f"won: {in_words(rules)}{took}; {count(_commands(won), 'command')}, proven"
+    text = f"won: {in_words(rules)}{took}; {counted(_commands(won), 'command')}, proven"
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
 
 

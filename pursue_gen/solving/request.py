@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional, Tuple
 
-from pursue_gen.cli.console import tell, usage
+from pursue_gen.cli.console import tell
 from pursue_gen.cli.loss import why
 from pursue_gen.cli.progress import progress_line
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.solving.given_plan import take_plan
 from pursue_gen.solving.options import asked_rules, games_to_try, verdict_text
 from pursue_gen.solving.solution import CONTROLLABLE, Rules, Solution
@@ -60,7 +60,7 @@ def solution_of(network: Network, objective: Objective, asked: Asked, quiet: boo
     """
     if asked.plan is not None:
         if asked.solver is not None or asked.verifytga is not None:
-            raise usage("there is a plan, and a solver to make one", "use --plan or --solver, not both")
+            raise usage_error("there is a plan, and a solver to make one", "use --plan or --solver, not both")
         return take_plan(asked.plan, network, objective, asked.games(network), asked.limits)
     rules = asked.rules(network)
     with progress_line(quiet) as progress:
@@ -68,9 +68,7 @@ def solution_of(network: Network, objective: Objective, asked: Asked, quiet: boo
         return solved(network, objective, rules, *how)
 
 
-def told_solution(
-    network: Network, objective: Objective, asked: Asked, explained: Optional[Path] = None
-) -> Solution:
+def told_solution(network: Network, objective: Objective, asked: Asked, explained: Optional[Path] = None) -> Solution:
     """As `solution_of`, and a solver's verdict is told.
 
     `explained`: the scenario's file; where it cannot be won, what would change that is looked for and told as well.

@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Optional, Tuple
 
-from pursue_gen.cli.console import tell, usage
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.cli.console import tell
+from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.files import write_texts
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, game_margin, strategy_margin
@@ -36,14 +36,16 @@ def solved(
     """
     if solver is None:
         if verifytga is not None:
-            raise usage("--verifytga names a program that is not used", "add --solver verifytga")
+            raise usage_error("--verifytga names a program that is not used", "add --solver verifytga")
         if optimize is not None:
             return fastest_solution(network, objective, rules, limits, engine, progress)
         return _timed(solution(network, objective, rules, limits, engine, progress), limits)
     if optimize is not None:
-        raise usage("UPPAAL-TIGA's solver does not look for the least time", "leave out --optimize or --solver")
+        raise usage_error("UPPAAL-TIGA's solver does not look for the least time", "leave out --optimize or --solver")
     if engine is not None:
-        raise usage(f"{engine} is an engine of the built-in solver", "use --engine or --solver verifytga, not both")
+        raise usage_error(
+            f"{engine} is an engine of the built-in solver", "use --engine or --solver verifytga, not both"
+        )
     game = played(network, rules)
     verdict = run_verifytga(game, objective, verifytga, limits, rules.reaction, progress)
     assert verdict.strategy is not None  # it raises where there is none

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
-from pursue_gen.files import read_text
+from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.messages import shown
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.language.similar import closest
-from pursue_gen.yaml_file import composed, span_of
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FORM = "write NAME: [x, y, z, qx, qy, qz, qw]: metres on the map, and a unit quaternion; 0, 0, 0, 1 looks along x"
@@ -40,7 +39,7 @@ def read_poses(file: Path, points: Tuple[str, ...]) -> Dict[str, Pose]:
     """The poses in a poses.yaml; `points` are the names that it may have. Raises as `with_poses`."""
     text = read_text(file, "a file of poses, such as config/poses.yaml of a workspace")
     reader = _Reader(str(file), points)
-    poses = reader.poses(composed(text, str(file), _MISSING, "TRN011", _FORM))
+    poses = reader.poses(compose_yaml(text, str(file), _MISSING, "TRN011", _FORM))
     if reader.findings:
         raise PursueError(reader.findings, exit_status=2)
     return poses

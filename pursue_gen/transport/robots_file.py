@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error
-from pursue_gen.files import read_text
+from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.similar import closest
 from pursue_gen.transport.client import PORT, Robot, plain
-from pursue_gen.yaml_file import composed, span_of
 
 FORMAT = 1
 TIMEOUT = 5.0
@@ -40,7 +39,7 @@ def read_robots(file: Path) -> Tuple[Robot, ...]:
     if len(text) > _LARGEST:
         raise PursueError([error("TRN021", f"{file} has more than {_LARGEST} letters", hint=hint)], 2)
     reader = _Reader(file)
-    robots = reader.robots(composed(text, str(file), _MISSING, "TRN021", hint))
+    robots = reader.robots(compose_yaml(text, str(file), _MISSING, "TRN021", hint))
     if reader.findings:
         raise PursueError(reader.findings, 2)
     return robots

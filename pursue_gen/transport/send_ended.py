@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import List, Optional, Sequence, Tuple
 
-from pursue_gen.cli.console import count, quoted
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, counted, error
+from pursue_gen.files import shell_quoted
 from pursue_gen.transport.client import Status
 from pursue_gen.transport.send_checks import DIFFERENT, UNCHANGED
 from pursue_gen.transport.sender import Row, Sent
@@ -53,7 +53,7 @@ def success(sent: Sent, rows: Sequence[Row], waited: Optional[float], to: Path) 
     if not sent.done and sent.unchanged:
         raise PursueError([error("TRN034", f"nothing has changed. {sent.trouble}", hint=_ONCE_MORE)], UNCHANGED)
     if not sent.done:
-        hint = f"look again: pursue-gen send --status --to {quoted(to)}; then send the mission once more"
+        hint = f"look again: pursue-gen send --status --to {shell_quoted(to)}; then send the mission once more"
         raise PursueError([error("TRN035", f"the robots differ. {sent.trouble}", hint=hint)], DIFFERENT)
     name = mission_id(sent.mission)
     late = [row.robot.name for row in rows if row.after is None or row.after.current != sent.mission]
@@ -61,5 +61,5 @@ def success(sent: Sent, rows: Sequence[Row], waited: Optional[float], to: Path) 
         message = f"after {waited:g} s a mission is still under way: {', '.join(late)}"
         hint = f"{name} takes effect when it has ended, or is stopped"
         raise PursueError([error("TRN036", message, hint=hint)], exit_status=5)
-    who = f"{count(len(rows), 'machine')} of {to} {'has' if len(rows) == 1 else 'have'}"
+    who = f"{counted(len(rows), 'machine')} of {to} {'has' if len(rows) == 1 else 'have'}"
     return f"{who} the mission {name}{'; it takes effect when the one under way has ended' if late else ''}."

@@ -18,9 +18,8 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error, in_order, warning
-from pursue_gen.files import read_text
+from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.similar import closest
-from pursue_gen.yaml_file import composed, span_of
 
 HERE = "localhost"
 BESIDE = ("UI", "simulator", "sim_clock", "recorder")
@@ -87,7 +86,7 @@ def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Dia
 def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
     """The same for a text; `file` is its name in messages."""
     reader = _Reader(file, nodes)
-    found = reader.read(composed(text, file, _MISSING, "TRN040", _EXAMPLE))
+    found = reader.read(compose_yaml(text, file, _MISSING, "TRN040", _EXAMPLE))
     if reader.problems:
         raise PursueError(in_order(reader.problems), 2)
     homeless = [node for node in nodes if node not in reader.placed]

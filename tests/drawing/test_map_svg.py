@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.map_svg import draw
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Pose
-from pursue_gen.report.floor import Floor
 
 TEXT = """
 poi "hall" poi "shop" poi "yard"

@@ -8,10 +8,10 @@ from typing import Set
 
 import pytest
 
+from pursue_gen.explanation.network_words import zone_texts
 from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.report.strategy_data import Book, as_json, book_of, size
-from pursue_gen.report.words import zone_texts
 from pursue_gen.solving.solution import Rules, Solution, solve_scenario
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language import parse
-from pursue_gen.report.words import objective_words, words_of
+from pursue_gen.language.wording import objective_words
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import translate
 

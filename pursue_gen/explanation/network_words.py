@@ -1,11 +1,12 @@
-"""The network in the words of its scenario: where somebody is, what somebody does, how long ago something was."""
+"""The network in the words of its scenario: where an agent is, what it does, how long ago an event was."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, Optional, Tuple
 
-from pursue_gen.language.scenario import Agent, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Respond, Scenario
+from pursue_gen.language.wording import units
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
@@ -73,8 +74,8 @@ class Words:
                 return f"{left} and {right} were at the same moment"
             early, late = (left, right) if c.bound > 0 else (right, left)
             return f"{early} was exactly {units(number_text(abs(c.bound)))} before {late}"
-        told = self._bounded(c, left, right)
-        return told if back is None else f"{told}, and {self._bounded(back, right, left)}"
+        phrase = self._bounded(c, left, right)
+        return phrase if back is None else f"{phrase}, and {self._bounded(back, right, left)}"
 
     @staticmethod
     def _bounded(c: Constraint, left: str, right: str) -> str:
@@ -116,44 +117,9 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     return Words(clocks, turns, places, moves, parts)
 
 
-def units(amount: str) -> str:
-    """`1 unit`, `2 units`."""
-    return f"{amount} unit{'' if amount == '1' else 's'}"
-
-
 def zone_texts(zone: Zone) -> str:
     """The zone exactly, as plans and strategy files have it."""
     return " && ".join(constraint_texts(zone, space=" ")) or "always"
-
-
-def objective_words(scenario: Scenario) -> List[str]:
-    """What is wanted, a sentence for each objective."""
-    safety, reach, result = scenario.safety, scenario.reach, []
-    if isinstance(safety, Respond):
-        deadline = units(str(safety.deadline))
-        result.append(f"Whenever {safety.trigger.name} happens, {safety.response.name} happens within {deadline}.")
-    elif isinstance(safety, Avoid):
-        result.append(f"{safety.event.name} never happens.")
-    elif isinstance(safety, NeverWith):
-        result.append(f"{safety.first.name} and {safety.second.name} are never at one place or on one connection.")
-    if reach:
-        after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
-        result.append(f"{reach.event.name} happens{after}.")
-    return result
-
-
-def speed_words(agent: Agent) -> str:
-    """How fast an agent is, in words."""
-    if agent.mobile is None:
-        return "stays there"
-    return f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"
-
-
-def kind_words(agent: Agent) -> str:
-    """What an agent is, in words."""
-    if not agent.controllable:
-        return "not controlled"
-    return "a person who is instructed" if agent.human else "a robot"
 
 
 def _turn(automaton: Automaton, location: str) -> str:

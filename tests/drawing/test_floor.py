@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.report.floor import Floor, read_floor
+from pursue_gen.drawing.floor import Floor, read_floor
 
 pytest.importorskip("yaml", reason="PyYAML reads map files")
 

@@ -1,0 +1,42 @@
+"""Scenarios in English sentences: objectives, speeds, kinds of agents."""
+
+from __future__ import annotations
+
+from typing import List
+
+from pursue_gen.language.scenario import Agent, Avoid, NeverWith, Respond, Scenario
+
+
+def units(amount: str) -> str:
+    """`1 unit`, `2 units`."""
+    return f"{amount} unit{'' if amount == '1' else 's'}"
+
+
+def objective_words(scenario: Scenario) -> List[str]:
+    """What is wanted, a sentence for each objective."""
+    safety, reach, result = scenario.safety, scenario.reach, []
+    if isinstance(safety, Respond):
+        deadline = units(str(safety.deadline))
+        result.append(f"Whenever {safety.trigger.name} happens, {safety.response.name} happens within {deadline}.")
+    elif isinstance(safety, Avoid):
+        result.append(f"{safety.event.name} never happens.")
+    elif isinstance(safety, NeverWith):
+        result.append(f"{safety.first.name} and {safety.second.name} are never at one place or on one connection.")
+    if reach:
+        after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
+        result.append(f"{reach.event.name} happens{after}.")
+    return result
+
+
+def speed_words(agent: Agent) -> str:
+    """How fast an agent is, in words."""
+    if agent.mobile is None:
+        return "stays there"
+    return f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"
+
+
+def kind_words(agent: Agent) -> str:
+    """What an agent is, in words."""
+    if not agent.controllable:
+        return "not controlled"
+    return "a person who is instructed" if agent.human else "a robot"
