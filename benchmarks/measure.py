@@ -90,7 +90,9 @@ def _measure(case: Case, bounds: Bounds) -> None:
     """Decides, proves, looks for the margin, and prints after each what it cost, as far as it gets."""
     from pursue_gen.diagnostics import PursueError
     from pursue_gen.proof.margin import strategy_margin
-    from pursue_gen.solving.solution import Rules, played, prove
+    from pursue_gen.solving.options import SolveOptions
+    from pursue_gen.solving.proving import prove
+    from pursue_gen.solving.rules import Rules, played
     from pursue_gen.synthesis.limits import Limits
     from pursue_gen.synthesis.solve import solve
 
@@ -113,7 +115,7 @@ def _measure(case: Case, bounds: Bounds) -> None:
             _tell(row)
             return
         start = time.perf_counter()
-        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, limits=limits)
+        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, SolveOptions(limits))
         row.update(proof=time.perf_counter() - start, blocks=len(strategy.blocks), memory=_peak())
         row["commands"] = sum(len(block.commands) for block in strategy.blocks)
         _tell(row)

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Dict, Iterator, List, Mapping, Optional
 
 from pursue_gen.language import parse
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 
 ROOT = Path(__file__).resolve().parent.parent

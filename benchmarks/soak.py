@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures thi
 
 from benchmarks.ros_world import World, generated, resident_kib, world  # noqa: E402
 from benchmarks.synthesis import machine  # noqa: E402
-from pursue_gen.solving.solution import Rules  # noqa: E402
+from pursue_gen.solving.rules import Rules  # noqa: E402
 
 SCENARIO = """// A cleaning robot that is called again and again, and has to rinse its mop before it wipes again.
 poi "office"

@@ -36,7 +36,9 @@ from pursue_gen.report.recording import ending_words, simulated  # noqa: E402
 from pursue_gen.simulation.mission import Settings  # noqa: E402
 from pursue_gen.simulation.runs import Case, case_of  # noqa: E402
 from pursue_gen.solving.least_time import Guarantee  # noqa: E402
-from pursue_gen.solving.solution import Rules, Solution, guaranteed, played, prove  # noqa: E402
+from pursue_gen.solving.proving import prove  # noqa: E402
+from pursue_gen.solving.rules import Rules, played  # noqa: E402
+from pursue_gen.solving.solution import Solution, guaranteed  # noqa: E402
 from pursue_gen.synthesis.solve import Verdict, solve  # noqa: E402
 from pursue_gen.tga import scenario_objective, translate  # noqa: E402
 from pursue_gen.tga.network import Kind  # noqa: E402

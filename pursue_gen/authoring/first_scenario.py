@@ -12,7 +12,9 @@ from pursue_gen.language.formatter import format_text
 from pursue_gen.language.names import check_names
 from pursue_gen.language.parser import parse, read, without_errors
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import Limits, Listener
 
 _PATIENCE = 10.0
@@ -157,4 +159,4 @@ def checked(text: str, file: str) -> Scenario:
 
 def tried(scenario: Scenario, progress: Optional[Listener] = None) -> None:
     """Solves it in the default game. Raises PursueError where it is lost, or not decided in `_PATIENCE` seconds."""
-    solve_scenario(scenario, Rules(), Limits(_PATIENCE), progress=progress)
+    solve_scenario(scenario, Rules(), SolveOptions(Limits(_PATIENCE), progress=progress))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import List, Optional
+from typing import TYPE_CHECKING, List, Optional
 
 import typer
 
@@ -15,28 +16,11 @@ from pursue_gen.cli.console import guarded, show, suggest, tell
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain as explain_code
 from pursue_gen.cli.fmt import fmt
+from pursue_gen.cli.inputs import game_from, scenario_from
 from pursue_gen.cli.keys import keys
 from pursue_gen.cli.lsp import lsp
 from pursue_gen.cli.new import new
-from pursue_gen.cli.options import (
-    ENDS,
-    EXPLAIN,
-    GAME,
-    LIMIT,
-    MARGIN,
-    MEMORY,
-    OPTIMIZE,
-    REACTION,
-    SCENARIO,
-    SLACK,
-    SOLVER,
-    VERIFYTGA,
-    Ends,
-    Engine,
-    Optimize,
-    Solver,
-    value,
-)
+from pursue_gen.cli.options import EXPLAIN, GAME, MARGIN, REQUEST, SCENARIO, Ends, with_request
 from pursue_gen.cli.play import play
 from pursue_gen.cli.replan import replan
 from pursue_gen.cli.replay import replay
@@ -46,6 +30,14 @@ from pursue_gen.cli.sim import sim
 from pursue_gen.cli.ws import ws
 from pursue_gen.diagnostics import PursueError, Severity, as_json, counted, usage_error
 from pursue_gen.files import shell_quoted
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+
+SOLVE = ("ends", "reaction", "slack", "engine", "limit", "memory", "solver", "verifytga", "optimize")
+IDEAL_ENDS = typer.Option(
+    Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
+)
 
 app = typer.Typer(
     name="pursue-gen",
@@ -114,23 +106,20 @@ def check(
 
 @app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")
 @guarded
+@with_request("ends", "slack", ends=IDEAL_ENDS)
 def tga(
     scenario: Path = SCENARIO,
     folder: Path = typer.Option(Path("."), "-o", "--output", metavar="DIR", help="Where to write; here by default."),
-    ends: Ends = typer.Option(
-        Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
-    ),
-    slack: List[str] = SLACK,
+    request: SolveRequest = REQUEST,
 ) -> None:
     """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
     from pursue_gen.files import write_texts
-    from pursue_gen.solving.inputs import game_of, scenario_in
-    from pursue_gen.solving.options import asked_rules
-    from pursue_gen.solving.solution import played
+    from pursue_gen.solving.inputs import game_of
+    from pursue_gen.solving.rules import played
     from pursue_gen.tga.uppaal import write_network, write_query
 
-    network, objective = game_of(scenario_in(scenario))
-    network = played(network, asked_rules(network, ends.value, "0", slack))
+    network, objective = game_of(scenario_from(scenario))
+    network = played(network, replace(request, reaction="0").rules(network))
     model, query = folder / "TGA.xml", folder / "TCTL.q"
     write_texts({model: write_network(network, objective), query: write_query(objective)})
     print(model, query, sep="\n")
@@ -142,20 +131,13 @@ def tga(
     "as UPPAAL-TIGA plays: pursue-gen solve TGA.xml TCTL.q --ends controllable --reaction 0"
 )
 @guarded
+@with_request(*SOLVE)
 def solve(
     files: List[Path] = typer.Argument(..., metavar=GAME, help="A scenario, or UPPAAL's files for a timed game."),
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
     output: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
     ),
-    engine: Optional[Engine] = typer.Option(None, help="The solver; native where it was built, by default."),
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
-    solver: Optional[Solver] = SOLVER,
-    verifytga: Optional[Path] = VERIFYTGA,
-    optimize: Optional[Optimize] = OPTIMIZE,
+    request: SolveRequest = REQUEST,
     explain: bool = EXPLAIN,
     margin: bool = MARGIN,
     as_json_: bool = typer.Option(
@@ -167,26 +149,27 @@ def solve(
     The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
     where the objective cannot be met.
     """
-    from pursue_gen.cli.loss import why
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import explain_loss
     from pursue_gen.files import write_texts
-    from pursue_gen.solving.inputs import game_in
-    from pursue_gen.solving.options import asked_limits, asked_rules, margins_told, verdict_json, verdict_text
-    from pursue_gen.solving.solvers import keep_counter, margins, solved
+    from pursue_gen.solving.request import solution_of
+    from pursue_gen.solving.solvers import keep_counter
+    from pursue_gen.solving.verdict import margin_text, margins, verdict_json, verdict_text
     from pursue_gen.synthesis.plan import write_plan
 
-    network, objective = game_in(files)
-    rules, limits = asked_rules(network, value(ends), reaction, slack), asked_limits(limit, memory)
+    network, objective = game_from(files)
+    rules, limits = request.rules(network), request.options.limits
     try:
         with progress_line(as_json_) as progress:
-            asked = (value(solver), verifytga, limits, value(engine), progress, value(optimize))
-            won = solved(network, objective, rules, *asked)
+            won = solution_of(network, objective, request, progress)
     except PursueError as problem:
-        keep_counter(problem, network, objective, output)
-        explained = why(problem, files, rules, explain, limits, as_json_)
+        kept = keep_counter(problem, network, objective, output)
+        if kept is not None:
+            tell(f"The counter-strategy is in {kept}")
+        explained = explain_loss(problem, files, rules, explain, limits, as_json_)
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
-        if explained:  # and so the findings are told
+        if explained:  # its findings are printed
             raise typer.Exit(problem.exit_status) from None
         raise
     plan = write_plan(won.strategy, won.network, objective)
@@ -197,38 +180,36 @@ def solve(
         print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
     elif output is None:
         print(plan, end="")
-    tell(verdict_text(rules, won))
-    tell(margins_told(won, *found))
+    tell(verdict_text(won))
+    tell(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
 
 @app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")
 @guarded
+@with_request("ends", "reaction", "slack", "limit", "memory")
 def verify(
     files: List[Path] = typer.Argument(..., metavar=f"({GAME}) PLAN", help="A game as for solve, and a plan for it."),
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
+    request: SolveRequest = REQUEST,
 ) -> None:
     """Prove that a plan wins, or show a play in which it does not.
 
     Without --ends, --reaction and --slack the default game is tried, then UPPAAL-TIGA's (ends controllable, reaction
     0). The exit status is 4 where the plan wins in neither.
     """
+    from pursue_gen.cli.progress import progress_line
     from pursue_gen.solving.given_plan import exit_status, try_plan
-    from pursue_gen.solving.inputs import game_in
-    from pursue_gen.solving.options import asked_limits, games_to_try, in_words
+    from pursue_gen.solving.rules import rules_text
 
     if len(files) < 2:
         raise usage_error("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
-    network, objective = game_in(files[:-1])
-    games = games_to_try(network, value(ends), reaction, slack)
-    tried = try_plan(files[-1], network, objective, games, asked_limits(limit, memory))
+    network, objective = game_from(files[:-1])
+    with progress_line() as progress:
+        options = replace(request.options, progress=progress)
+        tried = try_plan(files[-1], network, objective, request.games(network), options)
     for trial in tried:
-        print(f"{in_words(trial.rules)}: {trial.outcome}")
+        print(f"{rules_text(trial.rules)}: {trial.outcome}")
         show(trial.findings)
     if exit_status(tried):
         raise typer.Exit(exit_status(tried))

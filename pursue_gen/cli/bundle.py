@@ -3,39 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import List, Optional
+from typing import TYPE_CHECKING, Dict, Optional, Tuple
 
 import typer
 
-from pursue_gen.cli.console import guarded, suggest, tell
-from pursue_gen.cli.options import (
-    COMPUTED_POSES,
-    CONTROLLERS,
-    ENDS,
-    EXPLAIN,
-    KEY,
-    KEYS,
-    LIMIT,
-    MEMORY,
-    OPTIMIZE,
-    PLAN,
-    POSES,
-    REACH_OBJ,
-    REACTION,
-    SLACK,
-    SOLVER,
-    VERIFYTGA,
-    Controllers,
-    Ends,
-    Optimize,
-    Solver,
-    value,
-)
+from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.options import COMPUTED_POSES, EXPLAIN, KEY, KEYS, MISSION, POSES, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
 
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+    from pursue_runtime.bundle import Manifest
+
 
 @guarded
+@with_request(*MISSION)
 def bundle(
     scenario: Optional[Path] = typer.Argument(None, metavar="SCENARIO", help="A scenario in PuRSUE-ML."),
     output: Optional[Path] = typer.Option(
@@ -46,19 +29,9 @@ def bundle(
     check: Optional[Path] = typer.Option(
         None, "--check", metavar="FILE.pursue", help="Show what is in a bundle, and check all of it, instead."
     ),
-    controllers: Controllers = CONTROLLERS,
-    reach_obj: str = REACH_OBJ,
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    plan: Optional[Path] = PLAN,
+    request: SolveRequest = REQUEST,
     poses: Optional[Path] = POSES,
     computed_poses: bool = COMPUTED_POSES,
-    solver: Optional[Solver] = SOLVER,
-    verifytga: Optional[Path] = VERIFYTGA,
-    optimize: Optional[Optimize] = OPTIMIZE,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
     explain: bool = EXPLAIN,
 ) -> None:
     """Write a mission as one signed file, which robots take: data only, no code.
@@ -67,16 +40,14 @@ def bundle(
     gives the same file.
     """
     from pursue_gen.files import write_bytes
-    from pursue_gen.language import load
-    from pursue_gen.solving.options import asked_limits
-    from pursue_gen.transport.bundles import SUFFIX, AskedMission, make_mission, sign
+    from pursue_gen.transport.bundles import SUFFIX, sign
     from pursue_gen.transport.keys import keys_folder, load_private
 
     folder = keys or keys_folder()
     if check is not None:
         if scenario is not None or output is not None:
             raise usage_error("--check looks at a bundle that is there", "leave out SCENARIO and -o")
-        _tell_bundle(check, folder)
+        _print_bundle(check, folder)
         return
     if scenario is None:
         raise usage_error(
@@ -86,18 +57,30 @@ def bundle(
     if target.suffix != SUFFIX:
         raise usage_error(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
     private = load_private(key, folder)  # before the work: it may be missing
-    how = (value(solver), verifytga, value(optimize), asked_limits(limit, memory), poses, computed_poses)
-    asked = AskedMission(controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan, *how)
-    manifest, files = make_mission(load(scenario), asked, scenario if explain else None)
+    manifest, files = mission_of_scenario(scenario, request, poses, computed_poses, explain)
     write_bytes({target: sign(manifest, files, private)})
     print(target, manifest.digest, sep="\n")
     tell(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
     suggest(f"pursue-gen send {shell_quoted(target)} --to robots.yaml")
 
 
-def _tell_bundle(file: Path, folder: Path) -> None:
-    """What is in a bundle, as a table on stdout, once all of it is checked."""
-    from pursue_gen.cli.console import show
+def mission_of_scenario(
+    file: Path, request: SolveRequest, poses: Optional[Path], computed_poses: bool, explain: bool
+) -> Tuple[Manifest, Dict[str, bytes]]:
+    """The mission of a scenario's file, solved and proven; the verdict is printed. Raises PursueError.
+
+    `explain`: where the scenario is lost, what would change that is printed.
+    """
+    from pursue_gen.cli.solution import solve_and_print
+    from pursue_gen.language import load
+    from pursue_gen.transport.bundles import make_mission, placed
+
+    scenario = placed(load(file), poses, computed_poses)
+    return make_mission(scenario, solve_and_print(scenario, request, file if explain else None), request)
+
+
+def _print_bundle(file: Path, folder: Path) -> None:
+    """Prints what is in a bundle as a table, once all of it is checked."""
     from pursue_gen.transport.bundles import read_bundle
     from pursue_gen.transport.keys import public_keys
     from pursue_runtime.bundle import fingerprint, mission_id

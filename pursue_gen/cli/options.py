@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 from enum import Enum
-from typing import Optional
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, get_type_hints
 
 import typer
 
-
-def value(choice: Optional[Enum]) -> Optional[str]:
-    """The word that was chosen, if any."""
-    return None if choice is None else str(choice.value)
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
 
 
 class Ends(str, Enum):
@@ -93,6 +94,7 @@ MARGIN = typer.Option(
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
+ENGINE = typer.Option(None, help="The solver; native where it was built, by default.")
 CONTROLLERS = typer.Option(Controllers.DISTRIBUTED, help="As for ws.")
 KEY = typer.Option(
     None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
@@ -106,3 +108,72 @@ COMPUTED_POSES = typer.Option(
 KEYS = typer.Option(
     None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."
 )
+
+_REQUEST: Mapping[str, Tuple[Any, Any]] = {
+    "controllers": (Controllers, CONTROLLERS),
+    "reach_obj": (str, REACH_OBJ),
+    "ends": (Optional[Ends], ENDS),
+    "reaction": (Optional[str], REACTION),
+    "slack": (List[str], SLACK),
+    "plan": (Optional[Path], PLAN),
+    "engine": (Optional[Engine], ENGINE),
+    "solver": (Optional[Solver], SOLVER),
+    "verifytga": (Optional[Path], VERIFYTGA),
+    "optimize": (Optional[Optimize], OPTIMIZE),
+    "limit": (float, LIMIT),
+    "memory": (Optional[int], MEMORY),
+}
+"""The options that make a SolveRequest: name of the parameter → its type and its declaration."""
+
+REQUEST: Any = None
+"""Marks the parameter `request` of a command, for which `with_request` declares the options."""
+
+MISSION = tuple(name for name in _REQUEST if name != "engine")
+"""The options of the commands that generate what robots run."""
+
+
+def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Declare these options for a command, in the place of its parameter `request`, which gets a SolveRequest of them.
+
+    `own`: declarations of this command that replace the shared ones.
+    """
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @functools.wraps(command)
+        def run(**arguments: Any) -> None:
+            values = {name: arguments.pop(name) for name in names}
+            command(request=_request(values), **arguments)
+
+        run.__annotations__ = {name: kind for name, kind in command.__annotations__.items() if name != "request"}
+        types = get_type_hints(run)
+        parameters: List[inspect.Parameter] = []
+        for parameter in inspect.signature(command).parameters.values():
+            if parameter.name != "request":
+                parameters.append(parameter.replace(annotation=types[parameter.name]))
+                continue
+            for name in names:
+                kind, option = _REQUEST[name]
+                default = own.get(name, option)
+                parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=kind))
+                types[name] = kind
+        # typer reads both.
+        run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        run.__annotations__ = types
+        return run
+
+    return decorate
+
+
+def _request(values: Dict[str, Any]) -> SolveRequest:
+    """The request of parsed options; without a limit on memory it is `careful_memory`."""
+    from pursue_gen.solving.options import SolveOptions
+    from pursue_gen.solving.request import SolveRequest
+    from pursue_gen.synthesis.limits import Limits, careful_memory
+
+    texts = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
+    memory = texts.pop("memory", None)
+    limits = Limits(texts.pop("limit", 0.0), careful_memory() if memory is None else memory)
+    how = {name: texts.pop(name) for name in ("engine", "solver", "verifytga", "optimize") if name in texts}
+    if "slack" in texts:
+        texts["slack"] = tuple(texts["slack"])
+    return SolveRequest(**texts, options=SolveOptions(limits=limits, **how))

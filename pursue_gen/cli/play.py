@@ -5,13 +5,16 @@ from __future__ import annotations
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import List, Optional
+from typing import TYPE_CHECKING, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded
-from pursue_gen.cli.options import ENDS, LIMIT, MEMORY, REACTION, SCENARIO, SLACK, Ends, value
+from pursue_gen.cli.options import REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import usage_error
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
 
 _PROMPT = "> "
 
@@ -24,6 +27,7 @@ class Side(str, Enum):
 
 
 @guarded
+@with_request("ends", "reaction", "slack", "limit", "memory")
 def play(
     scenario: Path = SCENARIO,
     side: Optional[Side] = typer.Option(
@@ -33,11 +37,7 @@ def play(
         "cannot). By default what fits.",
     ),
     seed: int = typer.Option(1, metavar="S", min=0, help="For what is drawn: when movements end that you leave alone."),
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
+    request: SolveRequest = REQUEST,
 ) -> None:
     """Play a scenario step by step: the others against the strategy; or the robots, where these cannot win.
 
@@ -48,13 +48,12 @@ def play(
     from pursue_gen.play.counter import Robots
     from pursue_gen.play.games import session_of
     from pursue_gen.play.session import answer, farewell, opening
-    from pursue_gen.solving.options import asked_limits, asked_rules
     from pursue_gen.tga import translate
 
     read = load(scenario)
-    rules = asked_rules(translate(read), value(ends), reaction, slack)
+    rules = request.rules(translate(read))
     with progress_line() as progress:
-        session = session_of(read, rules, seed, asked_limits(limit, memory), progress)
+        session = session_of(read, rules, seed, request.options.limits, progress)
     is_robots = isinstance(session.game, Robots)
     if side is not None and (side is Side.ROBOTS) != is_robots:
         can, whom = ("cannot", "robots") if is_robots else ("can", "others")

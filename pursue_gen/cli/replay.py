@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional
+from typing import TYPE_CHECKING, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, tell
-from pursue_gen.cli.options import ENDS, JSON, LIMIT, MEMORY, REACTION, SLACK, Ends, value
+from pursue_gen.cli.options import JSON, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 
 if TYPE_CHECKING:
     from pursue_gen.replay import Findings, Game, Record
+    from pursue_gen.solving.request import SolveRequest
 
 
 @guarded
+@with_request("ends", "reaction", "slack", "limit", "memory")
 def replay(
     recording: Path = typer.Argument(..., metavar="FILE", help="A bag of ROS 1, or an observer's journal (.jsonl)."),
     scenario: Optional[Path] = typer.Argument(
@@ -25,17 +27,13 @@ def replay(
     workspace: Optional[Path] = typer.Option(
         None, "--workspace", metavar="DIR", help="The workspace that was run: its scenario, rules and plan are taken."
     ),
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
+    request: SolveRequest = REQUEST,
     tolerance: float = typer.Option(
         0.1, metavar="UNITS", min=0.0, help="How far events may miss the model's windows, in time units."
     ),
     timeline: Optional[Path] = typer.Option(
         None, metavar="OUT", help="Draw what happened: a timeline OUT.svg, or a page OUT.html with an animation too."
     ),
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
     quiet: bool = typer.Option(False, "--quiet", "-q", help="Only what is wrong, the summary and the verdict."),
     as_json_: bool = JSON,
 ) -> None:
@@ -50,17 +48,13 @@ def replay(
     from pursue_gen.replay.moves import Moves
     from pursue_gen.replay.source import source_of
     from pursue_gen.report.animation import check_name
-    from pursue_gen.solving.options import asked_limits
-    from pursue_gen.solving.request import Asked
 
     if timeline is not None:
         check_name(timeline)
     found = read_recording(recording)
-    limits = asked_limits(limit, memory)
-    asked = Asked(ends=value(ends), reaction=reaction, slack=tuple(slack), limits=limits)
-    source = source_of(found, recording, scenario, workspace, asked)
+    source = source_of(found, recording, scenario, workspace, request)
     with progress_line(as_json_) as progress:
-        game = game_of(source, limits, progress)
+        game = game_of(source, request.options.limits, progress)
     record = worked_out(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
     if timeline is not None:
         _draw(record, game, recording, timeline)

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, show, suggest, tell
-from pursue_gen.cli.options import JSON, LIMIT, MEMORY, OPTIMIZE, SCENARIO, Optimize, value
+from pursue_gen.cli.inputs import scenario_from
+from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import PursueError, counted, error, usage_error
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
-    from pursue_gen.report.make import Asked
+    from pursue_gen.report.make import ReportOptions
     from pursue_gen.report.whole import Report
-    from pursue_gen.synthesis.limits import Limits
+    from pursue_gen.solving.options import SolveOptions
+    from pursue_gen.solving.request import SolveRequest
 
 _NAMES = ("default", "ideal")
 _MARK = 'name="generator" content="pursue-gen'
 
 
 @guarded
+@with_request("optimize", "limit", "memory")
 def report(
     scenario: Path = SCENARIO,
     file: Optional[Path] = typer.Argument(
@@ -42,9 +46,7 @@ def report(
         metavar="dedicated|all|ROBOT",
         help="Who gets the objective's commands; default: dedicated, for the thesis's scenarios as the thesis has it.",
     ),
-    optimize: Optional[Optimize] = OPTIMIZE,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
+    request: SolveRequest = REQUEST,
     as_json_: bool = JSON,
     force: bool = typer.Option(False, "--force", help="Replace a FILE that is no report."),
 ) -> None:
@@ -54,23 +56,19 @@ def report(
     gets a page that says why.
     """
     from pursue_gen.drawing.floor import read_floor
-    from pursue_gen.report.make import Asked
-    from pursue_gen.solving.inputs import scenario_in
-    from pursue_gen.solving.options import asked_limits
+    from pursue_gen.report.make import ReportOptions
 
-    wanted = value(optimize)
     seen = html or pictures is not None
     _check_options(seen, html, file, floor, as_json_)
-    limits = asked_limits(limit, memory)
     if not seen:
-        _print_tables(scenario_in(scenario), reach_obj, limits, wanted, as_json_)
+        _print_tables(scenario_from(scenario), reach_obj, request.options, as_json_)
         return
     target = file or Path(f"{scenario.stem}_report.html")
     if html and not force:
         _check_target(target)
     under = None if floor is None else read_floor(floor)
-    asked = Asked(reach_obj, wanted, runs if html else 0, under)
-    made = _made(scenario_in(scenario), asked, limits)
+    options = ReportOptions(reach_obj, runs if html else 0, under)
+    made = _made(scenario_from(scenario), options, request.options)
     if pictures is not None:
         _write_pictures(made, pictures)
     if html:
@@ -96,18 +94,18 @@ def _check_target(target: Path) -> None:
 
 
 def _print_tables(
-    scenario: Scenario, reach_obj: Optional[str], limits: Limits, optimize: Optional[str], as_json_: bool
+    scenario: Scenario, reach_obj: Optional[str], solving: SolveOptions, as_json_: bool
 ) -> None:
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.proof.margin import as_json as margin_json
     from pursue_gen.proof.margin import told
     from pursue_gen.report import commands
     from pursue_gen.report.make import solved_both
-    from pursue_gen.solving.solvers import margins
+    from pursue_gen.solving.verdict import margins
 
     with progress_line(as_json_) as progress:
-        both = solved_both(scenario, limits, optimize, progress)
-        found = [margins(won, False, limits)[0] for won in both]
+        both = solved_both(scenario, replace(solving, progress=progress))
+        found = [margins(won, False, solving.limits)[0] for won in both]
     game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
     table = commands.commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
     if as_json_:
@@ -123,23 +121,23 @@ def _print_tables(
             print(f"{name} game: {won.guarantee.in_words()}")
 
 
-def _made(scenario: Scenario, asked: Asked, limits: Limits) -> Report:
-    """Everything that is told; what takes long is shown while it does."""
+def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> Report:
+    """The report, with lines of progress while it is made."""
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.report.make import lost_report, solved_both, won_report
 
     try:
         with progress_line() as progress:
-            both = solved_both(scenario, limits, asked.optimize, progress)
+            both = solved_both(scenario, replace(solving, progress=progress))
     except PursueError as problem:
         if problem.exit_status not in (4, 5):
             raise
         show(problem.diagnostics)
         with progress_line() as progress:
-            return lost_report(scenario, problem, limits, progress, asked.floor)
-    with counting(2 * asked.runs) as count:
-        return won_report(scenario, both, asked, limits, count)
+            return lost_report(scenario, problem, solving.limits, progress, options.floor)
+    with counting(2 * options.runs) as count:
+        return won_report(scenario, both, options, solving.limits, count)
 
 
 def _write_pictures(made: Report, folder: Path) -> None:

@@ -7,32 +7,18 @@ import shlex
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional
+from typing import TYPE_CHECKING, Any, Dict, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, suggest, tell
-from pursue_gen.cli.options import (
-    CONTROLLERS,
-    ENDS,
-    JSON,
-    LIMIT,
-    MEMORY,
-    OPTIMIZE,
-    REACH_OBJ,
-    REACTION,
-    SCENARIO,
-    SLACK,
-    Controllers,
-    Ends,
-    Optimize,
-    value,
-)
+from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, usage_error
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.simulation.runs import Case, Summary
+    from pursue_gen.solving.request import SolveRequest
 
 
 class OpponentKind(str, Enum):
@@ -48,8 +34,12 @@ OPPONENT = typer.Option(
     OpponentKind.MIXED, help="What the agents do that nobody controls; mixed: one of the others in each mission."
 )
 
+PLAN = typer.Option(None, metavar="FILE", help="Use this plan instead of solving.")
+OPTIONS = ("controllers", "reach_obj", "ends", "reaction", "slack", "plan", "optimize", "limit", "memory")
+
 
 @guarded
+@with_request(*OPTIONS, plan=PLAN)
 def sim(
     scenario: Path = SCENARIO,
     runs: int = typer.Option(1000, metavar="N", min=1, help="So many missions."),
@@ -62,18 +52,10 @@ def sim(
         None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
     ),
     jobs: int = typer.Option(1, metavar="N", min=1, help="So many processes; the outcome is the same."),
-    controllers: Controllers = CONTROLLERS,
-    reach_obj: str = REACH_OBJ,
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    plan: Optional[Path] = typer.Option(None, metavar="FILE", help="Use this plan instead of solving."),
-    optimize: Optional[Optimize] = OPTIMIZE,
+    request: SolveRequest = REQUEST,
     timeline: Optional[Path] = typer.Option(
         None, metavar="OUT", help="Draw one mission (--runs 1): a timeline OUT.svg, or OUT.html with an animation too."
     ),
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
     as_json_: bool = JSON,
 ) -> None:
     """Play many missions with the generated code in a simulated world, without ROS, and check each one.
@@ -82,12 +64,13 @@ def sim(
     stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
     """
     from pursue_gen.cli.mission_count import counting
+    from pursue_gen.cli.progress import progress_line
     from pursue_gen.language import load
     from pursue_gen.simulation.faults import FAULTS, read_faults
     from pursue_gen.simulation.make import check_until, make_case
     from pursue_gen.simulation.runs import simulate
-    from pursue_gen.solving.options import asked_limits
-    from pursue_gen.solving.request import Asked
+    from pursue_gen.solving.inputs import game_of
+    from pursue_gen.solving.request import solution_of
 
     if faults == "help":
         print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))
@@ -97,11 +80,14 @@ def sim(
     if timeline is not None:
         _check_timeline(timeline, runs, seed)
     read = load(scenario)
-    game = (controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan)
-    asked = Asked(*game, optimize=value(optimize), limits=asked_limits(limit, memory))
-    case = make_case(read, asked, opponent.value, kinds, until, as_json_)
-    with counting(runs, as_json_) as told:
-        summary = simulate(case, range(seed, seed + runs), jobs, told)
+    with progress_line(as_json_) as progress:
+        won = solution_of(*game_of(read), request, progress)
+    show(won.warnings)
+    case, knows = make_case(read, won, request, opponent.value, kinds, until)
+    if not knows:
+        tell("the game is too large to tell how long plays can be: the worst opponent does anything")
+    with counting(runs, as_json_) as count:
+        summary = simulate(case, range(seed, seed + runs), jobs, count)
     if timeline is not None:
         _draw(case, seed, timeline)
     facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}

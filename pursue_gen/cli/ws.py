@@ -3,53 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import List, Optional
+from typing import TYPE_CHECKING, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, suggest, tell
-from pursue_gen.cli.options import (
-    ENDS,
-    EXPLAIN,
-    LIMIT,
-    MEMORY,
-    OPTIMIZE,
-    PLAN,
-    REACH_OBJ,
-    REACTION,
-    SCENARIO,
-    SLACK,
-    SOLVER,
-    VERIFYTGA,
-    Controllers,
-    Ends,
-    Optimize,
-    Solver,
-    value,
-)
+from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, SCENARIO, Controllers, with_request
 from pursue_gen.files import shell_quoted
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+
+CONTROLLERS = typer.Option(
+    Controllers.DISTRIBUTED,
+    help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
+)
 
 
 @guarded
+@with_request(*MISSION, controllers=CONTROLLERS)
 def ws(
     scenario: Path = SCENARIO,
     folder: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="DIR", help="Where the workspace goes; workspace_out/<scenario> by default."
     ),
-    controllers: Controllers = typer.Option(
-        Controllers.DISTRIBUTED,
-        help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
-    ),
-    reach_obj: str = REACH_OBJ,
-    ends: Optional[Ends] = ENDS,
-    reaction: Optional[str] = REACTION,
-    slack: List[str] = SLACK,
-    plan: Optional[Path] = PLAN,
-    solver: Optional[Solver] = SOLVER,
-    verifytga: Optional[Path] = VERIFYTGA,
-    optimize: Optional[Optimize] = OPTIMIZE,
-    limit: float = LIMIT,
-    memory: Optional[int] = MEMORY,
+    request: SolveRequest = REQUEST,
     explain: bool = EXPLAIN,
     machines: Optional[Path] = typer.Option(
         None, metavar="FILE", help="machines.yaml: which machine runs which node; all run where they are launched else."
@@ -62,17 +40,18 @@ def ws(
 
     The folder is printed on stdout.
     """
-    from pursue_gen.solving.inputs import scenario_in
-    from pursue_gen.solving.options import asked_limits
-    from pursue_gen.solving.request import Asked
+    from pursue_gen.cli.inputs import scenario_from
+    from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.workspace.make import Extras, make_workspace
 
-    how = (value(solver), verifytga, value(optimize), asked_limits(limit, memory))
-    asked = Asked(controllers.value, reach_obj, value(ends), reaction, tuple(slack), plan, *how)
-    read = scenario_in(scenario)
-    extras = Extras(machines, docker, systemd)
-    place = make_workspace(read, asked, extras, folder, force, scenario if explain else None)
-    print(place)
-    tell(f"A workspace for {read.name} is in {place}; its README.md says what is in it.")
+    read = scenario_from(scenario)
+    if request.decides_ends:
+        tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
+    won = solve_and_print(read, request, scenario if explain else None)
+    made = make_workspace(read, won, request, Extras(machines, docker, systemd), folder, force)
+    tell(made.margin)
+    show(made.findings)
+    print(made.folder)
+    tell(f"A workspace for {read.name} is in {made.folder}; its README.md says what is in it.")
     launch = f"roslaunch {read.name}_bringup mission.launch"
-    suggest(f"cd {shell_quoted(place)} && catkin_make", "source devel/setup.bash", launch)
+    suggest(f"cd {shell_quoted(made.folder)} && catkin_make", "source devel/setup.bash", launch)

@@ -13,7 +13,7 @@ from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.allowance import Clock
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
-from pursue_gen.solving.solution import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate

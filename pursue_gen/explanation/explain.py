@@ -16,7 +16,7 @@ from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.play import counter_play
 from pursue_gen.explanation.words import Line, in_words, time_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.solution import Rules, played
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 

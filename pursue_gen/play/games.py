@@ -12,7 +12,9 @@ from pursue_gen.play.session import GameOf, Session
 from pursue_gen.play.table import Board, beginning, board_of
 from pursue_gen.play.words import words_of
 from pursue_gen.play.world import World
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 
 _CANNOT_BE_MET = "SYN021"
@@ -33,7 +35,7 @@ def session_of(
 def game_of(board: Board, seed: int, limits: Limits, progress: Optional[Listener] = None) -> GameOf:
     """The person plays the others where the objective can be met, else the robots."""
     try:
-        won = solve_scenario(board.scenario, board.rules, limits, progress=progress)
+        won = solve_scenario(board.scenario, board.rules, SolveOptions(limits, progress=progress))
     except PursueError as problem:
         if _CANNOT_BE_MET not in (finding.code for finding in problem.diagnostics):
             raise

@@ -10,7 +10,7 @@ from pursue_gen import __version__
 from pursue_gen.explanation.words import time_text
 from pursue_gen.files import write_texts
 from pursue_gen.play.table import LOST, ROBOTS, RUNNING, WON, Board, Deed, Table
-from pursue_gen.solving.options import in_words
+from pursue_gen.solving.rules import rules_text
 from pursue_gen.tga.network import is_end
 
 _START = 1000.0
@@ -31,7 +31,7 @@ def save(board: Board, table: Table, file: Path) -> str:
 
 def _trace(board: Board, table: Table) -> Iterator[str]:
     """What was begun by agents that nobody controls; ends are the simulator's business."""
-    yield f"# A game of {board.scenario.name} ({in_words(board.rules)}), played with pursue-gen {__version__}"
+    yield f"# A game of {board.scenario.name} ({rules_text(board.rules)}), played with pursue-gen {__version__}"
     others = {agent.name for agent in board.scenario.agents if not agent.controllable}
     begun = [deed for deed in table.deeds if deed.agent in others and not _ends(board, deed)]
     for deed in begun:

@@ -13,7 +13,7 @@ from typing import Iterator, Optional, Tuple
 from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.solution import Rules, played
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.game import (
     Game,
     JointMove,

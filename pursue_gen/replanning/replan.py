@@ -12,7 +12,9 @@ from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.replanning.request import Request, read_request
 from pursue_gen.replanning.start import begun, late
-from pursue_gen.solving.solution import played, prove
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import played
 from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -46,7 +48,7 @@ def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
         verdict = solve(network, objective, request.rules.reaction, limits=limits)
         if verdict.strategy is None:
             return _lost(_cannot_be_met(game, request))
-        left = limits.since(start)
+        left = SolveOptions(limits.since(start))
         strategy = prove(network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left)
     except PursueError as problem:
         if problem.exit_status != _AT_A_LIMIT:

@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.solution import CONTROLLABLE, REPORTED, Rules
+from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
 
 SECONDS = 10.0
 """So long a plan is looked for where the request does not say."""

@@ -11,25 +11,28 @@ from pursue_gen.language import load
 from pursue_gen.replay.game import Source, from_data, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.replay.record import Record
-from pursue_gen.solving.request import Asked
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.tga import translate
 
 
 def source_of(
-    found: Union[Record, Journal], file: Path, scenario: Optional[Path], workspace: Optional[Path], asked: Asked
+    found: Union[Record, Journal],
+    file: Path,
+    scenario: Optional[Path],
+    workspace: Optional[Path],
+    request: SolveRequest,
 ) -> Source:
     """The source for what was `found` in the recording `file`: a workspace, a scenario, or else the recording.
 
     Raises PursueError (exit status 2) where there is none, and for a scenario with errors.
     """
     if workspace is not None:
-        if scenario is not None or asked != Asked(limits=asked.limits):
-            raise usage_error(
-                "a workspace says which game it plays", "leave out SCENARIO, --ends, --reaction and --slack"
-            )
+        if scenario is not None or not request.is_default:
+            hint = "leave out SCENARIO, --ends, --reaction and --slack"
+            raise usage_error("a workspace says which game it plays", hint)
         return from_workspace(workspace)
     if scenario is not None:
-        rules = asked.rules(translate(load(str(scenario))))
+        rules = request.rules(translate(load(str(scenario))))
         return Source(scenario.stem, read_text(scenario, "a scenario"), str(scenario), rules)
     if not isinstance(found, Journal) and found.game is not None:
         return from_data(found.game, str(file))

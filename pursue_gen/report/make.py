@@ -15,8 +15,11 @@ from pursue_gen.report.commands import Game
 from pursue_gen.report.recording import simulated
 from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report
-from pursue_gen.solving.solution import IDEAL, Rules, Solution, played
-from pursue_gen.solving.solvers import margins, solved
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solvers import solved
+from pursue_gen.solving.verdict import margins
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
@@ -24,42 +27,41 @@ _CANNOT_BE_MET = "SYN021"
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What somebody wants: who gets the objective's commands (None: the usual), `optimize` as for `solvers.solved`, so
-    many simulated missions for each shape of controllers, and what lies under the map."""
+class ReportOptions:
+    """What a report holds.
+
+    `reach_obj`: who gets the objective's commands (None: the usual); `runs`: how many missions are simulated for each
+    shape of controllers; `floor`: the floor plan under the map.
+    """
 
     reach_obj: Optional[str] = None
-    optimize: Optional[str] = None
     runs: int = 0
     floor: Optional[Floor] = None
 
 
-def solved_both(
-    scenario: Scenario, limits: Limits, optimize: Optional[str] = None, progress: Optional[Listener] = None
-) -> Tuple[Solution, Solution]:
+def solved_both(scenario: Scenario, options: SolveOptions) -> Tuple[Solution, Solution]:
     """The default and the ideal game of a scenario. Raises as `solvers.solved` does."""
     network, objective = translate(scenario), scenario_objective(scenario)
-    asked = (None, None, limits, None, progress, optimize)
-    return solved(network, objective, Rules(), *asked), solved(network, objective, IDEAL, *asked)
+    return solved(network, objective, Rules(), options), solved(network, objective, IDEAL, options)
 
 
 def won_report(
     scenario: Scenario,
     both: Tuple[Solution, Solution],
-    asked: Asked,
+    options: ReportOptions,
     limits: Limits,
     count: Callable[[int], None] = lambda done: None,
 ) -> Report:
-    """The report on a scenario that is won; `count` hears how many missions have been simulated."""
+    """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
     margin = told(margins(won, False, limits)[0], won.strategy)
     game, ideal = (Game(one.network, one.strategy, one.reaction) for one in both)
-    policies = tables.command_tables(scenario, game, ideal, asked.reach_obj)
+    policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
     policy = policies[0].reach_obj
-    missions = tables.measured(scenario, won, policy, asked.runs, count) if asked.runs else ()
+    missions = tables.measured(scenario, won, policy, options.runs, count) if options.runs else ()
     recording = simulated(tables.case_for(scenario, won, policy), tables.FIRST)
     made = Report(scenario, won.network, won.rules, won, margin=margin, reach_obj=policy)
-    return replace(made, tables=policies, missions=missions, floor=asked.floor, recording=recording)
+    return replace(made, tables=policies, missions=missions, floor=options.floor, recording=recording)
 
 
 def lost_report(

@@ -12,7 +12,8 @@ from pursue_gen.explanation.words import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, speed_words, units
 from pursue_gen.report.html import Section, table
-from pursue_gen.solving.solution import Rules, Solution
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution
 
 
 @dataclass(frozen=True)

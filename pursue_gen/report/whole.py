@@ -18,7 +18,8 @@ from pursue_gen.report.recording import Recording
 from pursue_gen.report.strategy_data import Book, book_of
 from pursue_gen.report.tables import Measured
 from pursue_gen.report.verdict import Lost
-from pursue_gen.solving.solution import Rules, Solution
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Network
 
 

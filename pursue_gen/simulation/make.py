@@ -1,18 +1,17 @@
-"""What is simulated, as a person asks for it on the command line."""
+"""The case to simulate, of a solved scenario."""
 
 from __future__ import annotations
 
 from typing import Optional, Tuple
 
-from pursue_gen.cli.console import tell
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
-from pursue_gen.solving.request import Asked, solution_of
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Kind
-from pursue_gen.workspace import Options
+from pursue_gen.workspace.make import options_for
 
 _LONG, _SHORT = 1000.0, 200.0
 """When a mission is over, in time units, unless it is said: with a goal, and without one."""
@@ -26,18 +25,19 @@ def check_until(until: Optional[float]) -> None:
 
 
 def make_case(
-    read: Scenario, asked: Asked, opponent: str, faults: Tuple[str, ...], until: Optional[float], quiet: bool = False
-) -> Case:
-    """The scenario with its proven solution; `until`: when a mission is over, in time units. Raises PursueError.
+    scenario: Scenario,
+    won: Solution,
+    request: SolveRequest,
+    opponent: str,
+    faults: Tuple[str, ...],
+    until: Optional[float],
+) -> Tuple[Case, bool]:
+    """The case to simulate, and whether its worst opponent knows how long plays can be.
 
-    `opponent` and `faults` as for `Settings`; `quiet`: no progress is shown.
+    `opponent` and `faults` as for `Settings`; `until`: when a mission is over, in time units; None for the default. It
+    does not know where the game is too large: then it does anything.
     """
-    objective = scenario_objective(read)
-    won = solution_of(translate(read), objective, asked, quiet)
-    goal = objective.kind is not Kind.SAFETY
+    goal = won.objective.kind is not Kind.SAFETY
     settings = Settings(opponent, faults, until or (_LONG if goal else _SHORT))
-    options = Options(asked.controllers, asked.reach_obj, won.reaction, won.rules.ends, won.rules.slack)
-    case, knows = case_of(read, won, options, settings)
-    if not knows and opponent in ("worst", "mixed") and goal:
-        tell("the game is too large to tell how long plays can be: the worst opponent does anything")
-    return case
+    case, knows = case_of(scenario, won, options_for(request, won), settings)
+    return case, knows or not goal or opponent not in ("worst", "mixed")

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
-from pursue_gen.cli.console import show, tell
-from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import Diagnostic, PursueError, warning
 from pursue_gen.files import read_text
-from pursue_gen.solving.options import in_words
-from pursue_gen.solving.solution import Rules, Solution, played, prove
-from pursue_gen.synthesis.limits import NO_LIMITS, UNDECIDED, Limits, Listener
+from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import Rules, played, rules_text
+from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.limits import UNDECIDED
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.network import Network, Objective
 
@@ -47,13 +47,12 @@ def trials(
     network: Network,
     objective: Objective,
     games: Sequence[Rules],
-    limits: Limits = NO_LIMITS,
-    progress: Optional[Listener] = None,
+    options: SolveOptions = DEFAULT,
 ) -> Tuple[Trial, ...]:
     """The plan in each of the games, in order, until it wins one.
 
-    `network` is the original's (ends controllable); `file` is what messages call the plan; the limits are for all games
-    together. Raises PursueError for a text that is no plan for this network.
+    `network` is the original's (ends controllable); `file` is what messages call the plan; the options' limits are for
+    all games together. Raises PursueError for a text that is no plan for this network.
     """
     start = time.monotonic()
     done = []
@@ -61,8 +60,8 @@ def trials(
         game = played(network, rules)
         strategy = read_plan(text, game, file)
         try:
-            left = limits.since(start)
-            proven = prove(game, objective, strategy, rules.reaction, None, left, progress, simpler=False)
+            left = options.since(start)
+            proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
         except PursueError as problem:
             done.append(Trial(rules, None, problem.diagnostics))
             continue
@@ -72,30 +71,27 @@ def trials(
 
 
 def try_plan(
-    plan: Path, network: Network, objective: Objective, games: Sequence[Rules], limits: Limits
+    plan: Path, network: Network, objective: Objective, games: Sequence[Rules], options: SolveOptions = DEFAULT
 ) -> Tuple[Trial, ...]:
-    """The plan in a file, tried as `trials` does, with a line of progress on a terminal."""
+    """The plan in a file, tried as `trials` does."""
     text = read_text(plan, "a plan, such as UPPAAL_plan.txt")
-    with progress_line() as progress:
-        return trials(text, str(plan), network, objective, games, limits, progress)
+    return trials(text, str(plan), network, objective, games, options)
 
 
 def take_plan(
-    plan: Path, network: Network, objective: Objective, games: Sequence[Rules], limits: Limits
+    plan: Path, network: Network, objective: Objective, games: Sequence[Rules], options: SolveOptions = DEFAULT
 ) -> Solution:
-    """A plan of the user's, proven; one that wins in the ideal game only is taken with a warning.
+    """A plan of the user's, proven; one that wins in the ideal game only has a warning.
 
     Raises PursueError with exit status 4 or 5 for one that does not win, or that is not decided.
     """
-    tried = try_plan(plan, network, objective, games, limits)
+    tried = try_plan(plan, network, objective, games, options)
     won = tried[-1].solution
     if won is None:
         raise PursueError([finding for trial in tried for finding in trial.findings], exit_status(tried))
-    if len(tried) > 1:
-        ideal, default = in_words(tried[-1].rules), in_words(tried[0].rules)
-        message = f"{plan} wins in the ideal game only ({ideal}), not with {default}"
-        hint = "it may lose when a message is late or a robot needs longer; without --plan a better one is looked for"
-        show([warning("CLI010", message, hint=hint)])
-    else:
-        tell(f"{plan} wins: {in_words(tried[0].rules)}")
-    return won
+    if len(tried) == 1:
+        return won
+    ideal, default = rules_text(tried[-1].rules), rules_text(tried[0].rules)
+    message = f"{plan} wins in the ideal game only ({ideal}), not with {default}"
+    hint = "it may lose when a message is late or a robot needs longer; without --plan a better one is looked for"
+    return replace(won, warnings=(warning("CLI010", message, hint=hint),))

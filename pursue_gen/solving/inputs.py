@@ -1,4 +1,4 @@
-"""The files that a person names, read: scenarios, whose warnings are told, and games."""
+"""The files that a person names, read: scenarios with their findings, and games."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Sequence, Tuple
 
 from pursue_gen import language
-from pursue_gen.cli.console import show
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
 from pursue_gen.files import read_text
 from pursue_gen.language.checks import check_reading
@@ -17,9 +16,11 @@ from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal import read_network, read_query
 
+_NETWORK_SUFFIX = ".xml"
+
 
 def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
-    """Everything there is to say about a scenario file."""
+    """All errors and warnings of a scenario's file, in order."""
     try:
         reading = read(read_scenario(str(file)), str(file))
     except PursueError as problem:
@@ -30,13 +31,16 @@ def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
     return in_order((*findings, *translation_notes(reading.scenario)))
 
 
-def scenario_in(file: Path) -> Scenario:
-    """The scenario in a file; its warnings are told. Raises PursueError."""
-    if file.suffix == ".xml":
+def are_scenario(files: Sequence[Path]) -> bool:
+    """True for one file that is not a network of UPPAAL."""
+    return len(files) == 1 and files[0].suffix != _NETWORK_SUFFIX
+
+
+def load_scenario(file: Path) -> Scenario:
+    """The scenario in a file. Raises PursueError."""
+    if file.suffix == _NETWORK_SUFFIX:
         raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
-    scenario = language.load(file)
-    show(findings_in(file))
-    return scenario
+    return language.load(file)
 
 
 def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
@@ -44,14 +48,13 @@ def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
     return translate(scenario), scenario_objective(scenario)
 
 
-def game_in(files: Sequence[Path]) -> Tuple[Network, Objective]:
+def load_game(files: Sequence[Path]) -> Tuple[Network, Objective]:
     """The ideal game of a scenario's file, or of UPPAAL's two files. Raises PursueError."""
-    if len(files) == 1 and files[0].suffix != ".xml":
-        return game_of(scenario_in(files[0]))
+    if are_scenario(files):
+        return game_of(load_scenario(files[0]))
     if len(files) != 2:
-        raise usage_error(
-            "expected one scenario, or a network and its query", "pursue-gen solve SCENARIO | TGA.xml TCTL.q"
-        )
+        message = "expected one scenario, or a network and its query"
+        raise usage_error(message, "pursue-gen solve SCENARIO | TGA.xml TCTL.q")
     model, query = files
     network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

@@ -25,8 +25,9 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.worst_case import with_counter, with_deadline
+from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.game import compile_game
-from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.time_bounds import least_time
@@ -113,16 +114,14 @@ def fastest(
     objective: Objective,
     reaction: Fraction,
     known: Optional[Fraction],
-    limits: Limits = NO_LIMITS,
-    engine: Optional[str] = None,
-    progress: Optional[Listener] = None,
+    options: SolveOptions = DEFAULT,
 ) -> Tuple[Guarantee, Optional[Faster]]:
     """Encloses v of a reach game that is won, as closely as the limits (`SECONDS` where they name none) allow.
 
-    `known`: what a strategy at hand takes at worst; `engine` and `progress` as in `solve`. With it the strategy that
-    takes v, or the best one that was found; None: the one at hand is as good.
+    `known`: what a strategy at hand takes at worst; of the options limits, engine and progress count. With it the
+    strategy that takes v, or the best one that was found; None: the one at hand is as good.
     """
-    start, unit = time.monotonic(), reaction.denominator
+    start, unit, limits = time.monotonic(), reaction.denominator, options.limits
     limits = limits if limits.seconds else replace(limits, seconds=SECONDS, spent=0.0)
     first, counted = bounds(network, objective, reaction, known), with_counter(network)
     low = int(first.least * unit)
@@ -130,11 +129,11 @@ def fastest(
         # Who may be late has no advantage of it, and commands that come at once make a smaller game.
         prompt = bounds(network, objective, Fraction(0), known)
         some = replace(limits, seconds=limits.spent + limits.left / 2)
-        search = _Search(counted, objective, Fraction(0), some, engine, progress)
+        search = _Search(counted, objective, Fraction(0), replace(options, limits=some))
         search.run(int(prompt.least), None if prompt.most is None else int(prompt.most))
         low = max(low, search.low * unit)
     near = low > first.least * unit
-    search = _Search(counted, objective, reaction, limits.since(start), engine, progress)
+    search = _Search(counted, objective, reaction, replace(options, limits=limits.since(start)))
     search.run(low, None if first.most is None else int(first.most * unit), near)
     search.leave_room()
     most = None if search.high is None else Fraction(search.high, unit)
@@ -145,17 +144,8 @@ def fastest(
 class _Search:
     """The bisection: `low` <= k * v is proven, k * v <= `high` as well (None: nothing known)."""
 
-    def __init__(
-        self,
-        network: Network,
-        objective: Objective,
-        reaction: Fraction,
-        limits: Limits,
-        engine: Optional[str],
-        progress: Optional[Listener],
-    ) -> None:
-        self._objective, self._engine, self._progress = objective, engine, progress
-        self._limits, self._start = limits, time.monotonic()
+    def __init__(self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> None:
+        self._objective, self._options, self._start = objective, options, time.monotonic()
         self._unit = reaction.denominator
         self._fine = _common_multiple(2 * self._unit, TOLERANCE.denominator)
         self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
@@ -188,7 +178,7 @@ class _Search:
             self._met(deadline)
 
     def _left(self) -> float:
-        return self._limits.since(self._start).left
+        return self._options.limits.since(self._start).left
 
     def _won(self, at: int) -> Optional[bool]:
         """Whether v is at most `at`; None: not decided in its share of the time that is left."""
@@ -196,9 +186,10 @@ class _Search:
 
     def _met(self, deadline: int) -> Optional[bool]:
         game = with_deadline(self._network, self._objective, deadline)
-        limits = Limits(self._left() * _SHARE, self._limits.memory)
+        limits = Limits(self._left() * _SHARE, self._options.limits.memory)
         try:
-            verdict = solve(game, self._objective, self._reaction, self._engine, limits, self._progress)
+            engine, progress = self._options.engine, self._options.progress
+            verdict = solve(game, self._objective, self._reaction, engine, limits, progress)
         except PursueError as problem:
             if problem.exit_status != _LIMIT_HIT:
                 raise

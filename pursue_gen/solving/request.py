@@ -1,28 +1,32 @@
-"""What a person asks for on the command line, and the proven solution that answers it."""
+"""What a person asks for, as text on a command line, and the proven solution that answers it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import Dict, Optional, Sequence, Tuple
 
-from pursue_gen.cli.console import tell
-from pursue_gen.cli.loss import why
-from pursue_gen.cli.progress import progress_line
-from pursue_gen.diagnostics import PursueError, usage_error
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.solving.given_plan import take_plan
-from pursue_gen.solving.options import asked_rules, games_to_try, verdict_text
-from pursue_gen.solving.solution import CONTROLLABLE, Rules, Solution
+from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
+from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
+from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
-from pursue_gen.synthesis.limits import NO_LIMITS, Limits
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.synthesis.limits import NO_LIMITS, Listener
+from pursue_gen.tga.network import Network, Objective, is_end
 
 _GENERAL = "general"
 
 
 @dataclass(frozen=True)
-class Asked:
-    """Which controllers, for which game, and where its plan comes from; None: what is done where nothing is said."""
+class SolveRequest:
+    """Which controllers for which game, and where its strategy comes from.
+
+    `controllers` and `reach_obj`: as for `partition`. `ends`, `reaction`, `slack`: the game, as typed; None or empty
+    for the defaults of `Rules`. `plan`: a file with a plan to use instead of solving. `options`: how to solve.
+    """
 
     controllers: str = "distributed"
     reach_obj: str = "dedicated"
@@ -30,10 +34,12 @@ class Asked:
     reaction: Optional[str] = None
     slack: Tuple[str, ...] = ()
     plan: Optional[Path] = None
-    solver: Optional[str] = None
-    verifytga: Optional[Path] = None
-    optimize: Optional[str] = None
-    limits: Limits = NO_LIMITS
+    options: SolveOptions = DEFAULT
+
+    @property
+    def is_default(self) -> bool:
+        """True if nothing but limits was asked for."""
+        return replace(self, options=replace(self.options, limits=NO_LIMITS)) == SolveRequest()
 
     @property
     def decides_ends(self) -> bool:
@@ -41,44 +47,54 @@ class Asked:
         return self.ends is None and self.controllers == _GENERAL
 
     def rules(self, network: Network) -> Rules:
-        """The game that is asked for. Raises PursueError (exit status 2)."""
-        return asked_rules(network, self._ends, self.reaction, self.slack)
+        """The game; the slack's agents are those of the network. Raises PursueError (exit status 2)."""
+        reaction = DEFAULT_RULES.reaction if self.reaction is None else _reaction(self.reaction)
+        ends = CONTROLLABLE if self.decides_ends else self.ends or DEFAULT_RULES.ends
+        rules = Rules(ends, reaction, _slack(network, self.slack))
+        if rules.slack and rules.ends == CONTROLLABLE:
+            raise usage_error("slack has no meaning where the plan decides the ends", "use it with --ends reported")
+        return rules
 
     def games(self, network: Network) -> Tuple[Rules, ...]:
-        """The games to try a plan in. Raises as `rules`."""
-        return games_to_try(network, self._ends, self.reaction, self.slack)
-
-    @property
-    def _ends(self) -> Optional[str]:
-        return CONTROLLABLE if self.decides_ends else self.ends
+        """The games to try a plan in: that of `rules`, and the ideal one unless it is ruled out. Raises as `rules`."""
+        rules = self.rules(network)
+        ruled_out = self.reaction is not None or bool(self.slack) or self.ends == REPORTED
+        return (rules,) if ruled_out else (rules, IDEAL)
 
 
-def solution_of(network: Network, objective: Objective, asked: Asked, quiet: bool = False) -> Solution:
-    """The proven solution: of the plan that is given, or of a solver, whose progress is shown unless `quiet`.
+def solution_of(
+    network: Network, objective: Objective, request: SolveRequest, progress: Optional[Listener] = None
+) -> Solution:
+    """The proven solution: of the plan that is given, or of a solver. `progress` replaces the options' listener.
 
     Raises what `take_plan` and `solved` do; with exit status 2 for options that contradict each other.
     """
-    if asked.plan is not None:
-        if asked.solver is not None or asked.verifytga is not None:
-            raise usage_error("there is a plan, and a solver to make one", "use --plan or --solver, not both")
-        return take_plan(asked.plan, network, objective, asked.games(network), asked.limits)
-    rules = asked.rules(network)
-    with progress_line(quiet) as progress:
-        how = (asked.solver, asked.verifytga, asked.limits, None, progress, asked.optimize)
-        return solved(network, objective, rules, *how)
+    options = replace(request.options, progress=progress)
+    if request.plan is None:
+        return solved(network, objective, request.rules(network), options)
+    if options.solver is not None or options.verifytga is not None:
+        raise usage_error("there is a plan, and a solver to make one", "use --plan or --solver, not both")
+    return take_plan(request.plan, network, objective, request.games(network), options)
 
 
-def told_solution(network: Network, objective: Objective, asked: Asked, explained: Optional[Path] = None) -> Solution:
-    """As `solution_of`, and a solver's verdict is told.
-
-    `explained`: the scenario's file; where it cannot be won, what would change that is looked for and told as well.
-    """
+def _reaction(text: str) -> Fraction:
+    hint = "a number of time units from 0 on, such as 0.1, 1/20 or 0"
     try:
-        won = solution_of(network, objective, asked)
-    except PursueError as problem:
-        if explained and why(problem, (explained,), asked.rules(network), True, asked.limits):
-            raise PursueError((), problem.exit_status) from None  # its findings are told
-        raise
-    if asked.plan is None:
-        tell(verdict_text(won.rules, won))
-    return won
+        value = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise usage_error(f"the reaction is '{text}'", hint) from None
+    if value < 0 or value > 1000 or value.denominator > 1000:
+        raise usage_error(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
+    return value
+
+
+def _slack(network: Network, texts: Sequence[str]) -> Dict[str, int]:
+    """The slack per agent; a number alone is for every agent that the plan controls."""
+    slack: Dict[str, int] = {}
+    for text in texts:
+        agent, named, number = text.rpartition("=")
+        if not (number.isascii() and number.isdigit()) or (named and not agent):
+            raise usage_error(f"the slack is '{text}'", "a number of time units such as 2, or for one agent bot1=2")
+        controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
+        slack.update((name, int(number)) for name in ([agent] if named else controlled))
+    return slack

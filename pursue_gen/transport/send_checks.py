@@ -1,4 +1,4 @@
-"""What is looked at before robots are told anything: whether the mission fits them, and which one is meant."""
+"""Checks before robots are ordered anything: whether the mission fits them, and which one is meant."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def kept_by_all(mission: str) -> Check:
     return check
 
 
-def asked_mission(text: str, statuses: Sequence[Status]) -> str:
+def mission_digest(text: str, statuses: Sequence[Status]) -> str:
     """The digest of the mission that is meant by `own`, a digest, or its first digits. Raises PursueError."""
     if text == OWN_WORD:
         return OWN

@@ -1,24 +1,15 @@
-"""How robots stand, as a table, as JSON, and while they are being sent a mission."""
+"""The states of robots as a table, and as JSON."""
 
 from __future__ import annotations
 
-import contextlib
-import os
-import shutil
-import sys
-import threading
-import time
 from dataclasses import replace
-from typing import Any, Dict, Iterator, List, Optional, Sequence, TextIO, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from pursue_gen.transport.client import Robot, Status
-from pursue_gen.transport.sender import Progress, Row
+from pursue_gen.transport.client import Status
+from pursue_gen.transport.sender import Row
 from pursue_runtime.manifest import mission_id
 
 _HEAD = ("robot", "address", "now", "before", "prepared", "outcome")
-_REDRAW = 0.1
-"""Seconds from one drawing to the next."""
-
 
 def table(rows: Sequence[Row], looked: bool = False) -> List[str]:
     """One line per robot, below a head; `?` where something is not known, `-` where there is nothing.
@@ -72,62 +63,13 @@ def _facts(status: Optional[Status]) -> Optional[Dict[str, Any]]:
     return {name: value for name, value in vars(status).items() if name not in ("robot", "ticket")}
 
 
-def standing_told(rows: Sequence[Row]) -> Tuple[Row, ...]:
-    """The rows with what a robot does now as their outcome; what was said before was the same."""
-    told = []
+def with_activity(rows: Sequence[Row]) -> Tuple[Row, ...]:
+    """The rows with whether a mission runs on the robot as their outcome, or why it was not reached."""
+    found = []
     for row in rows:
         if row.after is None:
-            told.append(replace(row, outcome=f"not reached: {row.outcome}"))
+            found.append(replace(row, outcome=f"not reached: {row.outcome}"))
         else:
-            told.append(replace(row, outcome="a mission is under way" if row.after.mission_runs else "no mission runs"))
-    return tuple(told)
-
-
-@contextlib.contextmanager
-def upload_lines(quiet: bool = False, stream: Optional[TextIO] = None) -> Iterator[Optional[Progress]]:
-    """Draws a line per robot on the stream (stderr) while it is being sent a bundle; erased at the end.
-
-    None where nothing is to be drawn: `quiet`, or the stream is no terminal that can do it.
-    """
-    out = sys.stderr if stream is None else stream
-    if quiet or os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
-        yield None
-        return
-    lines = _Lines(out)
-    try:
-        yield lines.show
-    finally:
-        lines.erase()
-
-
-class _Lines:
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._lock = threading.Lock()
-        self._sent: Dict[str, Tuple[int, int]] = {}
-        self._drawn = 0
-        self._next = 0.0
-
-    def show(self, robot: Robot, sent: int, size: int) -> None:
-        """Draws all lines, unless that was done a moment ago and there is more to come."""
-        with self._lock:
-            self._sent[robot.name] = (sent, size)
-            if time.monotonic() >= self._next or sent == size:
-                self._next = time.monotonic() + _REDRAW
-                self._draw()
-
-    def _draw(self) -> None:
-        columns = shutil.get_terminal_size().columns - 1
-        width = max(map(len, self._sent))
-        up = f"\033[{self._drawn}A" if self._drawn else ""
-        lines = [f"{name:{width}}  {sent} of {size} bytes"[:columns] for name, (sent, size) in self._sent.items()]
-        self._stream.write(up + "".join(f"\r{line}\033[K\n" for line in lines))
-        self._stream.flush()
-        self._drawn = len(lines)
-
-    def erase(self) -> None:
-        """Leaves the terminal as it was."""
-        with self._lock:
-            if self._drawn:
-                self._stream.write(f"\033[{self._drawn}A\r\033[J")
-                self._stream.flush()
+            activity = "a mission is under way" if row.after.mission_runs else "no mission runs"
+            found.append(replace(row, outcome=activity))
+    return tuple(found)

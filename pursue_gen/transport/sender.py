@@ -90,18 +90,18 @@ def send(
     check: Check,
     progress: Optional[Progress] = None,
     pauses: Sequence[float] = PAUSES,
-    say: Callable[[str], None] = lambda text: None,
+    report: Callable[[str], None] = lambda text: None,
 ) -> Sent:
     """Brings all robots to a mission, or none.
 
     `content` is the mission's bundle, empty where the robots are known to have it. `check` gets the robots' statuses
-    in the same order before anything is sent. `say` gets a sentence before what was sent is taken back, which may take
-    a minute where robots do not answer.
+    in the same order before anything is sent. `report` is called with a sentence before what was sent is taken back,
+    which may take a minute where robots do not answer.
     """
     talks = [_Talk(robot, key, pauses, progress) for robot in robots]
     troubles = _side_by_side(_Talk.look, talks)
     if troubles:
-        return _told(mission, talks, troubles)
+        return _result(mission, talks, troubles)
     check([talk.now for talk in talks])
     try:
         # Those that have it already, too: what they have may be damaged by now.
@@ -110,13 +110,13 @@ def send(
             troubles = _commit(talks, mission)
     except KeyboardInterrupt:
         troubles = {talk: "interrupted" for talk in talks}
-        say("Interrupted: what was sent is taken back. Ctrl-C once more leaves the robots as they are.")
+        report("Interrupted: what was sent is taken back. Ctrl-C once more leaves the robots as they are.")
     with contextlib.suppress(KeyboardInterrupt):  # who is in a hurry is told how they stand
         if troubles:
             _take_back(talks, mission)
         else:
             troubles = _side_by_side(lambda talk: talk.confirm(mission), talks)
-    return _told(mission, talks, troubles)
+    return _result(mission, talks, troubles)
 
 
 def wait(robots: Sequence[Robot], mission: str, seconds: float, every: float = 0.5) -> Tuple[Row, ...]:
@@ -322,10 +322,10 @@ class _Talk:
 # The end --------------------------------------------------------------------------------------------------------------
 
 
-def _told(mission: str, talks: Sequence[_Talk], troubles: Dict[_Talk, str]) -> Sent:
-    """How all of it ended."""
-    say = _failed if troubles else _done
-    rows = tuple(_row(talk, say(mission, talk, troubles.get(talk, ""))) for talk in talks)
+def _result(mission: str, talks: Sequence[_Talk], troubles: Dict[_Talk, str]) -> Sent:
+    """The result for all robots."""
+    outcome = _failed if troubles else _done
+    rows = tuple(_row(talk, outcome(mission, talk, troubles.get(talk, ""))) for talk in talks)
     trouble = "; ".join(f"{talk.robot.name}: {text}" for talk, text in troubles.items())
     return Sent(mission, not troubles, rows, trouble)
 

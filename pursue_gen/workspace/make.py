@@ -1,16 +1,16 @@
-"""A workspace as a person asks for it on the command line: solved, proven, and written."""
+"""A workspace for a solved scenario, written."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional
+from typing import Optional, Tuple
 
-from pursue_gen.cli.console import show, tell
+from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.margin import QUICK, strategy_margin, told
-from pursue_gen.solving.request import Asked, told_solution
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, machines_for, write_workspace
 
 
@@ -23,35 +23,43 @@ class Extras:
     systemd: bool = False
 
 
-def make_workspace(
-    read: Scenario,
-    asked: Asked,
-    extras: Extras = Extras(),
-    folder: Optional[Path] = None,
-    force: bool = False,
-    explained: Optional[Path] = None,
-) -> Path:
-    """Writes the workspace and returns its folder; `folder` and `force` as for `write_workspace`.
+@dataclass(frozen=True)
+class Made:
+    """A workspace on the disk: its folder, the margin of its strategy in sentences, findings on its machines.yaml."""
 
-    `explained` is as for `told_solution`. The verdict, the margin and warnings are told. Raises as these do.
-    """
-    network, objective = translate(read), scenario_objective(read)
-    if asked.decides_ends:
-        tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    won = told_solution(network, objective, asked, explained)
-    late = told(strategy_margin(won.network, objective, won.strategy, won.reaction, QUICK, asked.limits), won.strategy)
-    tell(late)
-    options = Options(
-        asked.controllers,
-        asked.reach_obj,
+    folder: Path
+    margin: str
+    findings: Tuple[Diagnostic, ...] = ()
+
+
+def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: Extras = Extras()) -> Options:
+    """The options of a workspace for a solution; without the machines of the extras."""
+    return Options(
+        request.controllers,
+        request.reach_obj,
         won.reaction,
         won.rules.ends,
         won.rules.slack,
-        late,
+        margin,
         docker=extras.docker,
         systemd=extras.systemd,
     )
+
+
+def make_workspace(
+    scenario: Scenario,
+    won: Solution,
+    request: SolveRequest,
+    extras: Extras = Extras(),
+    folder: Optional[Path] = None,
+    force: bool = False,
+) -> Made:
+    """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it and `machines_for`."""
+    limits = request.options.limits
+    margin = told(strategy_margin(won.network, won.objective, won.strategy, won.reaction, QUICK, limits), won.strategy)
+    options = options_for(request, won, margin, extras)
+    findings: Tuple[Diagnostic, ...] = ()
     if extras.machines is not None:
-        options, findings = machines_for(extras.machines, read, won.network, won.strategy, options)
-        show(findings)
-    return write_workspace(read, won.network, objective, won.strategy, options, folder, force)
+        options, findings = machines_for(extras.machines, scenario, won.network, won.strategy, options)
+    written = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder, force)
+    return Made(written, margin, findings)

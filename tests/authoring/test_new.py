@@ -19,7 +19,8 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, load, parse
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.scenario import Avoid, NeverWith, Reach, Respond, Scenario
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 
 from .commands import pursue
 

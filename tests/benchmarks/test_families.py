@@ -8,7 +8,8 @@ import pytest
 
 from benchmarks.families import FAMILIES, Family
 from pursue_gen.language import check, parse
-from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
+from pursue_gen.solving.rules import IDEAL, Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 

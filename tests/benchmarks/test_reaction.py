@@ -11,7 +11,8 @@ from benchmarks.reaction import SCENARIO, figures
 from benchmarks.soak import RULES, Clocks
 from benchmarks.soak import SCENARIO as LONG
 from pursue_gen.language import parse
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.strategy import Strategy
 
 RESULTS: Dict[str, Any] = {

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from pursue_gen import __version__
 from pursue_gen.cli.app import main
 from pursue_gen.language import load
-from pursue_gen.solving.solution import Rules, played
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga import scenario_objective, translate
@@ -396,7 +396,7 @@ def test_limits_that_are_no_limits_change_nothing() -> None:
 
 
 def test_memory_is_limited_where_nobody_says_anything() -> None:
-    with mock.patch("pursue_gen.solving.options.careful_memory", return_value=1):
+    with mock.patch("pursue_gen.synthesis.limits.careful_memory", return_value=1):
         told = pursue("solve", FIRST)
     assert told.status == 5
     assert "the limit of 1 MiB of memory" in told.err

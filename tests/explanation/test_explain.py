@@ -16,7 +16,7 @@ from pursue_gen.explanation.allowance import Clock
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
-from pursue_gen.solving.solution import CONTROLLABLE, IDEAL, Rules, played
+from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, Rules, played
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve

@@ -17,7 +17,7 @@ from pursue_gen.play.session import GameOf, Session
 from pursue_gen.play.table import GRAIN, Plan, Table, beginning, board_of
 from pursue_gen.play.words import words_of
 from pursue_gen.play.world import Offer, World
-from pursue_gen.solving.solution import IDEAL, Rules
+from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.synthesis.limits import NO_LIMITS
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

@@ -16,7 +16,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof import checker as verify_module
 from pursue_gen.proof.checker import Report, pruned, verify
-from pursue_gen.solving.solution import Rules, played
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import solve

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.margin import CAP, STEP, Margin, as_json, game_margin, in_words, strategy_margin, told
-from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
+from pursue_gen.solving.rules import IDEAL, Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy

@@ -14,7 +14,8 @@ from pursue_gen.language import load
 from pursue_gen.proof.checker import pruned, pruned_ranks, verify
 from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.smaller import smaller
-from pursue_gen.solving.solution import IDEAL, Rules, played, solution
+from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone

@@ -12,7 +12,8 @@ from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.moves import State
-from pursue_gen.solving.solution import Rules, Solution, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

@@ -15,7 +15,7 @@ from pursue_gen.language import load
 from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.moves import Moves, after
 from pursue_gen.replay.record import State
-from pursue_gen.solving.solution import Rules, played
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import translate
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"

@@ -252,7 +252,8 @@ def plan_data() -> Dict[str, Any]:
     """The strategy of scenario 1 as it stands on pursue/plan."""
     yaml = pytest.importorskip("yaml")
     known = game()
-    from pursue_gen.solving.solution import Rules, solution
+    from pursue_gen.solving.rules import Rules
+    from pursue_gen.solving.solution import solution
     from pursue_gen.tga import translate
 
     strategy = solution(translate(known.scenario), known.objective, Rules()).strategy

@@ -13,7 +13,8 @@ from recordings import PLAY, SCENARIO, mission, write_bag, write_journal
 from test_read import GAME
 
 from pursue_gen.language import load
-from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 
 

@@ -12,8 +12,9 @@ import pytest
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.report.make import Asked, lost_report, solved_both, won_report
+from pursue_gen.report.make import ReportOptions, lost_report, solved_both, won_report
 from pursue_gen.report.whole import report_page
+from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.limits import NO_LIMITS
 
 pytest.importorskip("tornado", reason="tornado drives the browser")
@@ -45,7 +46,7 @@ def delivery(deadline: int) -> Scenario:
 
 
 def won_page(scenario: Scenario, runs: int = 0) -> str:
-    return report_page(won_report(scenario, solved_both(scenario, NO_LIMITS), Asked(runs=runs), NO_LIMITS))
+    return report_page(won_report(scenario, solved_both(scenario, SolveOptions()), ReportOptions(runs=runs), NO_LIMITS))
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +113,7 @@ def test_ours_and_the_thesis_figures_stand_side_by_side(catch: str) -> None:
 def test_a_scenario_that_cannot_be_won_is_explained() -> None:
     lost = delivery(3)
     with pytest.raises(PursueError) as problem:
-        solved_both(lost, NO_LIMITS)
+        solved_both(lost, SolveOptions())
     text = report_page(lost_report(lost, problem.value, NO_LIMITS))
     assert "It cannot be met" in text and "What would change that" in text and 'id="strategy"' not in text
     assert "a deadline of 8 instead of 3 for bring (7 is not enough; line 12)" in text

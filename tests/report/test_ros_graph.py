@@ -13,7 +13,8 @@ from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.report import graphviz
 from pursue_gen.report.ros_graph import DIAGNOSTICS, EVENTS, PLAN, STATE, Topic, graph, topics
-from pursue_gen.solving.solution import Rules, Solution, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.workspace import Options, generate
 
 SCENARIO = load(Path(__file__).resolve().parent.parent.parent / "scenarios" / "thesis" / "catch_the_thief.pur")

@@ -12,7 +12,8 @@ from pursue_gen.explanation.network_words import zone_texts
 from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.report.strategy_data import Book, as_json, book_of, size
-from pursue_gen.solving.solution import Rules, Solution, solve_scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution, solve_scenario
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 CATCH = load(SCENARIOS / "thesis" / "catch_the_thief.pur")

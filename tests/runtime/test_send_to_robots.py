@@ -13,7 +13,9 @@ import pytest
 from reader_stage import DESK
 
 from pursue_gen.language import load
-from pursue_gen.transport.bundles import AskedMission, make_mission, sign
+from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.request import SolveRequest, solution_of
+from pursue_gen.transport.bundles import make_mission, sign
 from pursue_gen.transport.client import Robot
 from pursue_gen.transport.send_checks import fits, kept_by_all, previous
 from pursue_gen.transport.sender import Sent, look, send, wait
@@ -101,7 +103,8 @@ def missions() -> List[Tuple[str, bytes, Any]]:
     """Two missions of a scenario: digest, bundle, check."""
     made = []
     for slack in ((), ("1",)):
-        manifest, files = make_mission(load(str(SCENARIO)), AskedMission(slack=slack, computed_poses=True))
+        scenario, request = load(str(SCENARIO)), SolveRequest(slack=slack)
+        manifest, files = make_mission(scenario, solution_of(*game_of(scenario), request), request)
         content = sign(manifest, files, DESK)
         packages = {path.split("/")[0] for path in files}
         made.append((manifest.digest, content, fits(manifest.digest, packages, len(content), True)))

@@ -16,7 +16,9 @@ from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import counting_clock, with_counter, with_deadline, worst_case
 from pursue_gen.solving.least_time import TOLERANCE, fastest, scaled, unscaled
-from pursue_gen.solving.solution import IDEAL, Rules, fastest_solution, guaranteed, solution
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import IDEAL, Rules
+from pursue_gen.solving.solution import fastest_solution, guaranteed, solution
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
@@ -31,7 +33,7 @@ from tests.synthesis.random_games import networks
 from tests.synthesis.region_game import RegionGame
 
 REPORTED, DEFAULT = Rules(reaction=Fraction(0)), Rules()
-PLENTY = Limits(3600.0)
+PLENTY = SolveOptions(Limits(3600.0))
 ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
 
 
@@ -163,7 +165,7 @@ def test_what_is_told_without_time_is_true(reference_dir: Path) -> None:
     first = guaranteed(won)
     assert first.worst is not None and first.most is not None
     assert first.least <= 56 <= first.most <= first.worst
-    guarantee, faster = fastest(network, objective, Fraction(0), first.worst, Limits(1e-6))
+    guarantee, faster = fastest(network, objective, Fraction(0), first.worst, SolveOptions(Limits(1e-6)))
     assert faster is None
     assert (guarantee.least, guarantee.most) == (first.least, first.most)
     assert not guarantee.exact and "may exist" in guarantee.in_words()

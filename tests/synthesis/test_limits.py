@@ -17,7 +17,10 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError, render
 from pursue_gen.language import load, parse
 from pursue_gen.proof.checker import Report, verify
-from pursue_gen.solving.solution import IDEAL, prove, solution
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import IDEAL
+from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis import limits as limits_module
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import (
@@ -199,18 +202,18 @@ def test_the_checker_tells_its_progress(game: Game, strategy: Strategy, eager: N
 
 def test_one_allowance_is_for_the_solver_and_the_checker(game: Game, eager: None) -> None:
     heard: List[Progress] = []
-    solution(*game, IDEAL, Limits(600, 1 << 20), progress=heard.append)
+    solution(*game, IDEAL, SolveOptions(Limits(600, 1 << 20), progress=heard.append))
     phases = [p.phase for p in heard]
     assert phases == sorted(phases, reverse=True) and set(phases) == {SOLVING, PROVING}
-    with mock.patch("pursue_gen.solving.solution.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
-        solution(*game, IDEAL, Limits(600))
+    with mock.patch("pursue_gen.solving.proving.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
+        solution(*game, IDEAL, SolveOptions(Limits(600)))
     given_limits = checker.call_args[1]["limits"]
     assert given_limits.seconds == 600 and 0 < given_limits.spent < 600
 
 
 def test_what_the_checker_does_not_decide_is_no_defeat(game: Game, strategy: Strategy) -> None:
     undecided = Report(False, "limit: not decided within 7 symbolic states", (), frozenset(), 7)
-    checker = mock.patch("pursue_gen.solving.solution.verify", return_value=undecided)
+    checker = mock.patch("pursue_gen.solving.proving.verify", return_value=undecided)
     with checker, pytest.raises(PursueError) as failure:
         prove(*game, strategy, Fraction(0))
     assert "not proven: limit: not decided within 7 symbolic states" in told(failure.value)

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from benchmarks.families import catch_by_one_distance
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.solving.solution import Rules, played, prove
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.overtaking import kept_apart
 from pursue_gen.synthesis.solve import solve

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from pursue_gen.language import load, parse
-from pursue_gen.solving.solution import IDEAL, Rules, played, solution
+from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate

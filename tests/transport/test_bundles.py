@@ -18,7 +18,9 @@ pytest.importorskip("cryptography", reason="cryptography is not installed")
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Pose
-from pursue_gen.transport.bundles import AskedMission, make_mission, read_bundle, sign
+from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.request import SolveRequest, solution_of
+from pursue_gen.transport.bundles import make_mission, placed, read_bundle, sign
 from pursue_gen.transport.keys import load_private, new_key, public_keys
 from pursue_gen.transport.poses_file import read_poses, with_poses
 from pursue_runtime.bundle import Bundle, Manifest, fingerprint, make_manifest, mission_file
@@ -97,8 +99,10 @@ def test_a_bundle_is_the_data_of_the_workspace(scenario: Path, options: List[str
 
 
 def test_the_options_are_part_of_the_mission() -> None:
-    asked = [AskedMission(reaction=reaction, computed_poses=True) for reaction in (None, "0.1", "0.05")]
-    assert len({make_mission(load(FIRST), one)[0].digest for one in asked}) == 2
+    scenario = placed(load(FIRST), computed=True)
+    requests = [SolveRequest(reaction=reaction) for reaction in (None, "0.1", "0.05")]
+    made = [make_mission(scenario, solution_of(*game_of(scenario), one), one) for one in requests]
+    assert len({manifest.digest for manifest, _ in made}) == 2
 
 
 def test_a_bundle_holds_no_code() -> None:

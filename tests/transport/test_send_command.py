@@ -16,9 +16,9 @@ from fake_robot import GONE, KEY, REFUSED, FakeRobot, serving
 from fake_robot import bundle as make_bundle
 
 from pursue_gen.cli.app import main
+from pursue_gen.cli.uploads import upload_lines
 from pursue_gen.transport.client import Robot, Status
-from pursue_gen.transport.send_checks import asked_mission, previous
-from pursue_gen.transport.send_table import upload_lines
+from pursue_gen.transport.send_checks import mission_digest, previous
 from pursue_runtime.bundle import OWN, mission_id
 from tests.waiting import PATIENCE
 
@@ -236,11 +236,11 @@ def test_a_mission_is_named_by_its_first_digits() -> None:
     from pursue_gen.diagnostics import PursueError
 
     robot = status_of([], OWN)
-    assert [asked_mission(one[:12], [robot]) for one in (A, B)] == [A, B]
-    assert asked_mission(A, [status_of([], OWN, kept=())]) == A  # that it is not there is told by robot
+    assert [mission_digest(one[:12], [robot]) for one in (A, B)] == [A, B]
+    assert mission_digest(A, [status_of([], OWN, kept=())]) == A  # that it is not there is told by robot
     for wrong in ("", A[:3], "xyz!", A + "0"):
         with pytest.raises(PursueError):
-            asked_mission(wrong, [robot])
+            mission_digest(wrong, [robot])
 
 
 def test_status_shows_what_each_plays(send: Any, robots: List[FakeRobot]) -> None:

@@ -1,0 +1,57 @@
+"""Strategies held against the independent checker: only what is proven is used."""
+
+from __future__ import annotations
+
+import time
+from fractions import Fraction
+from typing import Mapping, Optional
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.proof.checker import pruned, pruned_ranks, verify
+from pursue_gen.proof.smaller import smaller
+from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.synthesis.strategy import Strategy, ZoneKey
+from pursue_gen.tga.network import Network, Objective
+
+_LITTLE = 6_000
+"""A proof with so many symbolic states takes a second or two: then a strategy in fewer zones is proven as well."""
+
+
+def prove(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    ranks: Optional[Mapping[ZoneKey, int]] = None,
+    options: SolveOptions = DEFAULT,
+    simpler: bool = True,
+) -> Strategy:
+    """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
+
+    `simpler`: in fewer zones and bounds, proven once more, where that costs little. Raises PursueError with the play
+    that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states included.
+    """
+    start, limits, progress = time.monotonic(), options.limits, options.progress
+    report = verify(network, objective, strategy, reaction, ranks=ranks, limits=limits, progress=progress)
+    if not report.ok and ranks is not None:
+        ranks = None
+        report = verify(network, objective, strategy, reaction, limits=limits.since(start), progress=progress)
+    if report.reason.startswith("limit"):
+        hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
+        raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)
+    if not report.ok:
+        play = "".join(f"\n      {step}" for step in report.play)
+        hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
+        raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
+    kept = pruned(strategy, report)
+    if not simpler or report.states > _LITTLE:
+        return kept
+    left = None if ranks is None else pruned_ranks(strategy, report, ranks)
+    fewer = smaller(network, kept, reaction, left)
+    try:
+        again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
+    except PursueError as problem:
+        if problem.exit_status != 5:
+            raise
+        return kept  # what is proven stays so when there is no time left to make it smaller
+    return pruned(fewer, again) if again.ok else kept

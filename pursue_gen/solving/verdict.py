@@ -1,0 +1,76 @@
+"""The outcome of a game for people and for programs: the verdict, what it took, and how late commands may come."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, as_json, counted
+from pursue_gen.proof.checker import LIMIT
+from pursue_gen.proof.margin import USUAL, Margin, decides_ends, game_margin, strategy_margin, told
+from pursue_gen.proof.margin import as_json as margin_json
+from pursue_gen.proof.margin import in_words as margin_in_words
+from pursue_gen.solving.rules import Rules, rules_text
+from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.limits import UNDECIDED, Limits
+
+
+def margins(won: Solution, thorough: bool, limits: Limits) -> Tuple[Margin, Optional[Margin]]:
+    """The margin of the strategy, as far as it is quickly found; `thorough`: all of it, and the game's as well."""
+    states = LIMIT if thorough else USUAL
+    margin = strategy_margin(won.network, won.objective, won.strategy, won.reaction, states, limits)
+    return margin, game_margin(won.network, won.objective, won.reaction, limits=limits) if thorough else None
+
+
+def verdict_text(won: Solution) -> str:
+    """The verdict of a game that is won: what it took, and how long a play takes, where that is known."""
+    stats = won.stats
+    took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
+    text = f"won: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}, proven"
+    return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
+
+
+def margin_text(won: Solution, margin: Margin, game: Optional[Margin] = None) -> str:
+    """Lines about how late commands may come; `game` is the game's margin, where it was computed."""
+    lines = [told(margin, won.strategy)]
+    if game is not None:
+        lines.append(f"Margin of the game, with a strategy that is made for it (--reaction): {margin_in_words(game)}.")
+    return "\n".join(lines)
+
+
+def verdict_json(
+    rules: Rules,
+    won: Optional[Solution],
+    findings: Sequence[Diagnostic],
+    margin: Optional[Margin] = None,
+    game_margin: Optional[Margin] = None,
+) -> Dict[str, Any]:
+    """The outcome as a JSON object; `findings` say why `won` is not true; margins where they were looked for.
+
+    `won` is null in it where it is not decided: a limit was hit, or the strategy of another tool does not win.
+    """
+    result: Dict[str, Any] = {
+        "won": True if won else None if any(f.code in (UNDECIDED, "SYN035") for f in findings) else False,
+        "ends": rules.ends,
+        "reaction": str(rules.reaction),
+        "slack": dict(rules.slack),
+    }
+    if won and won.stats:
+        stats = won.stats
+        result.update(
+            engine=stats.engine, states=stats.discrete_states, zones=stats.zones, seconds=round(stats.seconds, 6)
+        )
+    if won:
+        result.update(blocks=len(won.strategy.blocks), commands=_commands(won))
+    if won and margin:
+        playable = margin.wins > 0 and not decides_ends(won.strategy)
+        result.update(margin=margin_json(margin), playable=playable)
+    if won and won.guarantee:
+        result["time"] = won.guarantee.as_json()
+    if game_margin:
+        result["game_margin"] = margin_json(game_margin)
+    result["diagnostics"] = [as_json(finding) for finding in findings]
+    return result
+
+
+def _commands(won: Solution) -> int:
+    return sum(len(block.commands) for block in won.strategy.blocks)
