@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Callable, List, Optional, TextIO, Tuple, TypeVar
+import abc
+from typing import Callable, List, Optional, Tuple, TypeVar
 
 from pursue_gen.authoring import answers
 from pursue_gen.authoring.wishes import (
@@ -26,11 +27,10 @@ from pursue_gen.authoring.wishes import (
     slow_enough,
     unused,
 )
-from pursue_gen.diagnostics import PursueError, usage_error
+from pursue_gen.diagnostics import usage_error
 
 Answer = TypeVar("Answer")
 
-_PATIENCE = 20  # bad answers in a row: then it is no person who answers
 _PLACES = ("desk", "shelf", "window")
 _EVENTS = ("fetch", "sort", "clean", "fill", "count", "paint", "weigh", "label", "pack")
 _OTHER = {RESPOND: "visitor", AVOID: "burglar", NEVER_WITH: "patient", CATCH: "thief"}
@@ -44,40 +44,19 @@ _WHO = {
 _WHAT = {RESPOND: "What is the call?", AVOID: "What must never happen?", CATCH: "What is it called when they do?"}
 
 
-class Dialog:
-    """Asks on one stream and reads from another; with `quiet` it takes every suggestion instead."""
+class Dialog(abc.ABC):
+    """Asks a person, on a terminal or elsewhere."""
 
-    def __init__(self, source: TextIO, screen: TextIO, quiet: bool = False) -> None:
-        self._source, self._screen, self._quiet = source, screen, quiet
-
+    @abc.abstractmethod
     def say(self, text: str) -> None:
-        """A line for who answers."""
-        if not self._quiet:
-            print(text, file=self._screen)
+        """Shows a line."""
 
+    @abc.abstractmethod
     def ask(self, question: str, suggestion: str, accept: Callable[[str], Answer]) -> Answer:
-        """The answer, as `accept` reads it. Raises PursueError (exit status 2) where there is none to be had."""
-        if self._quiet:
-            return accept(suggestion)
-        for _ in range(_PATIENCE):
-            print(f"{question} [{suggestion or 'nobody'}] ", end="", file=self._screen, flush=True)
-            try:
-                return accept(self._line() or suggestion)
-            except ValueError as problem:
-                self.say(f"  {problem}")
-        raise _ended(f"{_PATIENCE} answers in a row could not be used")
+        """The answer, as `accept` reads it; it raises ValueError for a bad one, which is asked for again.
 
-    def _line(self) -> str:
-        try:
-            line = self._source.readline()
-        except UnicodeDecodeError:
-            raise _ended("what was typed is not text in UTF-8") from None
-        if not line:
-            print(file=self._screen)
-            raise _ended("the answers ended before the questions did")
-        if not self._source.isatty():  # a terminal has shown the answer already
-            self.say(line.strip())
-        return line.strip()
+        Raises PursueError (exit status 2) where there is none to be had.
+        """
 
 
 def wishes(dialog: Dialog, kind: Optional[str], places: Optional[str], robots: Optional[int]) -> Wishes:
@@ -182,7 +161,3 @@ def _pace(
     why = f"were {other} faster, the robots could not be sure to be in time"
     question = f"How many units of time does {other} need for one unit of distance? (at least {least})"
     return dialog.ask(question, str(max(least, 2)), answers.a_number(least, max(100, 10 * least), why))
-
-
-def _ended(message: str) -> PursueError:
-    return usage_error(message, "nothing was written; answer all questions, or take the suggestions with --yes")

@@ -41,15 +41,16 @@ def new(
 
     What the options say is not asked. The file is printed on stdout; it is one that the robots win, which is tried.
     """
-    from pursue_gen.authoring.dialog import Dialog, wishes
+    from pursue_gen.authoring.dialog import wishes
     from pursue_gen.authoring.first_scenario import checked, place_for, scenario_text, tried
+    from pursue_gen.cli.dialog import StreamDialog
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.files import write_texts
 
     file = place_for(name, output)
     if file.exists() and not force:
         raise usage_error(f"{file} is there already", "choose another name, or replace it with --force")
-    dialog = Dialog(sys.stdin, sys.stderr, quiet=yes)
+    dialog = StreamDialog(sys.stdin, sys.stderr, quiet=yes)
     dialog.say("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
     text = scenario_text(wishes(dialog, None if kind is None else kind.value, places, robots), str(file))
     scenario = checked(text, str(file))

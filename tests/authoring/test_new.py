@@ -10,10 +10,11 @@ from unittest import mock
 
 import pytest
 
-from pursue_gen.authoring.dialog import Dialog, wishes
+from pursue_gen.authoring.dialog import wishes
 from pursue_gen.authoring.first_scenario import scenario_text
 from pursue_gen.authoring.wishes import KINDS, Robot, Task, Wishes, deadline, fewest_places, slow_enough
 from pursue_gen.cli.app import main
+from pursue_gen.cli.dialog import StreamDialog
 from pursue_gen.cli.new import Goal
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, load, parse
@@ -36,8 +37,8 @@ def sound_and_won(text: str, file: str = "floor.pur") -> Scenario:
     return scenario
 
 
-def dialog(*lines: str) -> Dialog:
-    return Dialog(io.StringIO("".join(line + "\n" for line in lines)), io.StringIO())
+def dialog(*lines: str) -> StreamDialog:
+    return StreamDialog(io.StringIO("".join(line + "\n" for line in lines)), io.StringIO())
 
 
 # What it writes is won ------------------------------------------------------------------------------------------------
@@ -47,7 +48,7 @@ def dialog(*lines: str) -> Dialog:
 @pytest.mark.parametrize("robots", [1, 2, 3])
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_every_combination_of_options_is_won(kind: str, robots: int, places: int) -> None:
-    quiet, row = Dialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
+    quiet, row = StreamDialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
     if places < fewest_places(kind):
         with pytest.raises(PursueError) as caught:
             wishes(quiet, kind, row, robots)
@@ -107,7 +108,7 @@ ANSWERS: Dict[str, List[str]] = {
 def test_the_answers_are_in_the_scenario(kind: str) -> None:
     screen = io.StringIO()
     source = io.StringIO("".join(line + "\n" for line in ANSWERS[kind]))
-    found = wishes(Dialog(source, screen), None, None, None)
+    found = wishes(StreamDialog(source, screen), None, None, None)
     assert found.kind == kind
     assert source.read() == ""
     scenario = sound_and_won(scenario_text(found, "floor.pur"))
@@ -122,7 +123,7 @@ def test_the_answers_are_in_the_scenario(kind: str) -> None:
 
 def test_what_is_given_is_not_asked() -> None:
     screen = io.StringIO()
-    found = wishes(Dialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
+    found = wishes(StreamDialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
     assert (found.kind, found.places, len(found.robots)) == ("reach", ("a", "b"), 2)
     for question in ("What is the goal?", "What places", "Which robots"):
         assert question not in screen.getvalue()
@@ -139,7 +140,7 @@ def test_what_is_given_is_not_asked() -> None:
 def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
     screen = io.StringIO()
     source = io.StringIO(f"{answer}\n" + "\n" * 30)
-    assert wishes(Dialog(source, screen), None, None, None).kind == "reach"
+    assert wishes(StreamDialog(source, screen), None, None, None).kind == "reach"
     assert expected in screen.getvalue()
     assert screen.getvalue().count("Number or word?") == (2 if expected else 1)
 
@@ -166,23 +167,23 @@ def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
 )
 def test_a_bad_answer_is_told_and_asked_again(question: str, answer: str, expected: str) -> None:
     usual = io.StringIO()
-    plain = wishes(Dialog(io.StringIO("\n" * 30), usual), "reach", None, None)
+    plain = wishes(StreamDialog(io.StringIO("\n" * 30), usual), "reach", None, None)
     asked = [line for line in usual.getvalue().split("\n") if "[" in line]
     place = next(number for number, line in enumerate(asked) if question in line)
     screen = io.StringIO()
     lines = [""] * place + [answer] + [""] * 30
-    assert wishes(Dialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
+    assert wishes(StreamDialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
     assert expected in screen.getvalue()
     assert screen.getvalue().count(asked[place].strip()) == usual.getvalue().count(asked[place].strip()) + 1
 
 
 def test_who_is_too_fast_to_be_caught_is_asked_again() -> None:
-    quiet = Dialog(io.StringIO(), io.StringIO(), quiet=True)
+    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
     usual = wishes(quiet, "catch", "a,b", 1)
     least = slow_enough("catch", usual.places, usual.distances, usual.robots)
     screen = io.StringIO()
     answers = ["", "", "", "", str(least - 1), str(least), ""]
-    found = wishes(Dialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
+    found = wishes(StreamDialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
     assert found.mobile == least
     assert "could not be sure" in screen.getvalue()
 
@@ -194,7 +195,7 @@ def test_nobody_answers_so_often_wrongly() -> None:
 
 
 def test_suggested_names_are_new_ones() -> None:
-    quiet = Dialog(io.StringIO(), io.StringIO(), quiet=True)
+    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
     for kind in KINDS:
         row = "bot1,fetch,visitor,order,safe,lock,thief,bot1_2"
         found = wishes(quiet, kind, row, 2)
