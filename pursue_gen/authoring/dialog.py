@@ -6,7 +6,7 @@ import abc
 from typing import Callable, List, Optional, Tuple, TypeVar
 
 from pursue_gen.authoring import answers
-from pursue_gen.authoring.wishes import (
+from pursue_gen.authoring.requirements import (
     AVOID,
     CATCH,
     KINDS,
@@ -18,9 +18,9 @@ from pursue_gen.authoring.wishes import (
     NEVER_WITH,
     REACH,
     RESPOND,
+    Requirements,
     Robot,
     Task,
-    Wishes,
     allowed_places,
     fewest_places,
     may_stand,
@@ -48,7 +48,7 @@ class Dialog(abc.ABC):
     """Asks a person, on a terminal or elsewhere."""
 
     @abc.abstractmethod
-    def say(self, text: str) -> None:
+    def show(self, text: str) -> None:
         """Shows a line."""
 
     @abc.abstractmethod
@@ -59,13 +59,15 @@ class Dialog(abc.ABC):
         """
 
 
-def wishes(dialog: Dialog, kind: Optional[str], places: Optional[str], robots: Optional[int]) -> Wishes:
-    """The wishes, from what is given and the answers to the rest. Raises PursueError as `Dialog.ask`, and for `places`
-    that cannot be (exit status 2)."""
+def ask_requirements(dialog: Dialog, kind: Optional[str], places: Optional[str], robots: Optional[int]) -> Requirements:
+    """The requirements, from what is given and the answers to the rest.
+
+    Raises PursueError as `Dialog.ask`, and for `places` that cannot be (exit status 2).
+    """
     if kind is None:
-        dialog.say("What is the goal?")
+        dialog.show("What is the goal?")
         for number, (word, meaning) in enumerate(KINDS.items(), 1):
-            dialog.say(f"  {number} {word}: {meaning}")
+            dialog.show(f"  {number} {word}: {meaning}")
         kind = dialog.ask("Number or word?", REACH, answers.a_choice(KINDS))
     found = _places(dialog, kind, places)
     distances = tuple(
@@ -81,10 +83,10 @@ def wishes(dialog: Dialog, kind: Optional[str], places: Optional[str], robots: O
         question = "Which robots are there? (names, with commas between them)"
         given = dialog.ask(question, ", ".join(suggested), answers.names(found, 1, MOST_ROBOTS))
     team = _team(dialog, kind, found, given)
-    taken = Wishes(kind, found, distances, team).names
+    taken = Requirements(kind, found, distances, team).names
     other, event = _other(dialog, kind, taken, team)
     mobile = _pace(dialog, kind, found, distances, team, other) if kind in (AVOID, CATCH) else None
-    return Wishes(kind, found, distances, team, other, mobile, event)
+    return Requirements(kind, found, distances, team, other, mobile, event)
 
 
 def _places(dialog: Dialog, kind: str, given: Optional[str]) -> Tuple[str, ...]:
@@ -144,7 +146,7 @@ def _other(dialog: Dialog, kind: str, taken: Tuple[str, ...], team: Tuple[Robot,
         other = dialog.ask(question, "", answers.a_name_or_nobody(taken))
         return other, unused("handOver", (*taken, other)) if other else ""
     if kind == NEVER_WITH and len(team) > 1:
-        dialog.say(f"{team[0].name} and {team[1].name} will never meet.")
+        dialog.show(f"{team[0].name} and {team[1].name} will never meet.")
         return "", ""
     question = _WHO[kind].format(robot=team[0].name)
     other = dialog.ask(question, unused(_OTHER[kind], taken), answers.a_name(taken))

@@ -5,7 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Iterable, List, Optional
 
-from pursue_gen.authoring.wishes import AVOID, CATCH, KINDS, NEVER_WITH, REACH, RESPOND, Task, Wishes, deadline, unused
+from pursue_gen.authoring.requirements import (
+    AVOID,
+    CATCH,
+    KINDS,
+    NEVER_WITH,
+    REACH,
+    RESPOND,
+    Requirements,
+    Task,
+    deadline,
+    unused,
+)
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
@@ -20,27 +31,27 @@ from pursue_gen.synthesis.limits import Limits, Listener
 _PATIENCE = 10.0
 
 
-def scenario_text(wishes: Wishes, file: str) -> str:
-    """A scenario that is what was wished for, laid out; `file` is what it will be called."""
-    parts = [_head(wishes, file), _places(wishes), _events(wishes), _order(wishes), _agents(wishes), _goal(wishes)]
+def scenario_text(given: Requirements, file: str) -> str:
+    """A scenario that meets the requirements, laid out; `file` is its name in the comments."""
+    parts = [_head(given, file), _places(given), _events(given), _order(given), _agents(given), _goal(given)]
     return format_text("\n\n".join("\n".join(part) for part in parts if part), file)
 
 
-def _head(wishes: Wishes, file: str) -> List[str]:
+def _head(given: Requirements, file: str) -> List[str]:
     return [
-        f"// A first scenario: {KINDS[wishes.kind]}.",
+        f"// A first scenario: {KINDS[given.kind]}.",
         "// Change whatever you like, then ask again:",
         f"//   pursue-gen check {file}   is anything wrong with it?",
         f"//   pursue-gen solve {file}   can it be done, and how?",
     ]
 
 
-def _places(wishes: Wishes) -> List[str]:
+def _places(given: Requirements) -> List[str]:
     lines = ["// Places. Names stand in quotes here, and without quotes wherever they are used."]
-    lines += [f'poi "{place}"' for place in wishes.places]
-    if wishes.distances:
+    lines += [f'poi "{place}"' for place in given.places]
+    if given.distances:
         lines += ["", "// Ways, in both directions. The unit of distance is yours to choose."]
-    for a, b, distance in zip(wishes.places, wishes.places[1:], wishes.distances):
+    for a, b, distance in zip(given.places, given.places[1:], given.distances):
         lines.append(f"connect {a} and {b} distance {distance}")
     return lines
 
@@ -49,62 +60,62 @@ def _event(task: Task) -> str:
     return f'event "{task.event}" location {task.place}' + (f" duration {task.duration}" if task.duration else "")
 
 
-def _events(wishes: Wishes) -> List[str]:
+def _events(given: Requirements) -> List[str]:
     lines = ["// What can happen. Without a location: anywhere. Without a duration: it takes no time."]
-    lines += [_event(task) for task in wishes.tasks]
-    if wishes.kind == RESPOND:
-        lines.append(f'event "{wishes.event}"')
-    elif wishes.kind == AVOID:
-        lines.append(f'event "{wishes.event}" location {wishes.tasks[0].place}')
-    elif wishes.event:
+    lines += [_event(task) for task in given.tasks]
+    if given.kind == RESPOND:
+        lines.append(f'event "{given.event}"')
+    elif given.kind == AVOID:
+        lines.append(f'event "{given.event}" location {given.tasks[0].place}')
+    elif given.event:
         lines += [
             "// It takes two: one who can do it, and one who reacts to it.",
-            f'event "{wishes.event}" collaborative',
+            f'event "{given.event}" collaborative',
         ]
     return lines
 
 
-def _order(wishes: Wishes) -> List[str]:
+def _order(given: Requirements) -> List[str]:
     """The rule, or for avoid the state."""
-    if wishes.kind == AVOID:
-        state, prevents = unused("safe", wishes.names), wishes.tasks[0].event
+    if given.kind == AVOID:
+        state, prevents = unused("safe", given.names), given.tasks[0].event
         return [
-            f"// A state is true or false. When {prevents} has made this one true, {wishes.event} is not possible.",
+            f"// A state is true or false. When {prevents} has made this one true, {given.event} is not possible.",
             f'state "{state}": initially false, true_if {prevents}',
-            f"stateDependency: {wishes.event} only_if {state} is_false",
+            f"stateDependency: {given.event} only_if {state} is_false",
         ]
-    steps = [task.event for task in wishes.tasks]
-    if wishes.kind == RESPOND:
-        steps.insert(0, wishes.event)
-    elif wishes.kind == REACH and wishes.event:
-        steps.append(wishes.event)
+    steps = [task.event for task in given.tasks]
+    if given.kind == RESPOND:
+        steps.insert(0, given.event)
+    elif given.kind == REACH and given.event:
+        steps.append(given.event)
     if len(steps) < 2:
         return []
     body = steps[0]
     for number, step in enumerate(steps[1:]):
         body = f"({body}) before {step}" if number else f"{body} before {step}"
-    rule = unused("order", wishes.names)
+    rule = unused("order", given.names)
     return ["// The order, round after round: each of these waits for its turn.", f'rule "{rule}": {body}']
 
 
-def _agents(wishes: Wishes) -> List[str]:
-    first, last = wishes.places[0], wishes.places[-1]
+def _agents(given: Requirements) -> List[str]:
+    first, last = given.places[0], given.places[-1]
     lines = [
         "// Who is there. What is controllable does what the plan says.",
         "// mobile 2: needs 2 units of time for one unit of distance; so a larger number is slower.",
     ]
-    for number, robot in enumerate(wishes.robots):
+    for number, robot in enumerate(given.robots):
         can = [robot.task.event] if robot.task is not None else []
-        if wishes.kind == CATCH or (wishes.kind == REACH and wishes.event and number == len(wishes.robots) - 1):
-            can.append(wishes.event)
-        start = last if wishes.kind == NEVER_WITH and number == 1 else first
+        if given.kind == CATCH or (given.kind == REACH and given.event and number == len(given.robots) - 1):
+            can.append(given.event)
+        start = last if given.kind == NEVER_WITH and number == 1 else first
         if robot.mobile is None and robot.task is not None:
             start = robot.task.place
         lines.append(_agent(robot.name, "controllable", robot.mobile, start, f"can_do {', '.join(can)}"))
-    if wishes.other:
+    if given.other:
         lines += ["", "// Not controllable: does what it likes, also the worst."]
-        part = {RESPOND: "can_do", AVOID: "can_do", REACH: "reacts_to", CATCH: "reacts_to"}.get(wishes.kind, "")
-        lines.append(_agent(wishes.other, "", wishes.mobile, last, f"{part} {wishes.event}" if part else ""))
+        part = {RESPOND: "can_do", AVOID: "can_do", REACH: "reacts_to", CATCH: "reacts_to"}.get(given.kind, "")
+        lines.append(_agent(given.other, "", given.mobile, last, f"{part} {given.event}" if part else ""))
     return lines
 
 
@@ -117,24 +128,24 @@ def _words(words: Iterable[str]) -> str:
     return " ".join(word for word in words if word)
 
 
-def _goal(wishes: Wishes) -> List[str]:
-    tasks = wishes.tasks
-    if wishes.kind == RESPOND:
-        time = deadline(wishes.distances, wishes.robots)
+def _goal(given: Requirements) -> List[str]:
+    tasks = given.tasks
+    if given.kind == RESPOND:
+        time = deadline(given.distances, given.robots)
         return [
             "// What has to hold always. Try a shorter time: when it is too short, solve says so, and what would help.",
-            f"objective: if {wishes.event} then {tasks[-1].event} within {time}",
+            f"objective: if {given.event} then {tasks[-1].event} within {time}",
         ]
-    if wishes.kind == AVOID:
-        return ["// What must never happen.", f"objective: avoid {wishes.event}"]
-    if wishes.kind == NEVER_WITH:
-        second = wishes.other or wishes.robots[1].name
+    if given.kind == AVOID:
+        return ["// What must never happen.", f"objective: avoid {given.event}"]
+    if given.kind == NEVER_WITH:
+        second = given.other or given.robots[1].name
         return [
             "// What must always hold (never at one place, and never face to face on a way), and what has to be done.",
-            f"objective: {wishes.robots[0].name} never_with {second}",
+            f"objective: {given.robots[0].name} never_with {second}",
             f"reach_objective: do {tasks[-1].event}",
         ]
-    return ["// What is wanted.", f"reach_objective: do {wishes.event or tasks[-1].event}"]
+    return ["// What is wanted.", f"reach_objective: do {given.event or tasks[-1].event}"]
 
 
 def place_for(name: str, output: Optional[Path]) -> Path:

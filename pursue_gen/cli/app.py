@@ -12,7 +12,7 @@ import typer
 
 from pursue_gen import __version__
 from pursue_gen.cli.bundle import bundle
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain as explain_code
 from pursue_gen.cli.fmt import fmt
@@ -97,7 +97,7 @@ def check(
     else:
         show(findings, sys.stdout)
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
-    tell(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
+    info(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
     if errors:
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(3)
@@ -165,7 +165,7 @@ def solve(
     except PursueError as problem:
         kept = keep_counter(problem, network, objective, output)
         if kept is not None:
-            tell(f"The counter-strategy is in {kept}")
+            info(f"The counter-strategy is in {kept}")
         explained = explain_loss(problem, files, rules, explain, limits, as_json_)
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
@@ -180,8 +180,8 @@ def solve(
         print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
     elif output is None:
         print(plan, end="")
-    tell(verdict_text(won))
-    tell(margin_text(won, *found))
+    info(verdict_text(won))
+    info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Dict, Optional, Tuple
 
 import typer
 
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import COMPUTED_POSES, EXPLAIN, KEY, KEYS, MISSION, POSES, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
@@ -60,7 +60,7 @@ def bundle(
     manifest, files = mission_of_scenario(scenario, request, poses, computed_poses, explain)
     write_bytes({target: sign(manifest, files, private)})
     print(target, manifest.digest, sep="\n")
-    tell(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
+    info(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
     suggest(f"pursue-gen send {shell_quoted(target)} --to robots.yaml")
 
 
@@ -102,4 +102,4 @@ def _print_bundle(file: Path, folder: Path) -> None:
         print(f"{name:12}  {what}")
     for path, content in sorted(found.files.items()):
         print(f"  {path:40}  {len(content)} bytes")
-    tell(f"{file} is as it was signed.")
+    info(f"{file} is as it was signed.")

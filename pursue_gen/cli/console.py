@@ -1,4 +1,4 @@
-"""How the commands talk: data on stdout, everything else on stderr, and never a traceback."""
+"""Output of the commands: data on stdout, everything else on stderr, and never a traceback."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ import typer
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
 
 INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
-"""Exit statuses beside those of PursueError: a fault of ours; Ctrl-C; nobody reads what we print."""
+"""Exit statuses beside those of PursueError: an internal fault; Ctrl-C; stdout is closed."""
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33"}
 
 
-def tell(text: str) -> None:
-    """A line for the person, on stderr."""
+def info(text: str) -> None:
+    """Prints a line on stderr."""
     print(text, file=sys.stderr)
 
 
 def suggest(*commands: str) -> None:
-    """What the person may want to do next."""
+    """Prints the commands that may come next, on stderr."""
     for number, command in enumerate(commands):
-        tell(f"{'next:' if number == 0 else '     '} {command}")
+        info(f"{'next:' if number == 0 else '     '} {command}")
 
 
 def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> None:
-    """The diagnostics with their source lines; on stderr unless another stream is given."""
+    """Prints diagnostics with their source lines; on stderr unless another stream is given."""
     out = sys.stderr if stream is None else stream
     sources: Dict[str, Optional[str]] = {}
     for diagnostic in diagnostics:
@@ -44,7 +44,7 @@ def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> 
 
 
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
-    """The command, with its exceptions as messages and exit statuses."""
+    """Wraps a command: its exceptions become messages and exit statuses."""
 
     @functools.wraps(command)
     def run(*args: Any, **kwargs: Any) -> None:
@@ -54,7 +54,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         except (typer.Exit, typer.Abort):
             raise
         except KeyboardInterrupt:
-            tell("interrupted")
+            info("interrupted")
             status = INTERRUPTED
         except PursueError as problem:
             show(problem.diagnostics)
@@ -73,11 +73,11 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _internal(problem: Exception) -> int:
-    """A fault of ours, in a sentence; with PURSUE_DEBUG set, with its traceback."""
+    """Prints an internal fault in a line and returns the exit status; with PURSUE_DEBUG set, raises it."""
     if os.environ.get("PURSUE_DEBUG"):
         raise problem
-    tell(f"error: pursue-gen has a fault of its own: {type(problem).__name__}: {problem}")
-    tell("    help: please report it, with the file and with what PURSUE_DEBUG=1 prints")
+    info(f"error: pursue-gen has a fault of its own: {type(problem).__name__}: {problem}")
+    info("    help: please report it, with the file and with what PURSUE_DEBUG=1 prints")
     return INTERNAL
 
 

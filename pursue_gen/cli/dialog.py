@@ -16,7 +16,7 @@ class StreamDialog(Dialog):
     def __init__(self, source: TextIO, screen: TextIO, quiet: bool = False) -> None:
         self._source, self._screen, self._quiet = source, screen, quiet
 
-    def say(self, text: str) -> None:
+    def show(self, text: str) -> None:
         if not self._quiet:
             print(text, file=self._screen)
 
@@ -28,7 +28,7 @@ class StreamDialog(Dialog):
             try:
                 return accept(self._line() or suggestion)
             except ValueError as problem:
-                self.say(f"  {problem}")
+                self.show(f"  {problem}")
         raise _ended(f"{_PATIENCE} answers in a row could not be used")
 
     def _line(self) -> str:
@@ -40,7 +40,7 @@ class StreamDialog(Dialog):
             print(file=self._screen)
             raise _ended("the answers ended before the questions did")
         if not self._source.isatty():  # a terminal has shown the answer already
-            self.say(line.strip())
+            self.show(line.strip())
         return line.strip()
 
 

@@ -7,7 +7,7 @@ from typing import Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.files import shell_quoted
 
 keys = typer.Typer(
@@ -37,8 +37,8 @@ def new(
 
     private, public = new_key(name, folder or keys_folder(), force)
     print(private)
-    tell(f"{private} signs missions: keep it to yourself.")
-    tell(f"{public} goes to every robot, into $ROS_HOME/pursue/keys (~/.ros/pursue/keys).")
+    info(f"{private} signs missions: keep it to yourself.")
+    info(f"{public} goes to every robot, into $ROS_HOME/pursue/keys (~/.ros/pursue/keys).")
     copied = f"ssh robot1 mkdir -p .ros/pursue/keys && scp {shell_quoted(public)} robot1:.ros/pursue/keys/"
     suggest(copied, "pursue-gen bundle SCENARIO.pur")
 
@@ -57,7 +57,7 @@ def list_(folder: Optional[Path] = FOLDER) -> None:
     for name, key in found.items():
         print(f"{name:20}  {fingerprint(key)}  {'private and public' if name in private else 'public only'}")
     if not found:
-        tell(f"There is no key in {place}.")
+        info(f"There is no key in {place}.")
         suggest("pursue-gen keys new NAME")
 
 
@@ -72,5 +72,5 @@ def show_(
 
     key = load_public(name, folder or keys_folder())
     print(write_public_key(key, name), end="")
-    tell(f"Its fingerprint is {fingerprint(key)}.")
-    tell(f"Put the line into a file {name}.pub in $ROS_HOME/pursue/keys (~/.ros/pursue/keys) on every robot.")
+    info(f"Its fingerprint is {fingerprint(key)}.")
+    info(f"Put the line into a file {name}.pub in $ROS_HOME/pursue/keys (~/.ros/pursue/keys) on every robot.")

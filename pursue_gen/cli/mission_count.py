@@ -14,7 +14,7 @@ _REDRAW = 0.2
 
 @contextlib.contextmanager
 def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
-    """Something to tell how many of all missions are done; the line on stderr is erased at the end, however that comes.
+    """A listener for how many of all missions are done; its line on stderr is erased at the end, however that comes.
 
     Nothing is drawn if `quiet`, or where stderr is no terminal that can do it.
     """
@@ -25,7 +25,7 @@ def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
     start = time.monotonic()
     drawn = [start]
 
-    def told(done: int) -> None:
+    def update(done: int) -> None:
         now = time.monotonic()
         if now >= drawn[-1] + _REDRAW:
             drawn[:] = [now]
@@ -34,7 +34,7 @@ def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
             out.flush()
 
     try:
-        yield told
+        yield update
     finally:
         if drawn != [start]:
             out.write("\r\033[K")

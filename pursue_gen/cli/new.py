@@ -10,8 +10,8 @@ from typing import Optional
 
 import typer
 
-from pursue_gen.authoring.wishes import MOST_ROBOTS
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.authoring.requirements import MOST_ROBOTS
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.diagnostics import PursueError, usage_error
 
 
@@ -41,7 +41,7 @@ def new(
 
     What the options say is not asked. The file is printed on stdout; it is one that the robots win, which is tried.
     """
-    from pursue_gen.authoring.dialog import wishes
+    from pursue_gen.authoring.dialog import ask_requirements
     from pursue_gen.authoring.first_scenario import checked, place_for, scenario_text, tried
     from pursue_gen.cli.dialog import StreamDialog
     from pursue_gen.cli.progress import progress_line
@@ -51,8 +51,8 @@ def new(
     if file.exists() and not force:
         raise usage_error(f"{file} is there already", "choose another name, or replace it with --force")
     dialog = StreamDialog(sys.stdin, sys.stderr, quiet=yes)
-    dialog.say("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
-    text = scenario_text(wishes(dialog, None if kind is None else kind.value, places, robots), str(file))
+    dialog.show("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
+    text = scenario_text(ask_requirements(dialog, None if kind is None else kind.value, places, robots), str(file))
     scenario = checked(text, str(file))
     problem: Optional[PursueError] = None
     try:
@@ -63,7 +63,7 @@ def new(
     write_texts({file: text})
     print(file)
     if problem is None:
-        tell("It is sound, and the robots can do it whatever the others do.")
+        info("It is sound, and the robots can do it whatever the others do.")
     else:
         show(problem.diagnostics)
     suggest(f"pursue-gen solve {shlex.quote(str(file))}")

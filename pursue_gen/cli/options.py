@@ -75,7 +75,7 @@ VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if n
 OPTIMIZE = typer.Option(
     None,
     help="time: look for the strategy with the least worst-case time to the goal, for two minutes or as --limit says; "
-    "what is proven is told.",
+    "the proven bounds are printed.",
 )
 EXPLAIN = typer.Option(
     True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."

@@ -69,7 +69,7 @@ def play(
         except KeyboardInterrupt:
             line = ""
         if not line:
-            if not session.table.over:  # else it has been said
+            if not session.table.over:  # else the table has been printed
                 print(("\n" if interactive else "") + farewell(session))
             return
         if not interactive:

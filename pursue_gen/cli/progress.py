@@ -42,7 +42,7 @@ class _Line:
         self._drawn = False
 
     def show(self, progress: Progress) -> None:
-        """Draws it, unless that was done a moment ago."""
+        """Draws it, unless that was done less than `_REDRAW` seconds ago."""
         now = time.monotonic()
         if now < self._next:
             return

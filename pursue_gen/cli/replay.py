@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, tell
+from pursue_gen.cli.console import guarded, info
 from pursue_gen.cli.options import JSON, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 
@@ -72,7 +72,7 @@ def _draw(record: Record, game: Game, recording: Path, timeline: Path) -> None:
     if shown is None:
         raise usage_error(f"the mission never starts in {recording}", "leave out --timeline: there is nothing to draw")
     write(shown, timeline)
-    tell(f"{timeline} shows the mission")
+    info(f"{timeline} shows the mission")
 
 
 def _print(findings: Findings, record: Record, recording: Path, quiet: bool, as_json_: bool) -> None:
@@ -80,7 +80,7 @@ def _print(findings: Findings, record: Record, recording: Path, quiet: bool, as_
 
     if as_json_:
         print(json.dumps(as_json(findings, record, str(recording)), indent=1))
-        tell(verdict(findings))
+        info(verdict(findings))
         return
     for line in listed(findings, notes=not quiet) if not quiet or not findings.kept else ():
         print(line)

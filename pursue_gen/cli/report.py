@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
 from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import PursueError, counted, error, usage_error
@@ -93,9 +93,7 @@ def _check_target(target: Path) -> None:
             raise usage_error(f"{target} is there and is no report", "name another file, or replace it with --force")
 
 
-def _print_tables(
-    scenario: Scenario, reach_obj: Optional[str], solving: SolveOptions, as_json_: bool
-) -> None:
+def _print_tables(scenario: Scenario, reach_obj: Optional[str], solving: SolveOptions, as_json_: bool) -> None:
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.proof.margin import as_json as margin_json
     from pursue_gen.proof.margin import told
@@ -169,5 +167,5 @@ def _write_page(made: Report, target: Path) -> None:
     write_texts({target: report_page(made)})
     print(target)
     if not graphviz.installed():
-        tell(f"Some pictures are missing in it: {graphviz.HOW_TO_GET}.")
+        info(f"Some pictures are missing in it: {graphviz.HOW_TO_GET}.")
     suggest(f"xdg-open {shell_quoted(target)}")

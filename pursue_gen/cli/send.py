@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 import typer
 
 from pursue_gen.cli.bundle import mission_of_scenario
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import COMPUTED_POSES, EXPLAIN, JSON, KEY, KEYS, MISSION, POSES, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
@@ -57,7 +57,7 @@ def send(
     from pursue_gen.transport.bundles import is_bundle, sign
     from pursue_gen.transport.keys import load_private
     from pursue_gen.transport.robots_file import chosen, read_robots
-    from pursue_gen.transport.send_ended import after_waiting, success
+    from pursue_gen.transport.send_outcome import after_waiting, success
     from pursue_gen.transport.sender import wait as wait_for
 
     is_default = request.is_default and poses is None and not computed_poses
@@ -82,7 +82,7 @@ def send(
     if sent.done and wait is not None:
         rows = after_waiting(sent, wait_for(robots, sent.mission, wait))
     _show(rows, as_json_, mission=sent.mission, done=sent.done, unchanged=sent.unchanged, trouble=sent.trouble)
-    tell(success(sent, rows, wait, to))
+    info(success(sent, rows, wait, to))
     start = "rostopic pub -1 pursue/events std_msgs/String _start_"
     suggest(f"pursue-gen send --status --to {shell_quoted(to)}", start)
 
@@ -129,13 +129,13 @@ def _send(
     packages = {path.split("/")[0] for path in manifest.files}
     check = fits(manifest.digest, packages, len(content), all_robots)
     with upload_lines(quiet) as progress:
-        return send_to(robots, manifest.digest, content, private, check, progress, report=tell)
+        return send_to(robots, manifest.digest, content, private, check, progress, report=info)
 
 
 def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519PrivateKey, as_json_: bool) -> Sent:
     """Orders the robots back to an earlier mission; where one is out of reach, prints the table and raises."""
     from pursue_gen.transport.send_checks import kept_by_all, mission_digest, previous
-    from pursue_gen.transport.send_ended import all_reached
+    from pursue_gen.transport.send_outcome import all_reached
     from pursue_gen.transport.send_table import with_activity
     from pursue_gen.transport.sender import look
     from pursue_gen.transport.sender import send as send_to
@@ -145,12 +145,12 @@ def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519
         _show(rows, as_json_, looked=True)
     statuses = all_reached(rows)
     wanted = previous(statuses) if mission is None else mission_digest(mission, statuses)
-    return send_to(robots, wanted, b"", private, kept_by_all(wanted), report=tell)
+    return send_to(robots, wanted, b"", private, kept_by_all(wanted), report=info)
 
 
 def _show_status(robots: Sequence[Robot], as_json_: bool) -> None:
     """Prints what each robot plays, as a table."""
-    from pursue_gen.transport.send_ended import check_alike
+    from pursue_gen.transport.send_outcome import check_alike
     from pursue_gen.transport.send_table import with_activity
     from pursue_gen.transport.sender import look
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Dict, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, usage_error
 from pursue_gen.files import shell_quoted
@@ -85,7 +85,7 @@ def sim(
     show(won.warnings)
     case, knows = make_case(read, won, request, opponent.value, kinds, until)
     if not knows:
-        tell("the game is too large to tell how long plays can be: the worst opponent does anything")
+        info("the game is too large to tell how long plays can be: the worst opponent does anything")
     with counting(runs, as_json_) as count:
         summary = simulate(case, range(seed, seed + runs), jobs, count)
     if timeline is not None:
@@ -110,7 +110,7 @@ def _draw(case: Case, seed: int, timeline: Path) -> None:
     from pursue_gen.report.recording import simulated
 
     write(simulated(case, seed), timeline)
-    tell(f"{timeline} shows the mission")
+    info(f"{timeline} shows the mission")
 
 
 def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
@@ -121,9 +121,9 @@ def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) 
     else:
         print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
     if summary.failed:
-        tell(f"{counted(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
+        info(f"{counted(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
         for outcome in summary.failures:
-            tell("\n".join(failure(outcome, _again(outcome.seed))))
+            info("\n".join(failure(outcome, _again(outcome.seed))))
 
 
 def _again(seed: int) -> str:

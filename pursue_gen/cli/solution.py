@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Dict, Optional, Sequence
 
 from pursue_gen import language
-from pursue_gen.cli.console import show, tell
+from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
@@ -38,9 +38,9 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, file: Optional[Pa
         raise
     show(won.warnings)
     if request.plan is None:
-        tell(verdict_text(won))
+        info(verdict_text(won))
     elif not won.warnings:
-        tell(f"{request.plan} wins: {rules_text(won.rules)}")
+        info(f"{request.plan} wins: {rules_text(won.rules)}")
     return won
 
 
@@ -57,8 +57,8 @@ def explain_loss(
         return {}
     show(problem.diagnostics)
     seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS
-    tell(f"Looking for what would change that, for at most {seconds:g} s (--no-explain leaves it out) …")
+    info(f"Looking for what would change that, for at most {seconds:g} s (--no-explain leaves it out) …")
     with progress_line(quiet) as progress:
         explanation = explain(language.load(files[0]), rules, replace(limits, seconds=seconds), progress)
-    tell(render(explanation).rstrip())
+    info(render(explanation).rstrip())
     return {"explanation": as_json(explanation)}

@@ -43,7 +43,7 @@ class _Lines:
         self._next = 0.0
 
     def show(self, robot: Robot, sent: int, size: int) -> None:
-        """Draws all lines, unless that was done a moment ago and there is more to come."""
+        """Draws all lines, unless that was done less than `_REDRAW` seconds ago and there is more to come."""
         with self._lock:
             self._sent[robot.name] = (sent, size)
             if time.monotonic() >= self._next or sent == size:

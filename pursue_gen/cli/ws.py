@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, show, suggest, tell
+from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, SCENARIO, Controllers, with_request
 from pursue_gen.files import shell_quoted
 
@@ -46,12 +46,12 @@ def ws(
 
     read = scenario_from(scenario)
     if request.decides_ends:
-        tell("ends: controllable, since a general controller decides them itself (else: --ends reported)")
+        info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     won = solve_and_print(read, request, scenario if explain else None)
     made = make_workspace(read, won, request, Extras(machines, docker, systemd), folder, force)
-    tell(made.margin)
+    info(made.margin)
     show(made.findings)
     print(made.folder)
-    tell(f"A workspace for {read.name} is in {made.folder}; its README.md says what is in it.")
+    info(f"A workspace for {read.name} is in {made.folder}; its README.md says what is in it.")
     launch = f"roslaunch {read.name}_bringup mission.launch"
     suggest(f"cd {shell_quoted(made.folder)} && catkin_make", "source devel/setup.bash", launch)

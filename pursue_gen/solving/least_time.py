@@ -11,7 +11,7 @@ itself is seldom kept, but every time above it is. Three things enclose it:
 
 Let 1/k be the unit in which all constants and the reaction are integers. What wins a game is a union of zones with
 integer bounds in that unit, whatever value the counting clock starts from, so winning at the start ends at an integer:
-v is a multiple of 1/k. A deadline a little above such a multiple, by less than 1/k, therefore tells whether v is
+v is a multiple of 1/k. A deadline a little above such a multiple, by less than 1/k, therefore decides whether v is
 at most the multiple, and a bisection over the multiples finds v itself.
 """
 
@@ -34,7 +34,7 @@ from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
 
 SECONDS = 120.0
-"""So long it is looked for where nobody sets a limit; then the best that was found counts."""
+"""The time of the search where no limit is set; then the best strategy found so far counts."""
 
 TOLERANCE = Fraction(1, 10)
 """A strategy that is made for a deadline keeps v and at most so many time units more."""
@@ -98,9 +98,7 @@ class Faster:
     kept: Fraction
 
 
-def bounds(
-    network: Network, objective: Objective, reaction: Fraction, worst: Optional[Fraction] = None
-) -> Guarantee:
+def bounds(network: Network, objective: Objective, reaction: Fraction, worst: Optional[Fraction] = None) -> Guarantee:
     """What is known of v at once, with a strategy that takes `worst`."""
     game = compile_game(network, objective, reaction)
     least = least_time(game)

@@ -1,4 +1,4 @@
-"""What a person asks for, as text on a command line, and the proven solution that answers it."""
+"""Requests as text from a command line, and the proven solution of one."""
 
 from __future__ import annotations
 

@@ -57,9 +57,7 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     return Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
 
 
-def fastest_solution(
-    network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT
-) -> Solution:
+def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
     """As `solution`, with the proven strategy that takes the least time to the goal at worst, as far as it is found.
 
     Raises as `solution`, and with exit status 2 for an objective without a goal. A limit that is hit after the first
@@ -116,8 +114,6 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:
     """True if the ideal game is known to be won; that it is not decided in time takes nothing from the verdict."""
     try:
-        return solve(
-            network, objective, engine=options.engine, limits=options.limits, progress=options.progress
-        ).won
+        return solve(network, objective, engine=options.engine, limits=options.limits, progress=options.progress).won
     except PursueError:
         return False

@@ -46,9 +46,7 @@ def _timed(won: Solution, limits: Limits) -> Solution:
     return won if won.objective.kind is Kind.SAFETY else replace(won, guarantee=guaranteed(won, limits=limits))
 
 
-def keep_counter(
-    problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]
-) -> Optional[Path]:
+def keep_counter(problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]) -> Optional[Path]:
     """Writes verifytga's counter-strategy beside the file that is named for the plan, and returns its file.
 
     None, with nothing written, where there is no counter-strategy or no such file.

@@ -1,7 +1,7 @@
 """UPPAAL-TIGA's `verifytga` as a solver, for those who have it: its strategy is read, proven here, and then used.
 
 The tool gets the network and the query as files in a folder of its own and prints what `plan.read_plan` reads. It
-knows no reaction delay: it plays with a delay of 0, and the checker holds its strategy against the delay asked for.
+knows no reaction delay: it plays with a delay of 0, and the checker holds its strategy against the required delay.
 What is known of its output comes from recorded runs of the original tool chain. There `-t0` prints the strategy; the
 thesis found versions that want `-w0` instead.
 """
@@ -75,7 +75,7 @@ class Run:
 
     @property
     def before(self) -> str:
-        """What it printed before the strategy, on both of its streams: where it tells what went wrong."""
+        """What it printed before the strategy, on both of its streams: where its error messages are."""
         header = _HEADER.search(self.output)
         return f"{self.output[: header.start()] if header else self.output}\n{self.messages}"
 
@@ -111,7 +111,7 @@ def run_verifytga(
     """The strategy of verifytga for the game on the network as it stands: proven, and without what no play reaches.
 
     `path` is the program (default: the verifytga on PATH), `limits` hold for it and, with the time that is left, for
-    the proof, of which `progress` tells; `reaction` is the delay of commands, in time units, under which its strategy
+    the proof, which calls `progress`; `reaction` is the delay of commands, in time units, under which its strategy
     has to win. In the statistics the discrete states are those of its plan, the zones those on its last line of
     progress.
 
@@ -214,7 +214,7 @@ def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
 
 
 def _memory_setter(memory: int) -> Optional[Callable[[], None]]:
-    """What gives a new process at most so many MiB (0: None); it then gets no more, and says so itself."""
+    """What gives a new process at most so many MiB (0: None); it then gets no more, and reports that itself."""
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]
     size = memory << 20
     if not size or (hard != resource.RLIM_INFINITY and hard <= size):
@@ -224,23 +224,23 @@ def _memory_setter(memory: int) -> Optional[Callable[[], None]]:
 
 def _failure(run: Run, limits: Limits) -> ToolError:
     """What went wrong in a run that printed no strategy."""
-    told = run.before
+    text = run.before
     verdict = _VERDICT.search(run.output)
     code, exit_status = "SYN032", _UNUSABLE
     hint = f"try it by hand with the files that `pursue-gen tga` writes; {_OURS}"
     if run.status is None:
         code, exit_status = "SYN010", _LIMIT
         message, hint = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds", f"allow more; {_OURS}"
-    elif _MEMORY.search(told) or run.status == -signal.SIGKILL:
+    elif _MEMORY.search(text) or run.status == -signal.SIGKILL:
         code, exit_status = "SYN010", _LIMIT
-        surely = "ran out of memory" if _MEMORY.search(told) else "was killed, most likely for want of memory"
+        surely = "ran out of memory" if _MEMORY.search(text) else "was killed, most likely for want of memory"
         of = f" (the limit is {limits.memory} MiB)" if limits.memory else ""
         smaller = "make the scenario smaller: fewer agents, POIs or events"
         message, hint = f"{TOOL} {surely}{of}", f"{'allow more (--memory), or ' if of else ''}{smaller}; {_OURS}"
     elif run.status == -signal.SIGXCPU:
         code, exit_status = "SYN010", _LIMIT
         message, hint = f"{TOOL} reached the limit on time of this shell (ulimit -t)", f"allow more; {_OURS}"
-    elif not verdict and _LICENCE.search(told):
+    elif not verdict and _LICENCE.search(text):
         message, hint = f"{TOOL} asks for a licence", f"start it by hand once and do what it asks for; {_OURS}"
     elif run.status < 0:
         message = f"{TOOL} crashed"
@@ -308,12 +308,12 @@ def _particulars(run: Run) -> str:
     if run.status is not None and run.status < 0:
         ended = f"ended by signal {-run.status} ({signal.strsignal(-run.status)})"
     lines = [f"      command: {' '.join(run.command)}", f"      {ended}; its last lines:"]
-    lines += [f"        {line}" for line in _last_lines(run.before)] or ["        (it said nothing)"]
+    lines += [f"        {line}" for line in _last_lines(run.before)] or ["        (no output)"]
     return "\n" + "\n".join(lines)
 
 
 def _last_lines(text: str) -> Tuple[str, ...]:
-    """The last lines that say something, made fit for a terminal."""
+    """The last lines with content, made fit for a terminal."""
     printable = ("".join(c if c.isprintable() else " " for c in line).strip() for line in text.splitlines())
-    said = [line for line in printable if line and not _PROGRESS.fullmatch(line)]
-    return tuple(line[:_LAST_COLUMNS] for line in said[-_LAST_LINES:])
+    kept = [line for line in printable if line and not _PROGRESS.fullmatch(line)]
+    return tuple(line[:_LAST_COLUMNS] for line in kept[-_LAST_LINES:])

@@ -1,7 +1,7 @@
-"""One robot, over HTTP: its health, and an order for it (thesis: MissionSender). What it answers is not trusted.
+"""One robot, over HTTP: its health, and an order for it (thesis: MissionSender). Its answers are not trusted.
 
-Nothing is followed elsewhere, an answer has at most ANSWER_LIMIT bytes, and each exchange ends in time, however slowly
-the other side speaks.
+Nothing is followed elsewhere, an answer has at most ANSWER_LIMIT bytes, and each exchange ends in time, however slow
+the other side is.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _WORDS = 300
 """Letters of a robot's text that are shown."""
 
 Listener = Callable[[int], None]
-"""Is told how many bytes of a bundle have been sent."""
+"""Called with how many bytes of a bundle have been sent."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Status:
-    """What a robot's reader says of itself; missions are digests, OWN the workspace's.
+    """The status that a robot's reader reports; missions are digests, OWN the workspace's.
 
     `current` is what its nodes start with, `next` what follows when the mission under way has ended, `prepared` what
     an order to commit would make so; `kept` are in its store, `history` its earlier ones, newest last; `packages` those
@@ -86,7 +86,7 @@ class Status:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a robot says to an order; `status` as it is afterwards, where it tells."""
+    """A robot's answer to an order; `status` is that after it, where it is reported."""
 
     http: int
     ok: bool
@@ -104,7 +104,7 @@ class Unreached(Exception):
 
 
 def health(robot: Robot) -> Status:
-    """Asks a robot how it is. Raises Unreached."""
+    """Queries the status of a robot. Raises Unreached."""
     code, facts = _exchange(robot, "GET", "/health", {}, b"", None)
     if code == 200:
         return _status(facts)
@@ -124,7 +124,7 @@ def send_order(robot: Robot, order: str, bundle: bytes = b"", listener: Optional
 
 
 def _why_not(facts: Mapping[str, Any]) -> str:
-    """Why a robot does not say how it is: its own sentence where there is one, else its word for it."""
+    """Why a robot does not report its status: its message where there is one, else its code."""
     message, code = (plain(text) if isinstance(text, str) else "" for text in (facts.get("message"), facts.get("code")))
     return message or (f"refuses: {code}" if code else "its pursue_reader is silent")
 
@@ -220,7 +220,7 @@ def _reason(problem: Exception, late: bool, robot: Robot) -> str:
     if isinstance(problem, http.client.IncompleteRead):
         return "its answer is cut off"
     if isinstance(problem, http.client.HTTPException):
-        return "what it answers is not HTTP"
+        return "its answer is not HTTP"
     return plain(getattr(problem, "strerror", None) or str(problem))[:120].lower()
 
 
@@ -237,13 +237,13 @@ def _object(code: int, content: bytes) -> Mapping[str, Any]:
     return facts
 
 
-# What it says of itself -----------------------------------------------------------------------------------------------
+# Its status ----------------------------------------------------------------------------------------------------------
 
 
 def _status(facts: object) -> Status:
     """Checks all that is used. Raises Unreached."""
     if not isinstance(facts, dict):
-        raise Unreached("it says nothing of itself", True)
+        raise Unreached("it reports no status", True)
     if facts.get("format") != 1:
         raise Unreached(f"it speaks format {plain(str(facts.get('format')))[:20]} of orders; this is 1", True)
     texts = [facts.get(name) for name in ("robot", "ticket", "scenario")]
@@ -261,7 +261,7 @@ def _status(facts: object) -> Status:
         and type(limit) is int
     )
     if not good:
-        raise Unreached("what it says of itself lacks or misspells something", True)
+        raise Unreached("a field of its status is missing or has a wrong type", True)
     robot, ticket, scenario = (plain(str(text)) for text in texts)
     return Status(
         robot,

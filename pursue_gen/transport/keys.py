@@ -41,7 +41,7 @@ _OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 
 def keys_folder() -> Path:
-    """Where keys are unless told otherwise: `$XDG_CONFIG_HOME/pursue/keys`, or `~/.config/pursue/keys`."""
+    """Where keys are by default: `$XDG_CONFIG_HOME/pursue/keys`, or `~/.config/pursue/keys`."""
     config = os.environ.get("XDG_CONFIG_HOME", "")
     base = Path(config) if os.path.isabs(config) else Path(os.path.expanduser("~")) / ".config"
     return base / "pursue" / "keys"
@@ -80,7 +80,7 @@ def new_key(name: str, folder: Path, force: bool = False) -> Tuple[Path, Path]:
 
 
 def _write_private(file: Path, text: bytes, force: bool) -> None:
-    """Complete or not at all, and never to be read by others, not even for a moment."""
+    """Complete or not at all, and at no time readable by others."""
     handle, aside = tempfile.mkstemp(prefix=f".{file.name}.", dir=str(file.parent))  # its mode is 0600
     try:
         with open(handle, "wb") as stream:
@@ -109,7 +109,7 @@ def default_key(folder: Path) -> str:
         raise PursueError([error("TRN002", f"there is no key to sign with in {folder}", hint=hint)], exit_status=2)
     if len(names) > 1:
         message = f"there are several keys in {folder}: {', '.join(names)}"
-        raise PursueError([error("TRN006", message, hint=f"say which one: --key {names[0]}")], exit_status=2)
+        raise PursueError([error("TRN006", message, hint=f"name one: --key {names[0]}")], exit_status=2)
     return names[0]
 
 

@@ -1,4 +1,4 @@
-"""The file that says where the robots listen (robots.yaml), read with a place for everything that is wrong."""
+"""The file that says where the robots listen (robots.yaml), read with a place for every error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pursue_gen.transport.client import PORT, Robot, plain
 
 FORMAT = 1
 TIMEOUT = 5.0
-"""Seconds that a robot may take for an answer, unless told otherwise."""
+"""Seconds that a robot may take for an answer, by default."""
 
 _LONGEST = 3600.0
 _LARGEST = 10**6
@@ -148,7 +148,7 @@ class _Reader:
         return str(node.value) if node.tag == tag and isinstance(node.value, str) else None
 
     def _entries(self, node: Any, known: Optional[Sequence[str]], what: str) -> Entries:
-        """A mapping's entries; all that is wrong with its keys is told."""
+        """A mapping's entries; raises for all wrong keys together."""
         if node is None or node.tag == _NULL:
             return {}
         if not isinstance(node.value, list) or not node.tag.endswith(":map"):

@@ -13,7 +13,7 @@ UNCHANGED, DIFFERENT = 7, 8
 """Exit statuses: nothing has changed; the robots differ, or it is not known how they stand."""
 OWN_WORD = "own"
 _SHORTEST = 4
-"""So many digits of a digest have to be said at least."""
+"""The fewest digits that name a mission."""
 
 
 def fits(mission: str, packages: Collection[str], size: int, all_robots: bool) -> Check:
@@ -67,7 +67,7 @@ def mission_digest(text: str, statuses: Sequence[Status]) -> str:
 
 def previous(statuses: Sequence[Status]) -> str:
     """The mission that all robots had before: the last of the earlier ones that all of them still keep. Where they
-    differ, for a desk has died while it told them, it is the last that all have played: some may still stand at it.
+    differ, since a desk died while it committed, it is the last that all have played: some may still stand at it.
 
     Raises PursueError (exit status 7) where there is none, or where they do not agree on which it is.
     """
@@ -78,7 +78,7 @@ def previous(statuses: Sequence[Status]) -> str:
     if len(last) == 1:
         return last.pop()
     why = "the robots do not agree on an earlier mission" if len(statuses) > 1 else "there is no earlier mission"
-    hint = f"say which: pursue-gen send --back DIGEST, or own. {_what_each_has(statuses)}"
+    hint = f"name one: pursue-gen send --back DIGEST, or own. {_what_each_has(statuses)}"
     raise PursueError([error("TRN032", why, hint=hint)], UNCHANGED)
 
 

@@ -11,6 +11,7 @@ from pursue_runtime.manifest import mission_id
 
 _HEAD = ("robot", "address", "now", "before", "prepared", "outcome")
 
+
 def table(rows: Sequence[Row], looked: bool = False) -> List[str]:
     """One line per robot, below a head; `?` where something is not known, `-` where there is nothing.
 

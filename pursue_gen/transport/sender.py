@@ -1,8 +1,8 @@
 """Missions to several robots at once (thesis: MissionSender): all of them change, or none.
 
-First every robot is asked how it is; then all are told to prepare the mission, side by side; only when all have it are
-they told to commit, the observer's machine last, since the observer decides which mission is played. Where one fails
-before that, the others forget what they prepared; where one fails while committing, the others go back.
+First the status of every robot is queried; then all are ordered to prepare the mission, in parallel; only when all
+have it are they ordered to commit, the observer's machine last, since the observer decides which mission is played.
+Where one fails before that, the others drop what they prepared; where one fails while committing, the others go back.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OBSERVER = "observer"
 """The package whose machine commits last."""
 
 Progress = Callable[[Robot, int, int], None]
-"""Is told the robot, how many bytes it has got, and of how many."""
+"""Called with the robot, how many bytes it has got, and of how many."""
 Check = Callable[[Sequence[Status]], None]
 """Looks at all robots before anything is sent; raises what is in the way."""
 
@@ -76,10 +76,10 @@ class Sent:
 
 
 def look(robots: Sequence[Robot], pauses: Sequence[float] = PAUSES) -> Tuple[Row, ...]:
-    """How the robots are; nothing is changed."""
-    talks = [_Talk(robot, None, pauses) for robot in robots]
-    troubles = _side_by_side(_Talk.look, talks)
-    return tuple(_row(talk, troubles.get(talk, "")) for talk in talks)
+    """The robots' statuses; nothing is changed."""
+    sessions = [_Session(robot, None, pauses) for robot in robots]
+    troubles = _side_by_side(_Session.look, sessions)
+    return tuple(_row(session, troubles.get(session, "")) for session in sessions)
 
 
 def send(
@@ -98,25 +98,25 @@ def send(
     in the same order before anything is sent. `report` is called with a sentence before what was sent is taken back,
     which may take a minute where robots do not answer.
     """
-    talks = [_Talk(robot, key, pauses, progress) for robot in robots]
-    troubles = _side_by_side(_Talk.look, talks)
+    sessions = [_Session(robot, key, pauses, progress) for robot in robots]
+    troubles = _side_by_side(_Session.look, sessions)
     if troubles:
-        return _result(mission, talks, troubles)
-    check([talk.now for talk in talks])
+        return _result(mission, sessions, troubles)
+    check([session.now for session in sessions])
     try:
         # Those that have it already, too: what they have may be damaged by now.
-        troubles = _side_by_side(lambda talk: talk.prepare(mission, content), talks)
+        troubles = _side_by_side(lambda session: session.prepare(mission, content), sessions)
         if not troubles:
-            troubles = _commit(talks, mission)
+            troubles = _commit(sessions, mission)
     except KeyboardInterrupt:
-        troubles = {talk: "interrupted" for talk in talks}
+        troubles = {session: "interrupted" for session in sessions}
         report("Interrupted: what was sent is taken back. Ctrl-C once more leaves the robots as they are.")
-    with contextlib.suppress(KeyboardInterrupt):  # who is in a hurry is told how they stand
+    with contextlib.suppress(KeyboardInterrupt):  # a second Ctrl-C ends the wait; the table is still printed
         if troubles:
-            _take_back(talks, mission)
+            _take_back(sessions, mission)
         else:
-            troubles = _side_by_side(lambda talk: talk.confirm(mission), talks)
-    return _result(mission, talks, troubles)
+            troubles = _side_by_side(lambda session: session.confirm(mission), sessions)
+    return _result(mission, sessions, troubles)
 
 
 def wait(robots: Sequence[Robot], mission: str, seconds: float, every: float = 0.5) -> Tuple[Row, ...]:
@@ -133,43 +133,43 @@ def wait(robots: Sequence[Robot], mission: str, seconds: float, every: float = 0
 # The two phases -------------------------------------------------------------------------------------------------------
 
 
-def _commit(talks: Sequence[_Talk], mission: str) -> Dict[_Talk, str]:
+def _commit(sessions: Sequence[_Session], mission: str) -> Dict[_Session, str]:
     """One after the other, observers last; stops at the first that fails, and says why."""
-    for talk in sorted(talks, key=lambda talk: OBSERVER in talk.now.packages):
+    for session in sorted(sessions, key=lambda session: OBSERVER in session.now.packages):
         try:
-            talk.bring(COMMIT, mission, lambda status: status.standing == mission != status.prepared)
+            session.bring(COMMIT, mission, lambda status: status.standing == mission != status.prepared)
         except Trouble as trouble:
-            return {talk: str(trouble)}
+            return {session: str(trouble)}
     return {}
 
 
-def _take_back(talks: Sequence[_Talk], mission: str) -> None:
+def _take_back(sessions: Sequence[_Session], mission: str) -> None:
     """All to where they stood, observers first: while one of these may play the mission, the others have to keep it."""
-    first = [talk for talk in talks if OBSERVER in talk.now.packages and not talk.same]
-    _side_by_side(lambda talk: talk.restore(mission), first)
-    if all(talk.same for talk in first):
-        _side_by_side(lambda talk: talk.restore(mission), [talk for talk in talks if talk not in first])
+    first = [session for session in sessions if OBSERVER in session.now.packages and not session.same]
+    _side_by_side(lambda session: session.restore(mission), first)
+    if all(session.same for session in first):
+        _side_by_side(lambda session: session.restore(mission), [one for one in sessions if one not in first])
 
 
-def _side_by_side(act: Callable[[_Talk], None], talks: Sequence[_Talk]) -> Dict[_Talk, str]:
+def _side_by_side(act: Callable[[_Session], None], sessions: Sequence[_Session]) -> Dict[_Session, str]:
     """Does something with all robots at once; what is in the way, by robot."""
 
-    def trouble(talk: _Talk) -> str:
+    def trouble(session: _Session) -> str:
         try:
-            act(talk)
+            act(session)
         except Trouble as problem:
             return str(problem)
         return ""
 
-    if not talks:
+    if not sessions:
         return {}
-    with ThreadPoolExecutor(max_workers=min(32, len(talks))) as pool:
-        found = list(pool.map(trouble, talks))
-    return {talk: text for talk, text in zip(talks, found) if text}
+    with ThreadPoolExecutor(max_workers=min(32, len(sessions))) as pool:
+        found = list(pool.map(trouble, sessions))
+    return {session: text for session, text in zip(sessions, found) if text}
 
 
-class _Talk:
-    """What is being said with one robot, and what is known of it."""
+class _Session:
+    """The exchange with one robot, and what is known of it."""
 
     def __init__(
         self,
@@ -180,16 +180,16 @@ class _Talk:
     ) -> None:
         self.robot = robot
         self.before: Optional[Status] = None
-        self.last: Optional[Status] = None  # what it said last
+        self.last: Optional[Status] = None  # its last status
         self.back = ""  # why it could not be brought back
         self._stale = True  # something was sent since then
         self._open: Optional[Tuple[str, str]] = None  # an order without an answer: its action and ticket
-        self._whole = False  # the bundle is to be sent, whatever it says to have
+        self._whole = False  # the bundle is sent, whatever its status lists
         self._key, self._pauses, self._progress = key, pauses, progress
 
     @property
     def now(self) -> Status:
-        """What it said last."""
+        """Its last status."""
         assert self.last is not None
         return self.last
 
@@ -206,23 +206,23 @@ class _Talk:
         return self._open is not None and self._open[0] == COMMIT
 
     def look(self) -> None:
-        """Asks how it is. Raises Trouble."""
+        """Queries its status. Raises Trouble."""
 
         def step() -> bool:
-            self._ask()
+            self._query()
             return True
 
-        self._patiently(step)
+        self._retry(step)
         self.before = self.last
 
     def prepare(self, mission: str, content: bytes) -> None:
-        """The mission lies ready there afterwards. Raises Trouble."""
+        """Has the mission prepared there. Raises Trouble."""
         self.bring(PREPARE, mission, lambda status: status.prepared == mission, content)
 
     def confirm(self, mission: str) -> None:
-        """Asks once more where all have it: another desk may have sent another mission meanwhile. Raises Trouble."""
+        """Queries once more where all have it: another desk may have sent another mission meanwhile. Raises Trouble."""
         with contextlib.suppress(Unreached):
-            self._ask()
+            self._query()
         if self.now.standing != mission:
             raise Trouble(_OTHER_DESK)
 
@@ -252,36 +252,36 @@ class _Talk:
             raise
 
     def bring(self, action: str, mission: str, there: Callable[[Status], bool], content: bytes = b"") -> None:
-        """Orders until the robot says that it is so. Raises Trouble."""
+        """Repeats an order until the status shows that it is carried out. Raises Trouble."""
 
         def step() -> bool:
             if self._stale:
-                self._ask()
+                self._query()
             if self._open is None and there(self.now):
                 return True
             self._order(action, mission, content)
             return self._open is None and not self._stale and there(self.now)
 
-        self._patiently(step)
+        self._retry(step)
 
-    def _patiently(self, step: Callable[[], bool]) -> None:
+    def _retry(self, step: Callable[[], bool]) -> None:
         """Tries until it is done, with pauses that grow."""
         why = ""
         for pause in (*self._pauses, None):
             try:
                 if step():
                     return
-                why = "it says that it did, but it did not"
+                why = "it reports success, but its status has not changed"
             except Unreached as problem:
                 why = str(problem)
             if pause is not None:
                 time.sleep(pause)
         raise Trouble(why)
 
-    def _ask(self) -> None:
-        self._hear(health(self.robot))
+    def _query(self) -> None:
+        self._update(health(self.robot))
 
-    def _hear(self, status: Status) -> None:
+    def _update(self, status: Status) -> None:
         if status.robot != self.robot.name:
             raise Trouble(f"there is a robot called {status.robot} at {self.robot.address}")
         self.last, self._stale = status, False
@@ -305,9 +305,9 @@ class _Talk:
         if answer.http != _UNDECIDED:
             self._open = before
         if answer.status is not None:
-            self._hear(answer.status)
+            self._update(answer.status)
         if not answer.ok:
-            # What it said to have may be damaged: the next try takes all of it along.
+            # What its status lists may be damaged: the next try sends the whole bundle.
             again, self._whole = bool(content) and not bundle, bool(content)
             message = answer.message or f"answers with status {answer.http}"
             raise (Unreached(message, True) if again or answer.http in _AGAIN else Trouble(message))
@@ -322,34 +322,34 @@ class _Talk:
 # The end --------------------------------------------------------------------------------------------------------------
 
 
-def _result(mission: str, talks: Sequence[_Talk], troubles: Dict[_Talk, str]) -> Sent:
+def _result(mission: str, sessions: Sequence[_Session], troubles: Dict[_Session, str]) -> Sent:
     """The result for all robots."""
     outcome = _failed if troubles else _done
-    rows = tuple(_row(talk, outcome(mission, talk, troubles.get(talk, ""))) for talk in talks)
-    trouble = "; ".join(f"{talk.robot.name}: {text}" for talk, text in troubles.items())
+    rows = tuple(_row(session, outcome(mission, session, troubles.get(session, ""))) for session in sessions)
+    trouble = "; ".join(f"{session.robot.name}: {text}" for session, text in troubles.items())
     return Sent(mission, not troubles, rows, trouble)
 
 
-def _row(talk: _Talk, outcome: str) -> Row:
-    return Row(talk.robot, talk.before, None if talk.unknown else talk.last, outcome, talk.same)
+def _row(session: _Session, outcome: str) -> Row:
+    return Row(session.robot, session.before, None if session.unknown else session.last, outcome, session.same)
 
 
-def _done(mission: str, talk: _Talk, _: str) -> str:
-    if talk.now.current != mission:
+def _done(mission: str, session: _Session, _: str) -> str:
+    if session.now.current != mission:
         return "takes effect as soon as no mission is under way"
-    return "had it already" if talk.same else "changed"
+    return "had it already" if session.same else "changed"
 
 
-def _failed(mission: str, talk: _Talk, trouble: str) -> str:
+def _failed(mission: str, session: _Session, trouble: str) -> str:
     """Where the robot stands after something went wrong, there or elsewhere."""
-    if talk.last is None:
+    if session.last is None:
         return f"not reached: {trouble}"
-    if talk.same:
-        left = f"; still has it prepared: {talk.back}" if talk.back else ""
+    if session.same:
+        left = f"; still has it prepared: {session.back}" if session.back else ""
         return f"nothing changed{left or (trouble and f': {trouble}')}"
-    why = talk.back or trouble
-    if talk.unknown:
+    why = session.back or trouble
+    if session.unknown:
         return f"not known, it may have changed: {why}"
-    if talk.now.standing != mission:
+    if session.now.standing != mission:
         return f"has another mission than before: {why}"
     return f"changed, and cannot be taken back: {why}" if why else "changed, and left so: the observer may have it too"

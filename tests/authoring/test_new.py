@@ -10,9 +10,9 @@ from unittest import mock
 
 import pytest
 
-from pursue_gen.authoring.dialog import wishes
+from pursue_gen.authoring.dialog import ask_requirements
 from pursue_gen.authoring.first_scenario import scenario_text
-from pursue_gen.authoring.wishes import KINDS, Robot, Task, Wishes, deadline, fewest_places, slow_enough
+from pursue_gen.authoring.requirements import KINDS, Requirements, Robot, Task, deadline, fewest_places, slow_enough
 from pursue_gen.cli.app import main
 from pursue_gen.cli.dialog import StreamDialog
 from pursue_gen.cli.new import Goal
@@ -51,10 +51,10 @@ def test_every_combination_of_options_is_won(kind: str, robots: int, places: int
     quiet, row = StreamDialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
     if places < fewest_places(kind):
         with pytest.raises(PursueError) as caught:
-            wishes(quiet, kind, row, robots)
+            ask_requirements(quiet, kind, row, robots)
         assert "expected 2 to" in str(caught.value)
         return
-    scenario = sound_and_won(scenario_text(wishes(quiet, kind, row, robots), "floor.pur"))
+    scenario = sound_and_won(scenario_text(ask_requirements(quiet, kind, row, robots), "floor.pur"))
     assert [poi.name for poi in scenario.pois] == list(ROW[:places])
     assert sum(agent.controllable for agent in scenario.agents) == robots
     kinds = {"reach": Reach, "catch": Reach, "respond": Respond, "avoid": Avoid, "never-with": NeverWith}
@@ -72,7 +72,7 @@ def test_the_others_may_be_as_fast_as_is_allowed(
     robots = tuple(Robot(f"bot{number}", speed, task) for number, speed in enumerate(speeds))
     mobile = slow_enough(kind, places, distances, robots)
     event = "grab" if kind == "catch" else "enter"
-    sound_and_won(scenario_text(Wishes(kind, places, distances, robots, "thief", mobile, event), "floor.pur"))
+    sound_and_won(scenario_text(Requirements(kind, places, distances, robots, "thief", mobile, event), "floor.pur"))
 
 
 @pytest.mark.parametrize("durations", [(0,), (1,), (30,), (0, 5), (4, 4, 1)])
@@ -86,8 +86,8 @@ def test_the_deadline_can_be_kept(
         for number, duration in enumerate(durations)
         if distances or not number % 2
     )
-    wished = Wishes("respond", places, distances, robots, "man", None, "call")
-    scenario = sound_and_won(scenario_text(wished, "floor.pur"))
+    required = Requirements("respond", places, distances, robots, "man", None, "call")
+    scenario = sound_and_won(scenario_text(required, "floor.pur"))
     assert isinstance(scenario.safety, Respond)
     assert scenario.safety.deadline == deadline(distances, robots)
 
@@ -108,7 +108,7 @@ ANSWERS: Dict[str, List[str]] = {
 def test_the_answers_are_in_the_scenario(kind: str) -> None:
     screen = io.StringIO()
     source = io.StringIO("".join(line + "\n" for line in ANSWERS[kind]))
-    found = wishes(StreamDialog(source, screen), None, None, None)
+    found = ask_requirements(StreamDialog(source, screen), None, None, None)
     assert found.kind == kind
     assert source.read() == ""
     scenario = sound_and_won(scenario_text(found, "floor.pur"))
@@ -123,7 +123,7 @@ def test_the_answers_are_in_the_scenario(kind: str) -> None:
 
 def test_what_is_given_is_not_asked() -> None:
     screen = io.StringIO()
-    found = wishes(StreamDialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
+    found = ask_requirements(StreamDialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
     assert (found.kind, found.places, len(found.robots)) == ("reach", ("a", "b"), 2)
     for question in ("What is the goal?", "What places", "Which robots"):
         assert question not in screen.getvalue()
@@ -140,7 +140,7 @@ def test_what_is_given_is_not_asked() -> None:
 def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
     screen = io.StringIO()
     source = io.StringIO(f"{answer}\n" + "\n" * 30)
-    assert wishes(StreamDialog(source, screen), None, None, None).kind == "reach"
+    assert ask_requirements(StreamDialog(source, screen), None, None, None).kind == "reach"
     assert expected in screen.getvalue()
     assert screen.getvalue().count("Number or word?") == (2 if expected else 1)
 
@@ -167,30 +167,30 @@ def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
 )
 def test_a_bad_answer_is_told_and_asked_again(question: str, answer: str, expected: str) -> None:
     usual = io.StringIO()
-    plain = wishes(StreamDialog(io.StringIO("\n" * 30), usual), "reach", None, None)
+    plain = ask_requirements(StreamDialog(io.StringIO("\n" * 30), usual), "reach", None, None)
     asked = [line for line in usual.getvalue().split("\n") if "[" in line]
     place = next(number for number, line in enumerate(asked) if question in line)
     screen = io.StringIO()
     lines = [""] * place + [answer] + [""] * 30
-    assert wishes(StreamDialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
+    assert ask_requirements(StreamDialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
     assert expected in screen.getvalue()
     assert screen.getvalue().count(asked[place].strip()) == usual.getvalue().count(asked[place].strip()) + 1
 
 
 def test_who_is_too_fast_to_be_caught_is_asked_again() -> None:
     quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
-    usual = wishes(quiet, "catch", "a,b", 1)
+    usual = ask_requirements(quiet, "catch", "a,b", 1)
     least = slow_enough("catch", usual.places, usual.distances, usual.robots)
     screen = io.StringIO()
     answers = ["", "", "", "", str(least - 1), str(least), ""]
-    found = wishes(StreamDialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
+    found = ask_requirements(StreamDialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
     assert found.mobile == least
     assert "could not be sure" in screen.getvalue()
 
 
 def test_nobody_answers_so_often_wrongly() -> None:
     with pytest.raises(PursueError) as caught:
-        wishes(dialog(*["?"] * 100), None, None, None)
+        ask_requirements(dialog(*["?"] * 100), None, None, None)
     assert caught.value.exit_status == 2
 
 
@@ -198,7 +198,7 @@ def test_suggested_names_are_new_ones() -> None:
     quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
     for kind in KINDS:
         row = "bot1,fetch,visitor,order,safe,lock,thief,bot1_2"
-        found = wishes(quiet, kind, row, 2)
+        found = ask_requirements(quiet, kind, row, 2)
         assert len(set(found.names)) == len(found.names)
         assert check(parse(scenario_text(found, "floor.pur"), "floor.pur")) == ()
 

@@ -1,4 +1,4 @@
-"""What somebody wants of a first scenario, and which numbers make sure that the robots can do it."""
+"""What a first scenario has to be about, and the numbers with which the robots can do it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Robot:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class Requirements:
     """The answers. The places lie in a row, `distances` (units of distance) are those between neighbours.
 
     `other`: who is not controlled, "" for nobody; `mobile`: the other's time units per unit of distance, None: stands

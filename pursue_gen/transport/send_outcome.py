@@ -1,4 +1,4 @@
-"""How robots stand once they were asked or sent something, and what is wrong where that is not as it was wanted."""
+"""The outcome of queries and orders to robots: the last message, or the error where it is not the required one."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from pursue_gen.transport.sender import Row, Sent
 from pursue_runtime.manifest import mission_id
 
 _ONCE_MORE = (
-    "see the table; pursue-gen explain TRN034 tells for each reason what to do. Once that is mended, say the same again"
+    "see the table; pursue-gen explain TRN034 tells for each reason what to do. Once that is mended, run the same "
+    "command again"
 )
 
 
 def all_reached(rows: Sequence[Row], hint: str = _ONCE_MORE) -> List[Status]:
-    """What all robots say of themselves. Raises PursueError (exit status 7) where one is out of reach."""
+    """The statuses of all robots. Raises PursueError (exit status 7) where one is out of reach."""
     lost = [row.robot.name for row in rows if row.after is None]
     if lost:
         raise PursueError([error("TRN034", f"cannot reach {', '.join(lost)}", hint=hint)], UNCHANGED)
