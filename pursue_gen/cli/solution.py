@@ -12,14 +12,12 @@ from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.inputs import are_scenario, game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.solving.rules import Rules, rules_text
-from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.verdict import verdict_text
 from pursue_gen.synthesis.limits import Limits
-
-_CANNOT_BE_MET = "SYN021"
 
 
 def solve_and_print(scenario: Scenario, request: SolveRequest, file: Optional[Path] = None) -> Solution:
@@ -52,8 +50,7 @@ def explain_loss(
     `quiet`: without progress. Returns {"explanation": …} for JSON. Prints nothing, and returns an empty dict, where it
     is not `wanted`, where the problem is another one, and for UPPAAL's files: they have no words of a scenario.
     """
-    lost = any(finding.code == _CANNOT_BE_MET for finding in problem.diagnostics)
-    if not wanted or not lost or len(files) != 1 or files[0].suffix == ".xml":
+    if not wanted or not is_lost(problem) or not are_scenario(files):
         return {}
     show(problem.diagnostics)
     seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS

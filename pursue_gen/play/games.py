@@ -14,10 +14,8 @@ from pursue_gen.play.words import words_of
 from pursue_gen.play.world import World
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.solving.solution import is_lost, solve_scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
-
-_CANNOT_BE_MET = "SYN021"
 
 
 def session_of(
@@ -37,7 +35,7 @@ def game_of(board: Board, seed: int, limits: Limits, progress: Optional[Listener
     try:
         won = solve_scenario(board.scenario, board.rules, SolveOptions(limits, progress=progress))
     except PursueError as problem:
-        if _CANNOT_BE_MET not in (finding.code for finding in problem.diagnostics):
+        if not is_lost(problem):
             raise
         return robots_game(board, limits.memory, progress)
     return World(board, Advisor(board, won.strategy), seed)

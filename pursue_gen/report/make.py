@@ -17,13 +17,11 @@ from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margins
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
-
-_CANNOT_BE_MET = "SYN021"
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def lost_report(
 ) -> Report:
     """The report on a scenario that is not won, as `problem` says: why, and what would change that."""
     rules = Rules()
-    lost = any(finding.code == _CANNOT_BE_MET for finding in problem.diagnostics)
+    lost = is_lost(problem)
     seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS
     explanation = explain(scenario, rules, replace(limits, seconds=seconds), progress) if lost else None
     network = played(translate(scenario), rules)

@@ -21,6 +21,8 @@ from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
 
+_CANNOT_BE_MET = "SYN021"
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -101,6 +103,11 @@ def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEF
     return solution(translate(scenario), scenario_objective(scenario), rules, options)
 
 
+def is_lost(problem: PursueError) -> bool:
+    """True if the built-in solver found that the objective cannot be met, False for limits and other errors."""
+    return any(finding.code == _CANNOT_BE_MET for finding in problem.diagnostics)
+
+
 def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options: SolveOptions) -> Diagnostic:
     reaction = f"{float(rules.reaction):g}"
     message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
@@ -108,7 +115,7 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
     if rules != IDEAL and _won_ideally(network, objective, options):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
-    return error("SYN021", message, hint=hint)
+    return error(_CANNOT_BE_MET, message, hint=hint)
 
 
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:
