@@ -1,0 +1,76 @@
+"""The command `solve`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, List, Optional
+
+import typer
+
+from pursue_gen.cli.console import guarded, info, suggest
+from pursue_gen.cli.inputs import game_from
+from pursue_gen.cli.options import EXPLAIN, GAME, MARGIN, REQUEST, with_request
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.files import shell_quoted
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+
+OPTIONS = ("ends", "reaction", "slack", "engine", "limit", "memory", "solver", "verifytga", "optimize")
+
+
+@guarded
+@with_request(*OPTIONS)
+def solve(
+    files: List[Path] = typer.Argument(..., metavar=GAME, help="A scenario, or UPPAAL's files for a timed game."),
+    output: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
+    ),
+    request: SolveRequest = REQUEST,
+    explain: bool = EXPLAIN,
+    margin: bool = MARGIN,
+    as_json_: bool = typer.Option(
+        False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
+    ),
+) -> None:
+    """Find out whether the objective can be met whatever the others do, and print the plan that meets it.
+
+    The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
+    where the objective cannot be met.
+    """
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import explain_loss
+    from pursue_gen.files import write_texts
+    from pursue_gen.solving.request import solution_of
+    from pursue_gen.solving.solvers import keep_counter
+    from pursue_gen.solving.verdict import margin_text, margins, verdict_json, verdict_text
+    from pursue_gen.synthesis.plan import write_plan
+
+    network, objective = game_from(files)
+    rules, limits = request.rules(network), request.options.limits
+    try:
+        with progress_line(as_json_) as progress:
+            won = solution_of(network, objective, request, progress)
+    except PursueError as problem:
+        kept = keep_counter(problem, network, objective, output)
+        if kept is not None:
+            info(f"The counter-strategy is in {kept}")
+        explained = explain_loss(problem, files, rules, explain, limits, as_json_)
+        if as_json_ and problem.exit_status in (4, 5):
+            print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
+        if explained:  # its findings are printed
+            raise typer.Exit(problem.exit_status) from None
+        raise
+    plan = write_plan(won.strategy, won.network, objective)
+    if output is not None:
+        write_texts({output: plan})
+    found = margins(won, margin, limits)
+    if as_json_:
+        print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
+    elif output is None:
+        print(plan, end="")
+    info(verdict_text(won))
+    info(margin_text(won, *found))
+    if len(files) == 1:
+        suggest(f"pursue-gen ws {shell_quoted(files[0])}")

@@ -1,0 +1,42 @@
+"""The command `tga`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from pursue_gen.cli.console import guarded, suggest
+from pursue_gen.cli.inputs import scenario_from
+from pursue_gen.cli.options import REQUEST, SCENARIO, Ends, with_request
+from pursue_gen.files import shell_quoted
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+
+IDEAL_ENDS = typer.Option(
+    Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
+)
+
+
+@guarded
+@with_request("ends", "slack", ends=IDEAL_ENDS)
+def tga(
+    scenario: Path = SCENARIO,
+    folder: Path = typer.Option(Path("."), "-o", "--output", metavar="DIR", help="Where to write; here by default."),
+    request: SolveRequest = REQUEST,
+) -> None:
+    """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
+    from pursue_gen.files import write_texts
+    from pursue_gen.solving.inputs import game_of
+    from pursue_gen.solving.rules import played
+    from pursue_gen.tga.uppaal import write_network, write_query
+
+    network, objective = game_of(scenario_from(scenario))
+    network = played(network, replace(request, reaction="0").rules(network))
+    model, query = folder / "TGA.xml", folder / "TCTL.q"
+    write_texts({model: write_network(network, objective), query: write_query(objective)})
+    print(model, query, sep="\n")
+    suggest(f"pursue-gen solve {shell_quoted(model)} {shell_quoted(query)}")

@@ -1,0 +1,45 @@
+"""The command `verify`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, List
+
+import typer
+
+from pursue_gen.cli.console import guarded, show
+from pursue_gen.cli.inputs import game_from
+from pursue_gen.cli.options import GAME, REQUEST, with_request
+from pursue_gen.diagnostics import usage_error
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+
+
+@guarded
+@with_request("ends", "reaction", "slack", "limit", "memory")
+def verify(
+    files: List[Path] = typer.Argument(..., metavar=f"({GAME}) PLAN", help="A game as for solve, and a plan for it."),
+    request: SolveRequest = REQUEST,
+) -> None:
+    """Prove that a plan wins, or show a play in which it does not.
+
+    Without --ends, --reaction and --slack the default game is tried, then UPPAAL-TIGA's (ends controllable, reaction
+    0). The exit status is 4 where the plan wins in neither.
+    """
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.solving.given_plan import exit_status, try_plan
+    from pursue_gen.solving.rules import rules_text
+
+    if len(files) < 2:
+        raise usage_error("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
+    network, objective = game_from(files[:-1])
+    with progress_line() as progress:
+        options = replace(request.options, progress=progress)
+        tried = try_plan(files[-1], network, objective, request.games(network), options)
+    for trial in tried:
+        print(f"{rules_text(trial.rules)}: {trial.outcome}")
+        show(trial.findings)
+    if exit_status(tried):
+        raise typer.Exit(exit_status(tried))
