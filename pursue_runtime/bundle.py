@@ -39,37 +39,10 @@ from pursue_runtime.manifest import (
 )
 
 __all__ = [
-    "ABORT",
-    "ACTIONS",
-    "COMMIT",
-    "FILES",
-    "FORMAT",
-    "ID_LENGTH",
-    "LIMIT",
-    "MANIFEST",
-    "MISSION",
-    "ORDER_LENGTH",
-    "OWN",
-    "PREPARE",
-    "SIGNATURE",
-    "Bundle",
-    "Keys",
-    "Manifest",
-    "Order",
-    "Refused",
-    "fingerprint",
-    "is_digest",
-    "make_manifest",
-    "mission_file",
-    "mission_id",
-    "new_ticket",
-    "pack",
-    "read_keys",
-    "read_order",
-    "read_public_key",
-    "unpack",
-    "write_order",
-    "write_public_key",
+    "ABORT", "ACTIONS", "COMMIT", "FILES", "FORMAT", "ID_LENGTH", "LIMIT", "MANIFEST", "MISSION", "ORDER_LENGTH", "OWN",
+    "PREPARE", "SIGNATURE", "Bundle", "Keys", "Manifest", "Order", "Refused", "fingerprint", "is_digest",
+    "make_manifest", "mission_file", "mission_id", "new_ticket", "pack", "read_keys", "read_order", "read_public_key",
+    "unpack", "write_order", "write_public_key",
 ]
 
 LIMIT = 64 * 2**20
@@ -260,13 +233,9 @@ def read_order(text: str, keys: Keys) -> Order:
 def _order(facts: Mapping[str, Any]) -> Order:
     fields = ("action", "mission", "robot", "ticket", "size", "bundle")
     action, mission, robot, ticket, size, bundle = (facts.get(field) for field in fields)
-    good = (
-        action in ACTIONS
-        and (mission == OWN or is_digest(mission))
-        and isinstance(robot, str)
-        and (isinstance(ticket, str) and _TICKET.fullmatch(ticket) and type(size) is int and size >= 0)
-        and (is_digest(bundle) and action == PREPARE and mission != OWN if size else bundle == "")
-    )
+    good = action in ACTIONS and (mission == OWN or is_digest(mission)) and isinstance(robot, str) and (
+        isinstance(ticket, str) and _TICKET.fullmatch(ticket) and type(size) is int and size >= 0
+    ) and (is_digest(bundle) and action == PREPARE and mission != OWN if size else bundle == "")
     if not good:
         raise Refused("bad_order", "the order lacks or misspells something")
     return Order(str(action), str(mission), str(robot), str(ticket), int(size or 0), str(bundle))

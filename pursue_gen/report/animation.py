@@ -88,10 +88,8 @@ def draw(scenario: Scenario, recording: Recording, ident: str = _ID) -> str:
     where, computed = poses(scenario)
     ground = map_svg.draw(replace(scenario, agents=()), where, computed, None, f"{ident}-map")
     looks, tracks = agent_looks(recording.agents), _legs(scenario, recording)
-    marks = [
-        _mark(agent, looks[agent.name], tracks[agent.name][0].a, k, len(scenario.agents), ident)
-        for k, agent in enumerate(scenario.agents)
-    ]
+    marks = [_mark(agent, looks[agent.name], tracks[agent.name][0].a, k, len(scenario.agents), ident)
+             for k, agent in enumerate(scenario.agents)]
     cut = ground.rindex("</svg>")
     return f"{ground[:cut]}{''.join(marks)}{ground[cut:]}"
 
@@ -100,24 +98,10 @@ def _mark(agent: Agent, look: AgentLook, at: Point, number: int, count: int, ide
     """An agent's shape and name around its own side of the place; the group is moved as a whole."""
     dx, dy = _aside(number, count)
     anchor = "middle" if abs(dx) < 9 else "start" if dx > 0 else "end"
-    label = text(
-        dx + (0 if anchor == "middle" else math.copysign(13, dx)),
-        dy - (12 if anchor == "middle" else -5),
-        agent.name,
-        "pg-strong pg-halo",
-        anchor,
-    )
-    busy = tag(
-        "circle",
-        class_="busy",
-        cx=dx,
-        cy=dy,
-        r=13.0,
-        fill="none",
-        stroke=look.colour,
-        stroke_width=2.5,
-        visibility="hidden",
-    )
+    label = text(dx + (0 if anchor == "middle" else math.copysign(13, dx)), dy - (12 if anchor == "middle" else -5),
+                 agent.name, "pg-strong pg-halo", anchor)
+    busy = tag("circle", class_="busy", cx=dx, cy=dy, r=13.0, fill="none", stroke=look.colour, stroke_width=2.5,
+               visibility="hidden")
     shape = mark(look, dx, dy, 9.0, stroke="#ffffff", stroke_width=1.5)
     place = f"translate({at[0]:.1f} {at[1]:.1f})"
     return tag("g", busy, shape, label, class_="agent", id=f"{ident}-agent-{number}", transform=place)
@@ -170,9 +154,8 @@ def _said(step: Step, words: Words, recording: Recording) -> str:
 def _who(scenario: Scenario, recording: Recording) -> List[str]:
     """A line for each agent: where it is at the beginning."""
     legs = _legs(scenario, recording)
-    return [
-        f"<li><b>{safe(agent.name)}</b> <span>{safe(legs[agent.name][0].told)}</span></li>" for agent in scenario.agents
-    ]
+    return [f"<li><b>{safe(agent.name)}</b> <span>{safe(legs[agent.name][0].told)}</span></li>"
+            for agent in scenario.agents]
 
 
 def _legs(scenario: Scenario, recording: Recording) -> Dict[str, List[Leg]]:
@@ -198,7 +181,9 @@ def _legs_of(agent: Agent, recording: Recording, words: Words, places: Mapping[s
     return legs
 
 
-def _reached(recording: Recording, stay: Stay, agent: Agent, a: Point, b: Point, part: Tuple[str, ...]) -> Point:
+def _reached(
+    recording: Recording, stay: Stay, agent: Agent, a: Point, b: Point, part: Tuple[str, ...]
+) -> Point:
     """Where a movement ends: at the other place, or on the way where the recording ends before (or it is given up)."""
     after = next((step.locations.get(agent.name) for step in recording.steps if step.at >= stay.end), None)
     if stay.over and after == part[2]:

@@ -142,19 +142,16 @@ def _end(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
     x = scale.x(recording.end)
     yield tag("line", x1=x, y1=_TOP - 8, x2=x, y2=bottom + 6, stroke="#1b1f24", stroke_width=3, class_="end")
     anchor = "end" if x > scale.width - 160 else "start"
-    yield text(
-        x + (-6 if anchor == "end" else 6),
-        bottom + 34,
-        f"{ending_words(recording)}, {_time(recording.end)}",
-        "pg-strong pg-halo",
-        anchor,
-    )
+    yield text(x + (-6 if anchor == "end" else 6), bottom + 34, f"{ending_words(recording)}, {_time(recording.end)}",
+               "pg-strong pg-halo", anchor)
 
 
 # The lanes ------------------------------------------------------------------------------------------------------------
 
 
-def _lanes(recording: Recording, words: Words, looks: Mapping[str, AgentLook], scale: Scale, ident: str) -> List[Lane]:
+def _lanes(
+    recording: Recording, words: Words, looks: Mapping[str, AgentLook], scale: Scale, ident: str
+) -> List[Lane]:
     lanes = []
     for number, agent in enumerate(recording.agents):
         fill = f"url(#{ident}-fill-{number})"
@@ -172,7 +169,9 @@ def _lanes(recording: Recording, words: Words, looks: Mapping[str, AgentLook], s
     return lanes
 
 
-def _agent(recording: Recording, words: Words, scale: Scale, agent: str, look: AgentLook, fill: str) -> Iterator[str]:
+def _agent(
+    recording: Recording, words: Words, scale: Scale, agent: str, look: AgentLook, fill: str
+) -> Iterator[str]:
     """Movements and actions as bars, waits as lines, and what takes no time as marks."""
     found, taken = stays(recording, agent), 0.0
     for number, stay in enumerate(found):
@@ -212,16 +211,8 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
             parts.append(_box(scale, stay, f"due by {_time(due)}", told))
             if due <= recording.end:
                 x = scale.x(due)
-                parts.append(
-                    tag(
-                        "path",
-                        d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
-                        stroke="#1b1f24",
-                        stroke_width=2.5,
-                        fill="none",
-                        class_="due",
-                    )
-                )
+                parts.append(tag("path", d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
+                                 stroke="#1b1f24", stroke_width=2.5, fill="none", class_="due"))
     yield Lane("deadline", tuple(parts))
 
 
