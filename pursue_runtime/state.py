@@ -10,6 +10,7 @@ from typing import Dict, Iterable, NamedTuple, Optional, Tuple
 
 WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
+STATUSES = (WAITING, *LIVE, *ENDED)
 
 LATE = 60.0
 """Seconds of real time for which a state counts as older than the one that was heard last, if it says so: after that a
@@ -20,8 +21,8 @@ class SystemState(NamedTuple):
     """One state of the mission: where every automaton is, variables, clocks (at `stamp`), and what led here.
 
     `unit` is how many seconds a time unit lasts, `plan` the number of the plan in force (0: the workspace's own),
-    `lost` names the agents that nothing is expected of any more. `mission` is the id of the mission whose state
-    this is, "" for the one of the workspace.
+    `mission` the id of the mission whose state this is, "" for the one of the workspace. `late` names the agents that
+    should have finished by now, `lost` those that nothing is expected of any more.
     """
 
     seq: int
@@ -37,6 +38,7 @@ class SystemState(NamedTuple):
     plan: int = 0
     lost: Tuple[str, ...] = ()
     mission: str = ""
+    late: Tuple[str, ...] = ()
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""
@@ -66,7 +68,8 @@ def older(state: SystemState, known: SystemState) -> bool:
 def format_state(state: SystemState) -> str:
     """The text on pursue/system_state: the thesis's, with a first line for us."""
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
-    led_by = ("event", state.event), ("agent", state.agent), ("lost", ",".join(state.lost))
+    agents = ("late", ",".join(state.late)), ("lost", ",".join(state.lost))
+    led_by = ("event", state.event), ("agent", state.agent), *agents
     facts = (("mission", state.mission), ("plan", state.plan), *led_by)
     head += [f"{key}={value}" for key, value in facts if value]
     head.append("status=" + state.status)
@@ -100,9 +103,9 @@ def parse_state(text: str) -> Optional[SystemState]:
             locations[name] = value
     clocks = {name: float(value) for name, value in _pairs(continuous) if re.fullmatch(r"-?\d+(\.\d+)?", value)}
     event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
-    lost = tuple(name for name in facts.get("lost", "").split(",") if name)
+    late, lost = (tuple(name for name in facts.get(key, "").split(",") if name) for key in ("late", "lost"))
     led_by = event, agent, status, reason, unit, plan, lost
-    return SystemState(seq, stamp, locations, values, clocks, *led_by, facts.get("mission", ""))
+    return SystemState(seq, stamp, locations, values, clocks, *led_by, facts.get("mission", ""), late)
 
 
 def _pairs(text: str) -> Iterable[Tuple[str, str]]:

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple, Optional
 
 EVENTS = "pursue/events"
-SYSTEM_STATE = "pursue/system_state"
+STATE, SYSTEM_STATE = "pursue/state", "pursue/system_state"
 PLAN = "pursue/plan"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"

@@ -29,8 +29,6 @@ from pursue_runtime.state import (
     STOPPED,
     WON,
     SystemState,
-    format_state,
-    parse_state,
 )
 from pursue_runtime.words import Word, format_word, parse_word
 
@@ -172,10 +170,8 @@ class Play:
     # What the nodes do (Outside) --------------------------------------------------------------------------------------
 
     def publish(self, state: SystemState) -> None:
-        """The observer says a state: all subscribers get its text."""
-        read = parse_state(format_state(state))
-        assert read is not None, "every state that is written can be read"
-        state = self._latched = read
+        """The observer publishes a state: all subscribers get it."""
+        self._latched = state
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:

@@ -27,11 +27,12 @@ from pursue_gen.workspace import context, deploy, expected, game_file, model_fil
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (
     RECEIVING,
-    RUNTIME,
+    SHARED,
     TEST_DEPENDS,
     Package,
     environment,
     files_of,
+    message_package,
     runtime_package,
     templates_dir,
 )
@@ -161,7 +162,7 @@ def _packages(
     ui["config/ui.yaml"], ui["config/game.yaml"] = data["ui"], data["game"]
     packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
     packages += [Package(name, name, summary, {}) for name, summary in RECEIVING.items()]
-    packages.append(runtime_package())
+    packages += [message_package(), runtime_package()]
     tests = {"test/expected.json": data["expected"], "test/trace.yaml": data["trace"]}
     names = tuple(package.name for package in packages)
     bringup = context.bringup_of(scenario)
@@ -240,7 +241,7 @@ def _readme(
     packages: Sequence[Package],
     computed: bool,
 ) -> bytes:
-    nodes = [package.name for package in packages if package.kind not in ("bringup", RUNTIME, *RECEIVING)]
+    nodes = [package.name for package in packages if package.kind not in ("bringup", *SHARED, *RECEIVING)]
     told = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
     return jinja.get_template("workspace/README.md.j2").render({**values, **told}).encode()
 

@@ -18,14 +18,18 @@ import pursue_runtime
 RUNTIME = "pursue_runtime"
 """The package with the run time, and its kind."""
 
-SHARED = (RUNTIME,)
+MESSAGES = "pursue_msgs"
+"""The package with the messages of the run time, and its kind."""
+
+SHARED = (MESSAGES, RUNTIME)
 """The packages that each machine needs beside those of its nodes."""
 
 _COMMON = "common"
 _NODE_SCRIPT = "common/node.j2"
 
 DEPENDS: Mapping[str, Tuple[str, ...]] = {
-    RUNTIME: ("rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml"),
+    MESSAGES: ("message_runtime",),
+    RUNTIME: (MESSAGES, "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml"),
     "controller": (RUNTIME, "actionlib_msgs", "move_base_msgs", "tf2_ros"),
     "observer": (RUNTIME, "python3-transitions"),
     "UI": (RUNTIME, "rosbag", "python3-tornado"),
@@ -34,6 +38,9 @@ DEPENDS: Mapping[str, Tuple[str, ...]] = {
     "bringup": ("roslaunch",),
 }
 """What the nodes of each kind of package need where they run: ROS packages, and rosdep keys."""
+
+BUILD_DEPENDS: Mapping[str, Tuple[str, ...]] = {MESSAGES: ("message_generation",)}
+"""What a kind of package needs where it is built, beside catkin."""
 
 RECEIVING: Mapping[str, str] = {
     "communication_manager": "Takes missions from the desk, over HTTP.",
@@ -108,19 +115,27 @@ def runtime_package() -> Package:
     return Package(RUNTIME, RUNTIME, "What the nodes of a mission do: the same in every workspace.", files)
 
 
+def message_package() -> Package:
+    """The package with the messages."""
+    return Package(MESSAGES, MESSAGES, "The messages of a mission: the same in every workspace.", {})
+
+
 def files_of(
     package: Package, values: Mapping[str, Any], jinja: jinja2.Environment, templates: Path
 ) -> Dict[str, bytes]:
     """path within the package → content."""
     context = {**values, "package": package.name, "summary": package.summary}
     context["exec_depends"] = (*DEPENDS[package.kind], *package.depends)
+    context["build_depends"] = BUILD_DEPENDS.get(package.kind, ())
     context["test_depends"] = package.test_depends
+    context["origin"] = "" if package.name in SHARED else f" from {values['scenario']}.pur"
     nodes = {name or package.name: node for name, node in NODES.get(package.kind, {}).items()}
     files = {f"scripts/{name}": _script(node, context, jinja) for name, node in nodes.items()}
     files.update(package.data)
     context.update(nodes=sorted(nodes), python_packages=_python_packages(package), folders=_folders(files))
     own = _templates_of(templates / package.kind)
     context["folders"] = sorted({*context["folders"], *_folders(own)})
+    context["messages"] = [Path(path).name for path in own if path.endswith(".msg")]
     for path, template in {**_templates_of(templates / _COMMON), **own}.items():
         files[path] = _content(template, context, jinja, templates)
     return files

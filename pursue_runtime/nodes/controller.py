@@ -20,9 +20,10 @@ from pursue_runtime.missions import Missions, own_source, ros_home
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report
-from pursue_runtime.state import LOST, STOPPED, WON, SystemState, parse_state
+from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.strategy import parse_plan
-from pursue_runtime.words import PLAN, SYSTEM_STATE, format_word
+from pursue_runtime.words import PLAN, format_word
 
 
 class Controller:
@@ -46,7 +47,7 @@ class Controller:
                 raise
             self.follower.refuse(str(problem))  # the next one may be better
         self.take_up()
-        states = rospy.Subscriber(SYSTEM_STATE, String, self.update_state, queue_size=1000, tcp_nodelay=True)
+        states = subscribe_states(self.update_state)
         rospy.Subscriber(PLAN, String, self.learn, queue_size=10, tcp_nodelay=True)
         Diagnostics(self.report, Links(states, lost=self.master_lost))
 
@@ -59,16 +60,12 @@ class Controller:
         self.alarm.set()
         self.exegg.take_up(part.robots if part else [], part.poses if part else {})
 
-    def update_state(self, message: String) -> None:
+    def update_state(self, state: SystemState, publisher: str) -> None:
         """A state: the robots are told what was taken, and the next command is planned."""
-        state = parse_state(message.data)
-        if state is None:
-            rospy.logwarn("not a system state: %r", message.data[:80])
-            return
         with self.lock:
             played, verdict = self.follower.part, self.follower.follow(state)
             if verdict != OLD:
-                self.observer = message._connection_header.get("callerid", "")
+                self.observer = publisher
             if self.follower.part is not played:
                 try:
                     self.take_up()

@@ -7,14 +7,14 @@ from __future__ import annotations
 import os
 
 import rospy
-from std_msgs.msg import String
+from pursue_msgs.msg import SystemState as SystemStateMessage
 
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.hearing import OLD, OTHER, OURS, Hearing
 from pursue_runtime.missions import Missions, Source, own_source, ros_home
 from pursue_runtime.nodes.node import Ending
-from pursue_runtime.state import WAITING, SystemState, parse_state
-from pursue_runtime.words import SYSTEM_STATE
+from pursue_runtime.state import WAITING, SystemState
+from pursue_runtime.words import STATE
 
 PATIENCE = 1.0
 """Seconds of real time for which a node that starts waits for an observer that says which mission is played."""
@@ -61,8 +61,8 @@ class Membership:
         source = None
         if self.received:
             try:
-                state = parse_state(rospy.wait_for_message(SYSTEM_STATE, String, PATIENCE).data)
-                source = self._missions.find(state.mission) if state else None
+                message = rospy.wait_for_message(STATE, SystemStateMessage, PATIENCE)
+                source = self._missions.find(message.mission)
             except rospy.ROSException:
                 pass  # there is no observer yet
         return source or self._missions.current()

@@ -17,6 +17,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
+from pursue_msgs.msg import SystemState
 from std_msgs.msg import String
 
 from pursue_runtime.data import Package
@@ -37,7 +38,7 @@ class Record:
         self.readers = [
             rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100),
             rospy.Subscriber("pursue/events", String, self.on_event, queue_size=1000),
-            rospy.Subscriber("pursue/system_state", String, self.on_state, queue_size=1000),
+            rospy.Subscriber("pursue/state", SystemState, self.on_state, queue_size=1000),
         ]
         for robot in robots:
             for topic, kind in (("move_base_simple/goal", PoseStamped), ("pursue/actions", String)):
@@ -62,12 +63,11 @@ class Record:
         with self.changed:
             self.commands.append((sender_of(message), robot))
 
-    def on_state(self, message: String) -> None:
+    def on_state(self, message: SystemState) -> None:
         """A state of the mission."""
-        head, values = read_state(message.data)
         with self.changed:
-            self.states[int(head["seq"])] = values
-            self.status = head["status"]
+            self.states[message.seq] = values_of(message)
+            self.status = message.status
             self.changed.notify_all()
 
     def wait(self, done: Callable[[], object], seconds: float) -> bool:
@@ -85,17 +85,11 @@ def sender_of(message: Any) -> str:
     return str(message._connection_header["callerid"]).strip("/")
 
 
-def read_state(text: str) -> Tuple[Dict[str, str], Dict[str, str]]:
-    """The words of the first line, and the locations and variables, of a system state."""
-    lines = text.splitlines()
-    head = dict(word.split("=", 1) for word in lines[0].split() if "=" in word)
-    values = {}
-    for line in lines[1:]:
-        if not line.strip():
-            break  # what follows are clocks
-        name, value = line.split("=", 1)
-        values[name] = value
-    return head, values
+def values_of(message: SystemState) -> Dict[str, str]:
+    """The locations of automata and the values of variables, as text."""
+    values = {automaton.name: automaton.location for automaton in message.automata}
+    values.update((variable.name, str(variable.value)) for variable in message.variables)
+    return values
 
 
 def event_of(word: str) -> str:

@@ -18,6 +18,7 @@ from typing import Any, Dict, List, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
+from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
@@ -25,12 +26,13 @@ from pursue_runtime.missions import Missions, Source, own_source, ros_home
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, begin_anew, listeners
+from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Answer, Planner
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
-from pursue_runtime.words import EVENTS, FINISH, PLAN, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -74,7 +76,8 @@ class Observer:
         self.spoke = time.monotonic()
         self.proposed = 0
         self.over = False
-        self.states = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
+        self.states = rospy.Publisher(STATE, SystemStateMessage, queue_size=1000, latch=True, tcp_nodelay=True)
+        self.texts = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
         self.alarm = Alarm(self.ring)
@@ -215,7 +218,8 @@ class Observer:
     def publish(self, states: List[SystemState]) -> None:
         """Publishes the states, looks ahead, and ends the node after the last one."""
         for state in states:
-            self.say(self.states, format_state(state))
+            self.say(self.states, message_of(state))
+            self.say(self.texts, format_state(state))
             self.spoke = time.monotonic()
         proposal = self.mission.proposal or self.mission.in_force  # who comes later needs it as well
         if proposal is not None and proposal["plan"] != self.proposed:
@@ -241,10 +245,10 @@ class Observer:
             log(*remark)
 
     @staticmethod
-    def say(publisher: rospy.Publisher, text: str) -> None:
+    def say(publisher: rospy.Publisher, what: object) -> None:
         """Publishes it, unless the node is going down."""
         with contextlib.suppress(rospy.ROSException):
-            publisher.publish(text)
+            publisher.publish(what)
 
     def report(self) -> Report:
         """For /diagnostics. It is ready as soon as somebody's words can reach it."""

@@ -24,12 +24,13 @@ from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report
+from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import PATIENCE, Reader, Robot
 from pursue_runtime.reader.store import KEEP, Store, StoreError, missions_folder
-from pursue_runtime.state import parse_state
+from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder, keys_folder
-from pursue_runtime.words import SYSTEM_STATE
+from pursue_runtime.words import STATE
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -58,8 +59,8 @@ class Node:
         self.alarm = Alarm(self.ring)
         self.publish()
         self.ears = rospy.Subscriber("local_mission", String, self.hear, queue_size=1, buff_size=1 << 20)
-        topic = rospy.get_param("~state_topic", SYSTEM_STATE)
-        states = rospy.Subscriber("/" + topic.lstrip("/"), String, self.see, queue_size=1000, tcp_nodelay=True)
+        topic = rospy.get_param("~state_topic", STATE)
+        states = subscribe_states(self.see, "/" + topic.lstrip("/"))
         Diagnostics(self.report, Links(states, lost=self.master_lost))
         trouble = self.reader.trouble()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
@@ -72,11 +73,10 @@ class Node:
             self.reader.handle(message.data, time.monotonic())
             self.publish()
 
-    def see(self, message: String) -> None:
+    def see(self, state: SystemState, _publisher: str) -> None:
         """A state of the mission."""
-        state = parse_state(message.data)
         with self.lock:
-            if state is not None and self.reader.see(state, time.monotonic()):
+            if self.reader.see(state, time.monotonic()):
                 self.publish()
 
     def ring(self) -> None:

@@ -12,13 +12,14 @@ import io
 import json
 import os
 import threading
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import genpy
 import rosbag
 import rosgraph
 import rospkg
 import rospy
+from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
@@ -26,10 +27,11 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, begin_anew, give_way
-from pursue_runtime.state import ENDED, WAITING, WON, parse_state
+from pursue_runtime.nodes.state_message import state_of
+from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import OptionError, expected, names
 from pursue_runtime.ui.recording import GAME, missing, reserve, topics
-from pursue_runtime.words import SYSTEM_STATE
+from pursue_runtime.words import STATE, SYSTEM_STATE
 
 CHUNK = 64 * 1024  # bytes; what is not yet in a whole chunk is harder to read after a crash
 
@@ -70,7 +72,7 @@ class Recorder:
         self.bag = Bag(self.path + ".active")
         self.open = True
         self.master = rosgraph.Master(rospy.get_name())
-        self.states = rospy.resolve_name(SYSTEM_STATE)
+        self.states, self.texts = rospy.resolve_name(STATE), rospy.resolve_name(SYSTEM_STATE)
         self.note_game()
         more = names(rospy.get_param("~topics", []), "~topics")
         wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
@@ -88,10 +90,10 @@ class Recorder:
 
     def hear(self, message: rospy.AnyMsg, topic: str) -> None:
         """A message on one of the topics."""
-        state = parse_state(String().deserialize(message._buff).data) if topic == self.states else None
+        state = read_state(message) if topic == self.states else None
         ours = state is not None and self.membership.takes(state)
         with self.lock:
-            if not self.open or (state is not None and not ours and not self.status):
+            if not self.open or (topic in (self.states, self.texts) and not ours and not self.status):
                 return  # the last words of a mission before ours
             self.bag.note(topic, message, message._connection_header, stamp())
             self.count += 1
@@ -138,6 +140,14 @@ class Recorder:
             os.rename(self.path + ".active", self.path)
             rospy.loginfo("recorded %d messages in %s", self.count, self.path)
         return status
+
+
+def read_state(message: rospy.AnyMsg) -> Optional[SystemState]:
+    """Return the state that a message on `pursue/state` holds; None for one that no observer publishes."""
+    try:
+        return state_of(SystemStateMessage().deserialize(message._buff))
+    except (genpy.DeserializationError, ValueError):
+        return None
 
 
 def serialized(message: genpy.Message) -> bytes:

@@ -21,7 +21,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report
 from pursue_runtime.simulator.clock import START, Memory, Pace, SimClock
-from pursue_runtime.words import EVENTS, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, STATE
 
 
 def run(pace: Pace, scenario: str) -> int:
@@ -37,7 +37,7 @@ def run(pace: Pace, scenario: str) -> int:
         rospy.Subscriber(
             topic, rospy.AnyMsg, lambda _: clock.heard(time.monotonic()), queue_size=1000, tcp_nodelay=True
         )
-        for topic in (EVENTS, SYSTEM_STATE)
+        for topic in (EVENTS, STATE)
     ]
     links = Links(states, lost=lambda _: ending.end(1))
     Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), links)

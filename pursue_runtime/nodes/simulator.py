@@ -19,10 +19,11 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, begin_anew, give_way, listeners
+from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.simulator.simulator import ACTING, Delays, Simulator
-from pursue_runtime.state import LOST, STOPPED, WAITING, WON, parse_state
+from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import names
-from pursue_runtime.words import EVENTS, SYSTEM_STATE
+from pursue_runtime.words import EVENTS
 
 
 class SimulatorNode:
@@ -49,20 +50,16 @@ class SimulatorNode:
                 self.ears.append(
                     rospy.Subscriber(topic, kind, self.on_goal, callback_args=robot, queue_size=10, tcp_nodelay=True)
                 )
-        states = rospy.Subscriber(SYSTEM_STATE, String, self.on_state, queue_size=1000, tcp_nodelay=True)
+        states = subscribe_states(self.on_state)
         pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
         Diagnostics(self.report, Links(states, pulses, lost=self.master_lost))
 
-    def on_state(self, message: String) -> None:
+    def on_state(self, state: SystemState, publisher: str) -> None:
         """A state: who has begun what."""
-        state = parse_state(message.data)
-        if state is None:
-            rospy.logwarn("not a system state: %r", message.data[:80])
-            return
         with self.lock:
             if not self.membership.takes(state):
                 return
-            self.observer = message._connection_header.get("callerid", "")
+            self.observer = publisher
             self.status = state.status
             self.simulator.on_state(state, time.monotonic())
             self.act()

@@ -31,7 +31,8 @@ from pursue_runtime.nodes.node import (
     give_way,
     listeners,
 )
-from pursue_runtime.state import WAITING, parse_state
+from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.board import Board, open_board
 from pursue_runtime.ui.mission import SURE, Mission, Opening, Player, Readiness, Task, answer, menu, openings, tasks
@@ -40,7 +41,7 @@ from pursue_runtime.ui.page import Facts, Request
 from pursue_runtime.ui.players import AtRandom, Scripted, StandStill
 from pursue_runtime.ui.terminal import BAD, GOOD, PLAIN, TOLD, Terminal
 from pursue_runtime.ui.trace import TraceError, read_trace
-from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 RETRY = 1.0  # real seconds until `_start_` is said again
@@ -74,7 +75,7 @@ class UI:
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.ring)
         self.alarm.set(patience=options.wait)
-        self.states = rospy.Subscriber(SYSTEM_STATE, String, self.on_state, queue_size=1000, tcp_nodelay=True)
+        self.states = subscribe_states(self.on_state)
         rospy.Subscriber(PLAN, String, self.on_plan, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber(EVENTS, String, self.on_word, queue_size=1000, tcp_nodelay=True)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
@@ -95,15 +96,12 @@ class UI:
             elif self.phase == GATHERING:
                 self.show()
 
-    def on_state(self, message: String) -> None:
+    def on_state(self, state: SystemState, publisher: str) -> None:
         """A state of the mission."""
-        state = parse_state(message.data)
-        if state is None:
-            return
         with self.lock:
             if not self.membership.takes(state):
                 return
-            self.observer = message._connection_header.get("callerid", "")
+            self.observer = publisher
             for line in self.mission.on_state(state, rospy.get_time()):
                 self.terminal.line(line)
             if self.board is not None and self.mission.state is state:

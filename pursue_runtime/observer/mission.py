@@ -74,8 +74,9 @@ class Mission:
     def state(self, now: float) -> SystemState:
         """What is published."""
         position = self.position(now)
-        what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, tuple(sorted(self.lost))
-        return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what, self.name)
+        late, lost = tuple(sorted(self.late)), tuple(sorted(self.lost))
+        what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
+        return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
 
     @property
     def wanted(self) -> Optional[PlanRequest]:

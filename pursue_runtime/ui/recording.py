@@ -6,7 +6,7 @@ import os
 from typing import Collection, List, Mapping, Sequence
 
 from pursue_runtime.model import Model
-from pursue_runtime.words import EVENTS, PLAN, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, PLAN, STATE, SYSTEM_STATE
 
 OF_A_ROBOT = (
     "move_base_simple/goal",
@@ -25,7 +25,7 @@ GAME = "pursue/game"
 def topics(model: Model, simulated_time: bool) -> List[str]:
     """The names of the topics, so that the first message on each is not missed."""
     robots = [robot.name for robot in model.of_kind("robot")]
-    names = [EVENTS, SYSTEM_STATE, PLAN, *(f"{robot}/{topic}" for robot in robots for topic in OF_A_ROBOT)]
+    names = [EVENTS, STATE, SYSTEM_STATE, PLAN, *(f"{robot}/{topic}" for robot in robots for topic in OF_A_ROBOT)]
     return [*names, "/diagnostics", *(["/clock"] if simulated_time else [])]
 
 
