@@ -13,7 +13,9 @@ from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.report.html import Section, figure, table
 
-EVENTS, STATE, PLAN, DIAGNOSTICS = "/pursue/events", "/pursue/system_state", "/pursue/plan", "/diagnostics"
+EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
+DIAGNOSTICS = "/diagnostics"
+_STATE = "pursue_msgs/SystemState"
 _STRING, _POSE, _STATUS = "std_msgs/String", "geometry_msgs/PoseStamped", "diagnostic_msgs/DiagnosticArray"
 _OBSERVER, _SIMULATOR = "/observer", "/simulator"
 
@@ -38,7 +40,8 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
     nodes = (_OBSERVER, *controllers, _SIMULATOR, f"/{UI}")
     result = [
         Topic(EVENTS, _STRING, nodes, (_OBSERVER, f"/{UI}")),
-        Topic(STATE, _STRING, (_OBSERVER,), (*controllers, _SIMULATOR, f"/{UI}")),
+        Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, f"/{UI}")),
+        Topic(TEXT, _STRING, (_OBSERVER,), ()),
         Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, f"/{UI}")),
         Topic(DIAGNOSTICS, _STATUS, nodes, (_OBSERVER, _SIMULATOR, f"/{UI}")),
     ]

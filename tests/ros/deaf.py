@@ -11,8 +11,8 @@ rospy.init_node("controller_bot1")
 words = rospy.Publisher("pursue/events", String, queue_size=10)
 for line in sys.stdin:
     if line.strip() == "listen":
-        rospy.wait_for_message("pursue/system_state", String)
-        states = rospy.Subscriber("pursue/system_state", String)
+        rospy.wait_for_message("pursue/state", rospy.AnyMsg)
+        states = rospy.Subscriber("pursue/state", rospy.AnyMsg)
         while not states.get_num_connections() and not rospy.is_shutdown():
             rospy.sleep(0.05)
     else:

@@ -1,4 +1,4 @@
-"""Two nodes that show what a link loses: `link_probe.py <scripts of a package> talker|listener`.
+"""Two nodes that show what a link loses: `link_probe.py talker|listener`.
 
 The talker counts on pursue/events, ten times a second; on SIGUSR1 it drops its connections. The listener prints the
 numbers, one a line. Both watch their links as the nodes of a mission do.
@@ -11,12 +11,11 @@ import signal
 import sys
 import time
 
-sys.path.insert(0, sys.argv[1])
-
 import rospy
-from pursue_links import Links
-from pursue_node import OK, Diagnostics, Report
 from std_msgs.msg import String
+
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.node import OK, Diagnostics, Report
 
 
 def main(role: str) -> None:
@@ -40,4 +39,4 @@ def main(role: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[2])
+    main(sys.argv[1])

@@ -37,7 +37,11 @@ pytestmark = pytest.mark.ros
 
 CRIER = Path(__file__).resolve().parent / "town_crier.py"
 DESK, STRANGER = (Ed25519PrivateKey.from_private_bytes(bytes([number]) * 32) for number in (1, 2))
-STATE = "seq={} stamp={}.0 unit=1.0 status={}\nbot1=a\n\n"
+
+
+def state(seq: int, stamp: int, status: str) -> Dict[str, Any]:
+    """The fields of a state."""
+    return {"seq": seq, "stamp": {"secs": stamp, "nsecs": 0}, "time_unit": 1.0, "status": status}
 
 
 class Town:
@@ -102,7 +106,8 @@ def town(ros: Ros, workspace: Path, folder: Path) -> Iterator[Town]:
         command += " nodes:='observer, UI controller_bot1 controller_bot2'"
         launch = ros.start(command, workspace, folder / "launch.log", ROS_NAMESPACE="bot1", **there)
         crier = subprocess.Popen(
-            ["python3", str(CRIER), "/bot1/mission_status"],
+            ["bash", "-c", f"source devel/setup.bash; exec python3 {CRIER} /bot1/mission_status"],
+            cwd=workspace,
             env={**ros.environment, **there},
             stdin=subprocess.PIPE,
             stdout=open(folder / "heard", "wb"),  # noqa: SIM115 (the child keeps it)
@@ -142,7 +147,7 @@ def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, bu
         there.say("/bot1/local_mission", prepare, prepare)
         prepared = there.until(lambda status: status["prepared"] == digest)
         assert prepared["answer"]["ok"] and prepared["answer"]["ticket"] == refused["ticket"]
-        there.say("/pursue/system_state", STATE.format(1, 1, "running"))
+        there.say("/pursue/state", state(1, 1, "running"))
         there.until(lambda status: bool(status["mission_runs"]))
         commit = there.order(COMMIT, digest)
         there.say("/bot1/local_mission", commit)
@@ -153,7 +158,7 @@ def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, bu
         again = there.until(lambda status: status["answer"] is None and status["mission_runs"])
         assert (again["current"], again["next"], again["kept"]) == ("", digest, [digest])
         there.say("/bot1/local_mission", prepare, commit)
-        there.say("/pursue/system_state", STATE.format(2, 9, "won"))
+        there.say("/pursue/state", state(2, 9, "won"))
         over = there.until(lambda status: status["current"] == digest)
         assert over["ticket"] == again["ticket"] and over["next"] is None and over["history"] == [""]
 

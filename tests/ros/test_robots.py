@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import re
 import time
 from collections import Counter
@@ -147,9 +146,10 @@ def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_missio
 def test_a_robot_that_connects_late_is_told_and_is_called_back_when_its_controller_is_interrupted(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
-    state = "seq=3 stamp=1.0 status=%s\nbot1=going_c_to_b\nbot2=c\n\nCbot1=1.0"
-    publish = "exec rostopic pub -l pursue/system_state std_msgs/String '%s'"
-    told = {status: publish % json.dumps(state % status) for status in ("holding", "running")}
+    automata = "[{name: bot1, location: going_c_to_b}, {name: bot2, location: c}]"
+    fields = f"seq: 3, stamp: 1.0, time_unit: 1.0, automata: {automata}, clocks: [{{name: Cbot1, value: 1.0}}]"
+    publish = f"exec rostopic pub -l pursue/state pursue_msgs/SystemState '{{{fields}, status: %s}}'"
+    told = {status: publish % status for status in ("holding", "running")}
     command = "exec rosrun controller_bot1 controller_bot1 _goals:=action _on_stop:=cancel"
     with contextlib.ExitStack() as cleanup:
         there = cleanup.enter_context(ros.master())

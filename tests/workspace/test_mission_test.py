@@ -6,12 +6,13 @@ import importlib
 import json
 import sys
 import unittest.mock
+from types import SimpleNamespace
 from typing import Any, Dict, Iterator, List
 
 import pytest
 from worlds import files
 
-STUBS = ("rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg")
+STUBS = ("rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg", "pursue_msgs.msg")
 
 
 @pytest.fixture(scope="module")
@@ -69,10 +70,10 @@ def test_events_of_words(judge: Any, word: str, event: str) -> None:
     assert judge.event_of(word) == event
 
 
-def test_the_system_state_is_read_up_to_its_clocks(judge: Any) -> None:
-    head, values = judge.read_state("seq=3 stamp=1.5 status=running\nbot1=going_a_to_b\nPbot1=-12\n\nCbot1=0.5")
-    assert head == {"seq": "3", "stamp": "1.5", "status": "running"}
-    assert values == {"bot1": "going_a_to_b", "Pbot1": "-12"}
+def test_locations_and_variables_of_a_state_are_read_as_text(judge: Any) -> None:
+    automata = [SimpleNamespace(name="bot1", location="going_a_to_b")]
+    message = SimpleNamespace(automata=automata, variables=[SimpleNamespace(name="Pbot1", value=-12)])
+    assert judge.values_of(message) == {"bot1": "going_a_to_b", "Pbot1": "-12"}
 
 
 def test_the_mission_is_started_again_until_the_observer_hears_it(judge: Any) -> None:

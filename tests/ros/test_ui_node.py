@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import socket
 import subprocess
 import sys
 from pathlib import Path
-from typing import Dict, Iterator
+from typing import Callable, Dict, Iterator
 
 import pytest
 import yaml
-from ui_package import model_data, mover
+from ros_world import Ros, end
 
 from tests.waiting import PATIENCE
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / "ros"))
-from ros_world import Ros, end
+sys.path.append(str(Path(__file__).resolve().parent.parent / "runtime"))
+from ui_package import model_data, mover
 
-pytest.importorskip("rospy", reason="ROS is not installed")
+pytestmark = pytest.mark.ros
 
 SCRIPT = """
 import sys
@@ -46,13 +45,14 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dict[str, str]]:
-    """The environment of a roscore of our own."""
-    if shutil.which("roscore") is None:
-        pytest.skip("there is no roscore")
-    home = tmp_path_factory.mktemp("ros")
-    with Ros(home).master() as where:
-        yield {**os.environ, **where, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(home), "ROS_LOG_DIR": str(home)}
+def where(ros: Ros, built: Callable[..., Path]) -> Iterator[Dict[str, str]]:
+    """The environment of a roscore of our own, with the messages of a workspace."""
+    names = ("PYTHONPATH", "PATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")
+    shown = ros.run("source devel/setup.bash; env", built("thesis/scenario_1"))
+    there = dict(line.split("=", 1) for line in shown.stdout.splitlines() if line.split("=", 1)[0] in names)
+    with ros.master() as master:
+        home = str(ros.home)
+        yield {**ros.environment, **there, **master, "ROS_HOSTNAME": "localhost", "ROS_HOME": home}
 
 
 def run(package: Path, environment: Dict[str, str], *arguments: str) -> "subprocess.CompletedProcess[str]":
@@ -61,14 +61,14 @@ def run(package: Path, environment: Dict[str, str], *arguments: str) -> "subproc
                           stderr=subprocess.PIPE, universal_newlines=True, timeout=2 * PATIENCE)
 
 
-def test_help_needs_no_roscore(package: Path) -> None:
-    done = run(package, {**os.environ, "ROS_MASTER_URI": "http://localhost:1"}, "--help")
+def test_help_needs_no_roscore(package: Path, where: Dict[str, str]) -> None:
+    done = run(package, {**where, "ROS_MASTER_URI": "http://localhost:1"}, "--help")
     assert done.returncode == 0
     assert "--trace" in done.stdout
 
 
-def test_missing_nodes_are_named_and_nothing_is_started(package: Path, ros: Dict[str, str]) -> None:
-    done = run(package, ros, "--wait", "0.5")
+def test_missing_nodes_are_named_and_nothing_is_started(package: Path, where: Dict[str, str]) -> None:
+    done = run(package, where, "--wait", "0.5")
     assert done.returncode == 1
     assert "Not ready after 0.5 s: observer, controller_bot. The mission was not started." in done.stdout
 
@@ -80,27 +80,27 @@ def test_missing_nodes_are_named_and_nothing_is_started(package: Path, ros: Dict
     (["_pace:=soon", "__name:=hasty"], "pace is 'soon'; expected a number"),
     (["_config:=/nowhere", "__name:=lost"], "no model.yaml in /nowhere"),
 ])
-def test_a_wrong_start_is_refused_in_one_line(package: Path, ros: Dict[str, str], arguments: list, says: str) -> None:
-    done = run(package, ros, *arguments)
+def test_a_wrong_start_is_refused_in_one_line(package: Path, where: Dict[str, str], arguments: list, says: str) -> None:
+    done = run(package, where, *arguments)
     assert done.returncode == 2
     assert says in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_a_wrong_trace_is_refused_with_its_place(package: Path, ros: Dict[str, str], tmp_path: Path) -> None:
+def test_a_wrong_trace_is_refused_with_its_place(package: Path, where: Dict[str, str], tmp_path: Path) -> None:
     trace = tmp_path / "trace.yaml"
     trace.write_text("- {at: 1, do: thief_a2b}\n- {at: 2, do: thief_a2c}\n")
-    done = run(package, ros, "--trace", str(trace))
+    done = run(package, where, "--trace", str(trace))
     assert done.returncode == 2
     assert f"{trace}:2: step 2" in done.stderr
 
 
 def test_without_tornado_there_is_no_page_and_the_reason_is_told(
-    package: Path, ros: Dict[str, str], tmp_path: Path
+    package: Path, where: Dict[str, str], tmp_path: Path
 ) -> None:
     (tmp_path / "tornado").mkdir()
     (tmp_path / "tornado" / "__init__.py").write_text("raise ImportError('it is not here')")
-    without = {**ros, "PYTHONPATH": os.pathsep.join([str(tmp_path), ros.get("PYTHONPATH", "")])}
+    without = {**where, "PYTHONPATH": os.pathsep.join([str(tmp_path), where.get("PYTHONPATH", "")])}
     done = run(package, without, "--web", "__name:=pageless")
     assert done.returncode == 2
     assert "UI: --web needs tornado, and it is not here: install python3-tornado" in done.stderr
@@ -109,21 +109,21 @@ def test_without_tornado_there_is_no_page_and_the_reason_is_told(
     assert "Not ready after 0.5 s" in done.stdout, "nobody else needs it"
 
 
-def test_a_taken_port_is_told(package: Path, ros: Dict[str, str]) -> None:
+def test_a_taken_port_is_told(package: Path, where: Dict[str, str]) -> None:
     pytest.importorskip("tornado")
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen(1)
         port = taken.getsockname()[1]
-        done = run(package, ros, "--web", "--port", str(port), "__name:=second")
+        done = run(package, where, "--web", "--port", str(port), "__name:=second")
     assert done.returncode == 2
     assert f"UI: cannot serve the page on 127.0.0.1, port {port}" in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_the_address_of_the_page_is_told(package: Path, ros: Dict[str, str]) -> None:
+def test_the_address_of_the_page_is_told(package: Path, where: Dict[str, str]) -> None:
     pytest.importorskip("tornado")
-    done = run(package, ros, "--web", "--port", "0", "--host", "0.0.0.0", "--wait", "0.5", "__name:=shown")
+    done = run(package, where, "--web", "--port", "0", "--host", "0.0.0.0", "--wait", "0.5", "__name:=shown")
     assert done.returncode == 1, done.stderr
     assert re.search(r"^The page is at http://[^/]+:\d+/\?token=[\w-]{20,}$", done.stdout, re.MULTILINE), done.stdout
 
@@ -147,12 +147,12 @@ class Stage:
     ("lost", 1, "The mission is lost, after 3.0 time units: for a reason."),
 ])
 def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
-    package: Path, ros: Dict[str, str], tmp_path: Path, status: str, code: int, says: str
+    package: Path, where: Dict[str, str], tmp_path: Path, status: str, code: int, says: str
 ) -> None:
     trace = tmp_path / "trace.yaml"
     trace.write_text("- {at: 0.1, do: thief_a2b}\n")
-    with Stage({**ros, "STAGE_STATUS": status}):
-        done = run(package, ros, "--trace", str(trace), "--wait", str(PATIENCE))
+    with Stage({**where, "STAGE_STATUS": status}):
+        done = run(package, where, "--trace", str(trace), "--wait", str(PATIENCE))
     assert done.returncode == code, done.stderr
     lines = [line.strip() for line in done.stdout.splitlines()]
     assert lines[0] == "example: waiting for observer, controller_bot"

@@ -4,10 +4,12 @@ import os
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from pursue_msgs.msg import SystemState as Message
 from std_msgs.msg import String
 
-from pursue_runtime.state import LOST, RUNNING, WAITING, SystemState, format_state
-from pursue_runtime.words import EVENTS, START, SYSTEM_STATE
+from pursue_runtime.nodes.state_message import message_of
+from pursue_runtime.state import LOST, RUNNING, WAITING, SystemState
+from pursue_runtime.words import EVENTS, START, STATE
 
 UNIT = 10.0  # seconds; who hears of the start later than that skips what a trace says of its beginning
 begun = []
@@ -19,7 +21,7 @@ def publish(seq: int, passed: float, status: str, event: str = "", agent: str = 
     reason = "for a reason" if status == LOST else ""
     stamp = (begun[0] if begun else rospy.get_time()) + passed * UNIT
     values = {"Prule": 0, "Pbot": 1, "Pthief": 1}
-    states.publish(format_state(SystemState(seq, stamp, where, values, clocks, event, agent, status, reason, UNIT)))
+    states.publish(message_of(SystemState(seq, stamp, where, values, clocks, event, agent, status, reason, UNIT)))
 
 
 def hear(message: String) -> None:
@@ -37,7 +39,7 @@ def diagnose(_: object) -> None:
 
 
 rospy.init_node("observer")
-states = rospy.Publisher(SYSTEM_STATE, String, queue_size=10, latch=True)
+states = rospy.Publisher(STATE, Message, queue_size=10, latch=True)
 diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
 publish(0, 0.0, WAITING)
 rospy.Subscriber(EVENTS, String, hear)
