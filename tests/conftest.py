@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import unittest
 from pathlib import Path
-from typing import Any
+from typing import Any, List, Set, Tuple
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -19,14 +20,55 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # Who looks for a fault in the program wants tracebacks; tests want what everybody gets.
 os.environ.pop("PURSUE_DEBUG", None)
 
-# Other work on the machine must not fail a test; in CI a change is judged by the same examples every time.
+# A verdict depends on the code alone: not on what else the machine does, and each run draws the same examples.
 settings.register_profile(
     "project",
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
-    derandomize=bool(os.environ.get("CI")),
+    derandomize=True,
 )
+settings.register_profile("explore", settings.get_profile("project"), derandomize=False)
 settings.load_profile("project")
+
+EXPLORE_FACTOR = 10
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Adds `--explore`."""
+    parser.addoption(
+        "--explore",
+        action="store_true",
+        help=f"property tests draw new examples on each run, {EXPLORE_FACTOR} times as many; some take minutes",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Loads the profile before any test module is imported: its settings inherit from it."""
+    if config.getoption("--explore"):
+        settings.load_profile("explore")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
+    """With `--explore`: multiplies the examples of each property test, those with a number of their own included."""
+    if not config.getoption("--explore"):
+        return
+    changed: Set[int] = set()
+    for item in items:
+        holder, name = _settings_place(item)
+        if holder is None or id(holder) in changed:
+            continue
+        changed.add(id(holder))
+        usual = getattr(holder, name, None) or settings.default
+        setattr(holder, name, settings(usual, max_examples=EXPLORE_FACTOR * usual.max_examples))
+
+
+def _settings_place(item: pytest.Item) -> Tuple[Any, str]:
+    """Where hypothesis keeps the settings of a test: an object and its attribute; None where it is no property test."""
+    if not isinstance(item, pytest.Function) or not is_hypothesis_test(item.obj):
+        return None, ""
+    if issubclass(item.cls or object, unittest.TestCase):  # a state machine's
+        return item.cls, "settings"
+    return getattr(item.obj, "__func__", item.obj), "_hypothesis_internal_use_settings"
 
 
 @pytest.fixture(scope="session")
