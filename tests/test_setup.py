@@ -28,6 +28,7 @@ def source(folder: Path) -> Path:
     for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "package.xml", "CMakeLists.txt"):
         shutil.copy(str(ROOT / name), str(folder / name))
     shutil.copy(str(ROOT / "run"), str(folder / "run"))
+    shutil.copytree(str(ROOT / ".ci"), str(folder / ".ci"))
     return folder
 
 
@@ -235,3 +236,30 @@ def test_set_up_again_does_nothing(tmp_path: Path) -> None:
     assert told.stdout == "Everything is set up. Next: ./run mission\n"
     assert STAMP.stat().st_mtime_ns == before
     assert not list(tmp_path.glob("*.used"))
+
+
+# CI -------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def ci(tmp_path: Path) -> Path:
+    """The project without its native engine, and a `./run` that only notes what it is called for."""
+    folder = source(tmp_path)
+    (folder / ".venv" / "bin").mkdir(parents=True)
+    fake(folder / ".venv" / "bin", "python", f'exec {sys.executable} "$@"')
+    fake(folder, "run", f'echo "$@" >>{folder}/calls')
+    return folder
+
+
+def test_ci_fails_where_the_native_engine_was_not_built(ci: Path) -> None:
+    done = called([ci / ".ci" / "run"], ci, {**os.environ, "PYTHONPATH": str(ci)})
+    assert done.returncode == 1
+    assert "The native engine was not built" in done.stdout and "Traceback" not in done.stdout
+    assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup"]
+
+
+def test_ci_goes_on_to_the_tests_where_the_native_engine_was_built(ci: Path) -> None:
+    (ci / "pursue_gen" / "synthesis" / "native" / "_core.py").touch()  # as good as built: it can be imported
+    done = called([ci / ".ci" / "run"], ci, {**os.environ, "PYTHONPATH": str(ci)})
+    assert done.returncode == 0, done.stdout
+    assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup", "test", "sanitize"]
