@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Tuple
 
 MAGIC = b"#ROSBAG V2.0\n"
-_MESSAGE, _BAG, _CHUNK, _CONNECTION = 2, 3, 5, 7
+_MESSAGE, _BAG, _CHUNK, _CHUNK_INFO, _CONNECTION = 2, 3, 5, 6, 7
 _LARGEST_HEADER = 1 << 20
 
 
@@ -41,6 +41,8 @@ def read_bag(content: bytes) -> Tuple[List[Message], List[str]]:
     reader.run(content, len(MAGIC), "")
     if not 0 < reader.index <= len(content) and not reader.problems:
         reader.problems.append("the bag was not closed: its last messages may be missing")
+    elif reader.listed < reader.chunks and not reader.problems:
+        reader.problems.append(f"the bag ends within its index: it lists {reader.listed} of {reader.chunks} chunks")
     if reader.strangers:
         reader.problems.append(f"{reader.strangers} messages of connections that it does not describe were skipped")
     return reader.messages, reader.problems
@@ -51,6 +53,8 @@ class _Reader:
         self.messages: List[Message] = []
         self.problems: List[str] = []
         self.index = 0  # where the index stands, which is written when a bag is closed
+        self.chunks = 0  # how many the bag has, which is written with it
+        self.listed = 0  # how many of them the index describes; their descriptions are the last records of a bag
         self.strangers = 0
         self._connections: Dict[int, Tuple[str, str, str]] = {}
 
@@ -65,7 +69,9 @@ class _Reader:
     def _record(self, header: Dict[str, bytes], data: bytes) -> None:
         kind = header.get("op", b"")[:1]
         if kind == bytes((_BAG,)):
-            self.index = _integer(header, "index_pos", 8)
+            self.index, self.chunks = _integer(header, "index_pos", 8), _integer(header, "chunk_count", 4)
+        elif kind == bytes((_CHUNK_INFO,)):
+            self.listed += 1
         elif kind == bytes((_CHUNK,)):
             # One that was never closed has no length, and its records follow as if there were no chunk.
             self._chunk(header.get("compression", b"none").decode("ascii", "replace"), data)
