@@ -139,20 +139,24 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
 
 
 def _write_pictures(made: Report, folder: Path) -> None:
-    """Every picture as SVG and PNG, all or none."""
+    """Writes every picture as SVG, and as PNG where that can be made; all files or none."""
     from pursue_gen.files import write_bytes
     from pursue_gen.report import graphviz
-    from pursue_gen.report.png import png
+    from pursue_gen.report.png import NO_PNG, available, png
     from pursue_gen.report.whole import pictures
 
     drawn = pictures(made)
     missing = [name for name, svg in drawn.items() if not svg]
     found = {name: svg for name, svg in drawn.items() if svg}
     files = {folder / f"{name}.svg": svg.encode("utf-8") for name, svg in found.items()}
-    files.update({folder / f"{name}.png": png(svg) for name, svg in found.items()})
+    with_png = available()
+    if with_png:
+        files.update({folder / f"{name}.png": png(svg) for name, svg in found.items()})
     write_bytes(files)
     for file in sorted(files):
         print(file)
+    if not with_png:
+        show([NO_PNG])
     if missing:
         reason = "graphviz could not draw them" if graphviz.installed() else graphviz.HOW_TO_GET
         message = f"{counted(len(missing), 'picture')} could not be drawn: {', '.join(missing)}"

@@ -3,35 +3,41 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import shutil
 import subprocess
+from typing import Any
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, error, warning
 
 _SECONDS = 60
 _HINT = "install it (Debian, Ubuntu: sudo apt install librsvg2-bin; or pip install cairosvg)"
 
+NO_PNG = warning("REP003", "the pictures were written as SVG only: rsvg-convert makes PNG, and is missing", hint=_HINT)
+"""What to report where PNGs cannot be made."""
+
 
 def available() -> bool:
-    """Can PNGs be made here?"""
-    return shutil.which("rsvg-convert") is not None or importlib.util.find_spec("cairosvg") is not None
+    """True if PNGs can be made here."""
+    return shutil.which("rsvg-convert") is not None or _cairosvg() is not None
 
 
 def png(svg: str, zoom: float = 2.0) -> bytes:
-    """The picture as PNG, `zoom` pixels for each of its own.
+    """The picture as PNG, `zoom` pixels for each of its own; `available` must be true.
 
-    Raises PursueError, exit status 6 where nothing here can make PNGs.
+    Raises PursueError with exit status 6 where the program fails.
     """
     program = shutil.which("rsvg-convert")
     if program is not None:
         return _converted(program, svg, zoom)
+    return bytes(_cairosvg().svg2png(bytestring=svg.encode("utf-8"), scale=zoom))
+
+
+def _cairosvg() -> Any:
+    """The package; None where it is missing."""
     try:
-        cairosvg = importlib.import_module("cairosvg")
+        return importlib.import_module("cairosvg")
     except (ImportError, OSError):  # OSError: it is there and the library cairo is not
-        message = "rsvg-convert is missing, which makes PNG of SVG"
-        raise PursueError([error("REP003", message, hint=_HINT)], exit_status=6) from None
-    return bytes(cairosvg.svg2png(bytestring=svg.encode("utf-8"), scale=zoom))
+        return None
 
 
 def _converted(program: str, svg: str, zoom: float) -> bytes:

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing import look
 from pursue_gen.language import load
 from pursue_gen.report import automata, graphviz
@@ -102,11 +101,3 @@ def test_a_png_has_the_size_of_its_picture_and_something_on_it() -> None:
     width, height, data = pixels(png(full, 3.0))
     assert (width, height) == (180, 120)
     assert len(set(data)) > 5 and data != pixels(png(empty, 3.0))[2]
-
-
-def test_without_a_program_for_pngs_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", "/nonexistent")
-    monkeypatch.setitem(__import__("sys").modules, "cairosvg", None)
-    with pytest.raises(PursueError) as problem:
-        png(look.svg(1, 1, "t", "d", []))
-    assert problem.value.exit_status == 6 and "librsvg2-bin" in (problem.value.diagnostics[0].hint or "")

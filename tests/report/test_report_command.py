@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import NamedTuple, Tuple
 
@@ -9,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from pursue_gen.cli.app import app
-from pursue_gen.report import graphviz
+from pursue_gen.report import graphviz, png
 from pursue_gen.report.png import available
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
@@ -76,6 +77,21 @@ def test_every_picture_is_written_twice(tmp_path: Path) -> None:
         f"{n}.{end}" for n in names for end in ("svg", "png")
     }
     assert all((tmp_path / line).is_file() for line in told.out.split() if line.startswith("pictures/"))
+
+
+@pytest.mark.skipif(not graphviz.installed(), reason="graphviz is missing")
+def test_without_a_program_for_pngs_pictures_are_written_as_svg_with_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(png.shutil, "which", lambda name: None if name == "rsvg-convert" else f"/usr/bin/{name}")
+    monkeypatch.setitem(sys.modules, "cairosvg", None)
+    told = pursue("report", CELL, "--pictures", "pictures")
+    assert told.status == 0
+    assert "warning REP003" in told.err and "librsvg2-bin" in told.err
+    files = {file.name for file in (tmp_path / "pictures").iterdir()}
+    assert {"map.svg", "strategy.svg", "ros_graph.svg"} < files
+    assert {Path(name).suffix for name in files} == {".svg"}
+    assert {Path(line).name for line in told.out.splitlines()} == files
 
 
 @pytest.mark.skipif(not available(), reason="a maker of PNGs is missing")
