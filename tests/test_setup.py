@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 from typing import Dict, Sequence
@@ -23,8 +24,9 @@ STAMP = ROOT / ".venv" / ".pursue_gen_stamp"
 def source(folder: Path) -> Path:
     """A copy of what the project is built from, so that the checkout stays as it is."""
     built = shutil.ignore_patterns("*.so", "__pycache__", "*.egg-info", ".*cache")
-    for name in ("pursue_gen", "templates", "bin", "scenarios", "docs"):
-        shutil.copytree(str(ROOT / name), str(folder / name), ignore=built)
+    for name in ("pursue_gen", "pursue_runtime", "templates", "bin", "scenarios", "docs"):
+        if (ROOT / name).is_dir():
+            shutil.copytree(str(ROOT / name), str(folder / name), ignore=built)
     for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "package.xml", "CMakeLists.txt"):
         shutil.copy(str(ROOT / name), str(folder / name))
     shutil.copy(str(ROOT / "run"), str(folder / "run"))
@@ -54,7 +56,21 @@ def tree(folder: Path, wanted: str = "*") -> Dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in paths if path.is_file()}
 
 
-# The wheel ------------------------------------------------------------------------------------------------------------
+# The source distribution and the wheel --------------------------------------------------------------------------------
+
+
+def test_the_source_distribution_holds_what_the_project_is_built_from(tmp_path: Path) -> None:
+    pytest.importorskip("setuptools")
+    folder, built_from = source(tmp_path / "project"), set()
+    for name in ("pursue_gen", "pursue_runtime", "templates", "scenarios", "docs/diagnostics"):
+        built_from |= {f"{name}/{path}" for path in tree(folder / name) if path.endswith(".pur") or name != "scenarios"}
+    assert {"pursue_gen/synthesis/native/module.cpp", "pursue_gen/zones/native/dbm.hpp"} < built_from
+    done = called([sys.executable, "setup.py", "-q", "sdist", "-d", tmp_path / "dist"], folder, dict(os.environ))
+    assert done.returncode == 0, done.stdout
+    (archive,) = (tmp_path / "dist").glob("*.tar.gz")
+    with tarfile.open(str(archive)) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    assert not {*built_from, "setup.py", "pyproject.toml", "README.md", "LICENSE"} - names
 
 
 @pytest.fixture(scope="module")
@@ -81,9 +97,8 @@ def test_the_wheel_carries_the_pages_on_messages(unpacked: Path, tmp_path: Path)
     assert (done.returncode, done.stdout) == (0, (ROOT / "docs" / "diagnostics" / "PML110.md").read_text("utf-8"))
 
 
-def test_the_wheel_carries_all_templates_and_the_grammar(unpacked: Path) -> None:
+def test_the_wheel_carries_all_templates(unpacked: Path) -> None:
     assert tree(unpacked / "pursue_gen" / "_templates") == tree(ROOT / "templates" / "catkin") != {}
-    assert (unpacked / "pursue_gen" / "language" / "grammar.lark").is_file()
 
 
 def test_the_wheel_carries_the_scenarios(unpacked: Path, tmp_path: Path) -> None:
@@ -94,11 +109,11 @@ def test_the_wheel_carries_the_scenarios(unpacked: Path, tmp_path: Path) -> None
     assert (tmp_path / SCENARIO.name).read_bytes() == SCENARIO.read_bytes()
 
 
-def test_the_wheel_carries_what_pages_are_made_of(unpacked: Path) -> None:
-    def parts(folder: Path) -> Dict[str, bytes]:
-        return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix in (".css", ".js")}
-
-    assert parts(unpacked / "pursue_gen" / "report") == parts(ROOT / "pursue_gen" / "report") != {}
+def test_the_wheel_carries_all_files_of_its_packages(unpacked: Path) -> None:
+    for name in ("pursue_gen", "pursue_runtime"):
+        left_out = (".so", ".cpp", ".hpp")
+        files = {path: content for path, content in tree(ROOT / name).items() if not path.endswith(left_out)}
+        assert not files.items() - tree(unpacked / name).items(), name
 
 
 def test_installed_without_a_compiler_it_writes_the_same_workspace(unpacked: Path, tmp_path: Path) -> None:
