@@ -197,7 +197,7 @@ def test_run_does_not_know_other_words() -> None:
 def test_without_apt_there_is_a_list_of_what_to_install(machine: Path) -> None:
     told = run(machine, "setup")
     assert told.returncode == 6
-    for word in ("catkin_make", "C++17", "rostest", "venv", "transitions"):
+    for word in ("catkin_make", "C++17", "rostest", "venv", "graphviz", "transitions"):
         assert word in told.stdout
 
 
