@@ -591,6 +591,8 @@ def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
     assert pursue("solve", file).status == 4
 
 
+# The engines find different strategies; the figures are those of the native one.
+@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_the_figures_of_the_readme_are_those_that_report_prints() -> None:
     rows = [line.split("|")[2:5] for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines()]
     told = [tuple(cell.strip() for cell in row) for row in rows if len(row) == 3]

@@ -114,6 +114,7 @@ def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
     assert found["playable"] is False and "game_margin" not in found and "no real robot" in ideal.err
 
 
+@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_report_and_workspaces_tell_the_margin(tmp_path: Path) -> None:
     file = thesis_scenario("1")
     assert "ideal game: Margin: it still wins when commands take effect 0.95" in pursue("report", file).out
