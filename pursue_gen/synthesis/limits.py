@@ -22,11 +22,15 @@ _LOOK, _TELL = 0.05, 0.2
 
 @dataclass(frozen=True)
 class Limits:
-    """Seconds, and MiB of the whole process; 0: no limit. `spent`: so many of the seconds are used up already."""
+    """Seconds, MiB of the whole process, discrete states of an engine; 0: no limit.
+
+    `spent`: so many of the seconds are used up already. The checker counts symbolic states, with a limit of its own.
+    """
 
     seconds: float = 0.0
     memory: int = 0
     spent: float = 0.0
+    states: int = 0
 
     @property
     def left(self) -> float:
@@ -69,6 +73,13 @@ class Watch:
         self._look = self._tell = 0.0
         self._reached = NOTHING_YET
 
+    def admit(self, states: int, waiting: int) -> None:
+        """Raises PursueError (exit status 5) where one more discrete state would be too many."""
+        if 0 < self._limits.states <= states:
+            seconds = time.monotonic() - self._start
+            self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
+            raise self.stopped("states")
+
     def check(self, states: int, waiting: int) -> None:
         """Raises PursueError (exit status 5) at a limit."""
         seconds = time.monotonic() - self._start
@@ -90,11 +101,11 @@ class Watch:
         return limit_reached(which, self._limits, self._reached)
 
 
-def limit_reached(which: str, limits: Limits, reached: Progress, states: int = 0) -> PursueError:
-    """What is told at a limit: which one ("seconds", "memory" or "states"), how far the work was, what to do."""
+def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
+    """The error at a limit: which one ("seconds", "memory" or "states"), how far the work was, what to do."""
     proving = reached.phase == PROVING
     shown = {"seconds": f"{limits.seconds:g} seconds", "memory": f"{limits.memory} MiB of memory"}
-    where = f"within the limit of {shown.get(which, f'{states} discrete states')}"
+    where = f"within the limit of {shown.get(which, f'{limits.states} discrete states')}"
     hint = "make the scenario smaller: fewer agents, POIs or events"
     if which == "memory" and not limits.memory:
         where = "with the memory that there is"

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Mapping, Optional
+from typing import Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
-from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.overtaking import without_overtaking
-from pursue_gen.synthesis.reference.engine import solve_reference
+from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -20,7 +20,7 @@ from pursue_gen.tga.network import Kind, Network, Objective
 
 @dataclass(frozen=True)
 class Stats:
-    """What it took: the engine (native or python), discrete states, zones of the result, seconds to decide.
+    """What it took: the name of the engine, discrete states, zones of the result, seconds to decide.
 
     `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted.
     """
@@ -45,6 +45,24 @@ class Verdict:
     ranks: Optional[Mapping[ZoneKey, int]] = None
 
 
+ENGINES: Tuple[Engine, ...] = (NativeEngine(), ReferenceEngine())
+"""The fastest first."""
+
+
+def choose(name: Optional[str] = None) -> Engine:
+    """The engine of that name; None: the first that is available.
+
+    Raises PursueError with exit status 6 where it is not available, KeyError for a name that no engine has.
+    """
+    if name is None:
+        return next(engine for engine in ENGINES if engine.available())
+    engine = {engine.name: engine for engine in ENGINES}[name]
+    if not engine.available():
+        hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
+        raise PursueError([error("SYN011", f"the {engine.name} engine was not built", hint=hint)], exit_status=6)
+    return engine
+
+
 def solve(
     network: Network,
     objective: Objective,
@@ -55,29 +73,21 @@ def solve(
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
-    `reaction` is the delay of a command in time units, `engine` "native" or "python" (default: native where it was
-    built); `progress` is told a few times a second how far it is. Raises PursueError for networks that the game does
-    not support, with exit status 5 at a limit, and with 6 where the native engine is asked for and was not built.
+    `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
+    a few times a second. Raises PursueError for networks that the game does not support, with exit status 5 at a limit,
+    and with 6 where the engine is not available.
     """
-    if engine == "native" and not native.available():
-        hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
-        raise PursueError([error("SYN011", "the native engine was not built", hint=hint)], exit_status=6)
+    chosen = choose(engine)
     game = compile_game(network, objective, reaction)
-    if engine == "native" or (engine is None and native.available()):
-        found = native.solve_native(game, limits, progress)
-        won, blocks, numbers = found.won, found.blocks, found.ranks
-        counts = found.counts
-        stats = Stats(
-            "native", counts["discrete_states"], counts["zones"], found.seconds, counts["symbolic_states"]
-        )
-    else:
-        start = time.perf_counter()
-        outcome = solve_reference(game, limits=limits, progress=progress)
-        won, blocks = outcome.won, outcome.raw_blocks()
-        # Not ranks that hold across states, but what was found later in one of them stands later.
-        numbers = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks)
-        stats = Stats("python", outcome.stats.states, outcome.stats.zones, time.perf_counter() - start)
+    outcome = chosen.solve(game, limits, progress)
+    counts = outcome.counts
+    stats = Stats(chosen.name, counts.discrete_states, counts.zones, outcome.seconds, counts.symbolic_states)
+    if not outcome.won:
+        return Verdict(False, None, stats, None)
+    blocks, ranks = outcome.blocks, outcome.ranks
     if game.delta and game.kind is not Kind.SAFETY:
-        blocks, numbers = without_overtaking(game, blocks, numbers)
-    ranks = to_ranks(blocks, numbers) if stats.engine == "native" else None
-    return Verdict(won, to_strategy(game, blocks) if won else None, stats, ranks)
+        # Without ranks that hold across states: within one state, what was won later stands later.
+        order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
+        blocks, order = without_overtaking(game, blocks, order)
+        ranks = None if ranks is None else order
+    return Verdict(True, to_strategy(game, blocks), stats, None if ranks is None else to_ranks(blocks, ranks))

@@ -22,7 +22,6 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis import limits as limits_module
-from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import (
     CAREFUL,
     PROVING,
@@ -148,7 +147,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
         used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + (64 << 20), resource.RLIM_INFINITY))
         try:
-            native.solve_native(game)
+            native.NativeEngine().solve(game)
         except PursueError as problem:
             print(problem.exit_status, problem.diagnostics[0].message)
     """
@@ -171,16 +170,6 @@ def test_memory_that_is_not_given_is_told_as_a_limit(game: Game, engine: str) ->
         with pytest.raises(PursueError) as failure:
             solve(*game, engine=engine, limits=Limits(memory=1 << 20))
         assert "the limit of 1048576 MiB" in told(failure.value)
-
-
-@needs_native
-def test_a_limit_on_states_is_exact(game: Game) -> None:
-    compiled = compile_game(*game)
-    states = native.solve_native(compiled).counts["discrete_states"]
-    assert native.solve_native(compiled, states=states + 1).counts["discrete_states"] == states
-    with pytest.raises(PursueError) as failure:
-        native.solve_native(compiled, states=3)
-    assert "within the limit of 3 discrete states; 3 discrete states were reached" in told(failure.value)
 
 
 # The checker ----------------------------------------------------------------------------------------------------------

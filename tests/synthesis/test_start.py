@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import worst_case
+from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.game import compile_game, initial_state, start_zone
-from pursue_gen.synthesis.native import engine as native
-from pursue_gen.synthesis.reference.engine import solve_reference
+from pursue_gen.synthesis.native.engine import NativeEngine
+from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
 from pursue_gen.synthesis.time_bounds import least_time
@@ -33,31 +34,24 @@ from pursue_gen.tga.network import (
 from pursue_gen.tga.uppaal import write_network
 from tests.synthesis.random_games import started
 from tests.synthesis.region_game import RegionGame
+from tests.synthesis.test_engines import ENGINES
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DELAYS = st.sampled_from((Fraction(0), Fraction(1)))
 QUICK = settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
 
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
+needs_native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built (no compiler)")
 
 Drawn = Tuple[Network, Objective]
 
 
-@needs_native
+@pytest.mark.parametrize("engine", ENGINES)
 @QUICK
-@given(started(EVERY_KIND), DELAYS, st.sampled_from((0.0, 5e5)))
-def test_the_native_engine_agrees_with_brute_force(drawn: Drawn, delay: Fraction, moment: float) -> None:
+@given(drawn=started(EVERY_KIND), delay=DELAYS)
+def test_engines_agree_with_brute_force(engine: Engine, drawn: Drawn, delay: Fraction) -> None:
     game = compile_game(*drawn, delay)
     regions = RegionGame(game)
-    assert native.solve_native(game, moment=moment).won == regions.won(regions.winning())
-
-
-@settings(QUICK, max_examples=40)
-@given(started(EVERY_KIND), DELAYS)
-def test_the_reference_agrees_with_brute_force(drawn: Drawn, delay: Fraction) -> None:
-    game = compile_game(*drawn, delay)
-    regions = RegionGame(game)
-    assert solve_reference(game).won == regions.won(regions.winning())
+    assert engine.solve(game).won == regions.won(regions.winning())
 
 
 @needs_native
@@ -68,7 +62,7 @@ def test_both_engines_agree_on_finer_grids(drawn: Drawn, delay: Fraction) -> Non
     finer = replace(network, start=tuple(replace(c, bound=c.bound + Fraction(1, 3)) for c in network.start))
     game = compile_game(finer, objective, delay)
     assert game.scale == (6 if delay else 3)
-    assert native.solve_native(game).won == solve_reference(game).won
+    assert NativeEngine().solve(game).won == ReferenceEngine().solve(game).won
 
 
 @needs_native

@@ -1,4 +1,4 @@
-"""What the native engine (core/module.cpp) offers."""
+"""What the native engine (module.cpp) offers."""
 
 from typing import Any, Callable, Dict, Optional
 
@@ -10,5 +10,5 @@ def solve(
     states: int = 0,
     memory_mib: int = 0,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
-    moment: float = 5e5,
+    small_budget: float = 5e5,
 ) -> Dict[str, Any]: ...

@@ -1,11 +1,12 @@
-"""The native engine (`core/`, C++): the same game tables in, the same kind of outcome out as the Python reference."""
+"""The native engine (C++): game tables in, an outcome out."""
 
 from __future__ import annotations
 
 from array import array
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, ClassVar, Dict, List, Optional, Tuple
 
+from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
 
@@ -16,61 +17,58 @@ except ImportError:  # no compiler when the package was installed: the Python re
 
 
 def available() -> bool:
-    """True if the native engine was built with the package and the game's zones fit it."""
+    """True if the native engine was built with the package."""
     return _core is not None
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Whether the controller wins, and how: per block the ranks of its pieces (reach: each step leads to lower ranks).
+class NativeEngine(Engine):
+    """The engine in C++17, see `module.cpp`.
 
-    The pieces of a block are disjoint. `counts`: discrete_states, symbolic_states (zones whose successors were
-    computed), zones (of the result), evaluations. `seconds`: what exploring and deciding took.
+    `small_budget` is the work, in pairs of zones, that a safety game gets as it is, before searches with few moves take
+    turns: some tenths of a second.
     """
 
-    won: bool
-    blocks: Tuple[RawBlock, ...]
-    ranks: Tuple[Tuple[int, ...], ...]
-    counts: Mapping[str, int]
-    seconds: float
+    name: ClassVar[str] = "native"
+    small_budget: float = 5e5
+
+    def available(self) -> bool:
+        """True if it was built with the package."""
+        return available()
+
+    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+        """Decide the game, see `Engine`; raises ValueError for more than 39 clocks, or constants beyond 32 bits."""
+        reached = NOTHING_YET
+
+        def report(states: int, waiting: int, seconds: float, memory: int) -> None:
+            nonlocal reached
+            reached = Progress(states, waiting, seconds, memory)
+            if progress is not None:
+                progress(reached)
+
+        try:
+            result = _core.solve(_tables(game), limits.left, limits.states, limits.memory, report, self.small_budget)
+        except _core.LimitReached as limit:
+            raise limit_reached(str(limit), limits, reached) from None
+        except MemoryError:
+            raise limit_reached("memory", limits, reached) from None
+        return _outcome(game, result)
 
 
-def solve_native(
-    game: Game,
-    limits: Limits = NO_LIMITS,
-    progress: Optional[Listener] = None,
-    states: int = 0,
-    moment: float = 5e5,
-) -> Outcome:
-    """Decides the game.
-
-    `moment` is the work (pairs of zones looked at) that a safety game gets as it is, before searches with few moves
-    take turns: some tenths of a second. `states` (discrete ones, 0 for none) is one more limit; a limit that is hit
-    raises PursueError with exit status 5.
-    Ctrl-C raises KeyboardInterrupt at once.
-    """
-    reached = NOTHING_YET
-
-    def told(states: int, waiting: int, seconds: float, memory: int) -> None:
-        nonlocal reached
-        reached = Progress(states, waiting, seconds, memory)
-        if progress is not None:
-            progress(reached)
-
-    try:
-        result = _core.solve(_tables(game), limits.left, states, limits.memory, told, moment)
-    except _core.LimitReached as limit:
-        raise limit_reached(str(limit), limits, reached, states) from None
-    except MemoryError:
-        raise limit_reached("memory", limits, reached) from None
+def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
     count = len(game.automata)
     blocks: List[RawBlock] = [
         (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))
         for d, pieces in result["states"]
     ]
     ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in result["states"])
-    counts = {key: int(result[key]) for key in ("discrete_states", "symbolic_states", "zones", "evaluations")}
-    return Outcome(bool(result["won"]), tuple(blocks), ranks, counts, float(result["seconds"]))
+    counts = Counts(
+        discrete_states=result["discrete_states"],
+        zones=result["zones"],
+        evaluations=result["evaluations"],
+        symbolic_states=result["symbolic_states"],
+    )
+    return Outcome(result["won"], tuple(blocks), ranks, counts, result["seconds"])
 
 
 def _matrix(bounds: bytes) -> Tuple[int, ...]:

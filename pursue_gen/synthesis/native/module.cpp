@@ -1,4 +1,4 @@
-// The Python face of the native engine: one function, plain lists in and out (see synthesis/native.py).
+// The Python face of the native engine: one function, plain lists in and out (see engine.py).
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -167,7 +167,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
-               py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("moment") = 5e5,
-               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory'). `moment` is the work, in pairs\n"
+               py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
+               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory'). `small_budget` is the work, in pairs\n"
                "of zones, that a safety game gets before searches with few moves take turns.");
 }

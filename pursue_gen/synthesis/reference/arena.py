@@ -152,6 +152,7 @@ class Arena:
             if within is None or entered is None:
                 return None
             number = len(self.nodes)
+            self.watch.admit(number, len(self._waiting))
             self._index[state] = number
             self.nodes.append(Node(state, within, self._closed(entered, within)))
             self._wait(number)

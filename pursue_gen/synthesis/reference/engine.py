@@ -14,10 +14,13 @@ every time of the delay and no uncontrollable move spoils it meanwhile.
 
 from __future__ import annotations
 
+import time
+from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass
-from typing import Deque, Dict, Iterable, List, Optional, Set, Tuple
+from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Set, Tuple
 
+from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener, Watch
 from pursue_gen.synthesis.reference.arena import Arena, Move, Node
@@ -30,59 +33,47 @@ Piece = Tuple[Dbm, Action]
 
 
 @dataclass(frozen=True)
-class Stats:
-    """What it took: discrete states looked at, zones of the result, evaluations of a state, rounds of widening."""
-
-    states: int
-    zones: int
-    evaluations: int
-    rounds: int
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The verdict, and of a won game a strategy: for each discrete state disjoint zones with what to do there."""
-
-    won: bool
-    blocks: Tuple[Tuple[State, Tuple[Piece, ...]], ...]
-    stats: Stats
-
-    def raw_blocks(self) -> Tuple[RawBlock, ...]:
-        """The strategy as plain tuples, as `to_strategy` takes it."""
-        return tuple(
-            (state.locations, state.values, tuple((zone.m, action) for zone, action in pieces))
-            for state, pieces in self.blocks
-        )
-
-
-def solve_reference(
-    game: Game, directed: bool = True, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None
-) -> Outcome:
-    """Who wins from the initial position, and how. Raises PursueError with exit status 5 at a limit.
+class ReferenceEngine(Engine):
+    """The engine in Python, which says what the native one does in fewer words.
 
     `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan,
     or none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
     """
-    watch = Watch(limits, progress)
-    try:
-        if game.kind is Kind.SAFETY:
-            return _Safety(game, watch).solve()
-        return _Reach(game, watch, directed).solve()
-    except MemoryError:
-        raise watch.stopped("memory") from None
+
+    name: ClassVar[str] = "python"
+    directed: bool = True
+
+    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+        """Decide the game, see `Engine`. It keeps no ranks."""
+        start = time.perf_counter()
+        watch = Watch(limits, progress)
+        try:
+            fixpoint = _Safety(game, watch) if game.kind is Kind.SAFETY else _Reach(game, watch, self.directed)
+            won = fixpoint.solve()
+            blocks = fixpoint.blocks() if won else ()
+        except MemoryError:
+            raise watch.stopped("memory") from None
+        return Outcome(won, blocks, None, fixpoint.counts(), time.perf_counter() - start)
 
 
-class _Fixpoint:
-    """A federation per node that only grows, and a FIFO of the nodes to look at again."""
+class _Fixpoint(ABC):
+    """A federation per node that only grows, and a FIFO of the nodes to evaluate again."""
 
     def __init__(self, arena: Arena) -> None:
         self.arena = arena
         self.evaluations = 0
-        self.rounds = 0
         self.found: List[Federation] = []
         self.rest: List[Federation] = []
         self._queue: Deque[int] = deque()
         self._queued: Set[int] = set()
+
+    @abstractmethod
+    def solve(self) -> bool:
+        """Whether the controller wins."""
+
+    @abstractmethod
+    def blocks(self) -> Tuple[RawBlock, ...]:
+        """What the controller does, after a win."""
 
     def push(self, numbers: Iterable[int]) -> None:
         """Look at these nodes (again)."""
@@ -135,10 +126,10 @@ class _Fixpoint:
                 result = result.union(self.arena.pre(number, move, targets[move.target]))
         return result.reduced()
 
-    def stats(self) -> Stats:
+    def counts(self) -> Counts:
         """What it took so far."""
         zones = sum(len(federation.zones) for federation in self.found)
-        return Stats(len(self.arena.nodes), zones, self.evaluations, self.rounds)
+        return Counts(len(self.arena.nodes), zones, self.evaluations)
 
 
 def _union(parts: Iterable[Federation]) -> Federation:
@@ -157,6 +148,10 @@ def _assign(region: Federation, usable: Iterable[Tuple[Move, Federation]]) -> Li
             pieces += [(zone, move.joint.edges) for zone in part.disjoint()]
             region = region.minus(part)
     return pieces + [(zone, None) for zone in region.disjoint()]
+
+
+def _block(state: State, pieces: Iterable[Piece]) -> RawBlock:
+    return state.locations, state.values, tuple((zone.m, action) for zone, action in pieces)
 
 
 def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
@@ -178,23 +173,24 @@ class _Reach(_Fixpoint):
         self._pieces: Dict[int, List[Piece]] = {}
         self._forced: Dict[int, Tuple[Dbm, Federation]] = {}
 
-    def solve(self) -> Outcome:
+    def solve(self) -> bool:
         """The fixpoint; after each round without a win, nodes that are not won get all their moves."""
         self._refresh(self.arena.explore())
         self._run()
         while not self._won():
             narrow = [k for k, node in enumerate(self.arena.nodes) if node.omitted and self.rest[k]]
             if not narrow:
-                break
-            self.rounds += 1
+                return False
             for number in narrow:
                 self.arena.widen(number)
             self._refresh(self.arena.explore())
             self.push(narrow)
             self._run()
-        won = self._won()
-        found = sorted(self._pieces.items()) if won else []
-        return Outcome(won, tuple((self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in found), self.stats())
+        return True
+
+    def blocks(self) -> Tuple[RawBlock, ...]:
+        """The pieces in the order in which they were won."""
+        return tuple(_block(self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in sorted(self._pieces.items()))
 
     def _won(self) -> bool:
         """True if all of the start is won."""
@@ -257,7 +253,7 @@ class _Safety(_Fixpoint):
         super().__init__(Arena(game, watch))
         self._unforced: List[Federation] = []
 
-    def solve(self) -> Outcome:
+    def solve(self) -> bool:
         """The fixpoint, given up as soon as some of the start is lost."""
         arena = self.arena
         arena.explore()
@@ -278,8 +274,7 @@ class _Safety(_Fixpoint):
             if new:
                 self.grow(number, new)
             number = self.pop()
-        won = not self._lost()
-        return Outcome(won, self._blocks() if won else (), self.stats())
+        return not self._lost()
 
     def _lost(self) -> bool:
         return not self.rest or not self.rest[0].includes_zone(self.arena.start)
@@ -291,9 +286,9 @@ class _Safety(_Fixpoint):
         stuck = self._unforced[number].minus(_union(before for _, before in usable))
         return _union([self.found[number], spoilt, stuck]).reduced(), usable
 
-    def _blocks(self) -> Tuple[Tuple[State, Tuple[Piece, ...]], ...]:
+    def blocks(self) -> Tuple[RawBlock, ...]:
         """Wait where that may go on for ever; else take a safe move where there is one; else wait for one."""
-        blocks: List[Tuple[State, Tuple[Piece, ...]]] = []
+        blocks: List[RawBlock] = []
         for number, node in enumerate(self.arena.nodes):
             self.check()
             safe = self.rest[number]
@@ -302,5 +297,5 @@ class _Safety(_Fixpoint):
                 # At a bound that only the controller can leave, waiting on is not possible.
                 threatened = safe.intersect(danger.union(self._unforced[number]).down())
                 pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
-                blocks.append((node.state, (*pieces, *_assign(threatened, usable))))
+                blocks.append(_block(node.state, [*pieces, *_assign(threatened, usable)]))
         return tuple(blocks)

@@ -1,0 +1,65 @@
+"""The contract of a solver's engine: a compiled game and limits in, one outcome out."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Optional, Tuple
+
+from pursue_gen.synthesis.game import Game, RawBlock
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What deciding a game took.
+
+    `discrete_states`: those that were reached; `zones`: of the result; `evaluations`: of discrete states by the
+    fixpoint; `symbolic_states`: zones whose successors were computed, as other tools count them (0: not counted).
+    """
+
+    discrete_states: int
+    zones: int
+    evaluations: int
+    symbolic_states: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Who wins, and how.
+
+    `won`: the controller wins from every position at the start. `blocks`: its strategy, empty where it loses: one block
+    per discrete state, canonical zones in the game's scale, pairwise disjoint; commands stand in the order in which
+    their zones were won. `ranks` (of a reach game, where the engine keeps them): per block and zone a number that every
+    step of the game lowers, across discrete states. `seconds`: what exploring and deciding took.
+    """
+
+    won: bool
+    blocks: Tuple[RawBlock, ...]
+    ranks: Optional[Tuple[Tuple[int, ...], ...]]
+    counts: Counts
+    seconds: float
+
+
+class Engine(ABC):
+    """A solver of compiled games. All engines give the same verdicts; their strategies may differ.
+
+    Engines are values: budgets of an engine's own (numbers of steps, never seconds) are its fields, and nothing is kept
+    from one game to the next.
+    """
+
+    name: ClassVar[str]
+    """What `--engine` calls it."""
+
+    def available(self) -> bool:
+        """True if it can be used in this installation."""
+        return True
+
+    @abstractmethod
+    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+        """Decide the game.
+
+        `progress` is called a few times a second from the calling thread; what it raises ends the search, as does
+        KeyboardInterrupt. Raises PursueError (SYN010, exit status 5) at one of the limits, and where the system gives
+        no more memory.
+        """
