@@ -16,24 +16,34 @@ PAGES = "docs/diagnostics"
 EXAMPLES = "scenarios"
 
 
+EXTENSIONS = {
+    "pursue_gen.synthesis.native._core": "pursue_gen/synthesis/native/module.cpp",
+    "pursue_gen.zones.native._zones": "pursue_gen/zones/native/module.cpp",
+}
+"""The native solver, and its zone library for tests."""
+
+
 def native_modules() -> List[Any]:
-    """The extension, or nothing where pybind11 is missing."""
+    """The extensions, or nothing where pybind11 is missing."""
     try:
         from pybind11.setup_helpers import Pybind11Extension
     except ImportError:
         excuse("pybind11 is missing")
         return []
-    core = Path("pursue_gen/synthesis/native")
-    module = Pybind11Extension(
-        "pursue_gen.synthesis.native._core",
-        [(core / "module.cpp").as_posix()],
-        include_dirs=["pursue_gen"],
-        depends=sorted(header.as_posix() for header in Path("pursue_gen").rglob("*.hpp")),
-        cxx_std=17,
-        extra_compile_args=["-O3", "-g0"],
-    )
-    module.optional = True  # setuptools then goes on without it
-    return [module]
+    modules = [
+        Pybind11Extension(
+            name,
+            [source],
+            include_dirs=["pursue_gen"],
+            depends=sorted(header.as_posix() for header in Path("pursue_gen").rglob("*.hpp")),
+            cxx_std=17,
+            extra_compile_args=["-O3", "-g0"],
+        )
+        for name, source in EXTENSIONS.items()
+    ]
+    for module in modules:
+        module.optional = True  # setuptools then goes on without it
+    return modules
 
 
 def excuse(reason: object) -> None:

@@ -51,8 +51,8 @@ def complement(bound: int) -> int:
 
 
 @lru_cache(maxsize=None)
-def _opposite(dim: int) -> Callable[[Tuple[int, ...]], Tuple[int, ...]]:
-    """What turns a matrix over: to the place of each bound comes the one that says the opposite."""
+def _transposition(dim: int) -> Callable[[Tuple[int, ...]], Tuple[int, ...]]:
+    """What transposes a matrix: each bound is replaced by that of the opposite difference."""
     if dim == 1:
         return lambda m: m
     return operator.itemgetter(*(j * dim + i for i in range(dim) for j in range(dim)))
@@ -79,8 +79,8 @@ def _close(m: List[int], dim: int) -> bool:
 
 
 def _tighten(m: List[int], dim: int, i: int, j: int, bound: int) -> None:
-    """Take a bound into a canonical matrix, in place; it must be tighter than what is there, and leave a point."""
-    # Only these ways lead on from j, and only from where one comes to i the new bound is used.
+    """Take a bound into a canonical matrix, in place. Requires: it is tighter than the old one, and leaves a point."""
+    # The new bound is used on ways to i and on from j only.
     onward = [(q, m_jq) for q, m_jq in enumerate(m[j * dim : j * dim + dim]) if m_jq < INF]
     for p in range(dim):
         at = p * dim
@@ -100,16 +100,18 @@ def _tighten(m: List[int], dim: int, i: int, j: int, bound: int) -> None:
 class Dbm:
     """A zone: `m[i * dim + j]` is the raw bound of `x_i - x_j`, row by row. `dim` is the number of clocks plus one.
 
-    Make one from `universe` or `zero` and the operations; the matrix must be canonical and not empty.
+    Make one from `universe` or `zero` and the operations; the matrix must be canonical and not empty, and so are those
+    that operations return. An operation on two zones requires one dimension; clocks are 1 to dim - 1; delays are scaled
+    times, 0 or more.
     """
 
     dim: int
     m: Tuple[int, ...]
 
     @cached_property
-    def _turned(self) -> Tuple[int, ...]:
-        """The matrix turned over: a strategy's zones are held against very many others."""
-        return _opposite(self.dim)(self.m)
+    def _transposed(self) -> Tuple[int, ...]:
+        """The transposed matrix: kept, as a strategy's zones are compared with very many others."""
+        return _transposition(self.dim)(self.m)
 
     @staticmethod
     def universe(dim: int) -> Dbm:
@@ -152,15 +154,16 @@ class Dbm:
     def is_disjoint(self, other: Dbm) -> bool:
         """True if the two have no point in common, as one pair of opposite bounds shows (may miss; never wrong)."""
         # Opposite bounds leave no point where their sum is below `<= 0`: where their raw forms add up to less than 2.
-        return bool(min(map(operator.add, self.m, other._turned)) < 2)
+        return bool(min(map(operator.add, self.m, other._transposed)) < 2)
 
     def has_gap(self, other: Dbm) -> bool:
         """True if points not in either lie between the two, as one pair of opposite bounds shows."""
         # Two strict bounds at one constant leave a gap; `<=` and `<` there touch: their raw sum is 1.
-        return bool(min(map(operator.add, self.m, other._turned)) < 1)
+        return bool(min(map(operator.add, self.m, other._transposed)) < 1)
 
     def intersect(self, other: Dbm) -> Optional[Dbm]:
         """The points in both; None if there are none."""
+        assert self.dim == other.dim
         if self.is_disjoint(other):
             return None
         its = sum(map(operator.lt, other.m, self.m))
@@ -183,6 +186,7 @@ class Dbm:
 
     def hull(self, other: Dbm) -> Dbm:
         """The smallest zone that includes both."""
+        assert self.dim == other.dim
         return Dbm(self.dim, tuple(map(max, self.m, other.m)))
 
     def joined(self, other: Dbm) -> Optional[Dbm]:
@@ -231,6 +235,7 @@ class Dbm:
 
     def minus(self, other: Dbm) -> Tuple[Dbm, ...]:
         """The points that are not in the other, as disjoint zones."""
+        assert self.dim == other.dim
         if self.is_disjoint(other):
             return (self,)
         dim, theirs = self.dim, other.m
@@ -249,14 +254,15 @@ class Dbm:
         return tuple(pieces) if rest is not None else (self,)
 
     def up(self) -> Dbm:
-        """The future: what is reached by letting time pass."""
+        """The future: the valuations that some time leads to from the zone."""
         m = list(self.m)
         for i in range(1, self.dim):
             m[i * self.dim] = INF
         return Dbm(self.dim, tuple(m))
 
     def up_within(self, delay: int) -> Dbm:
-        """What is reached after a time in [0, delay]."""
+        """The future by a time in [0, delay]."""
+        assert delay >= 0
         m = list(self.m)
         for at in range(self.dim, self.dim * self.dim, self.dim):
             if m[at] < INF:
@@ -264,7 +270,8 @@ class Dbm:
         return Dbm(self.dim, tuple(m))
 
     def up_after(self, delay: int) -> Dbm:
-        """What is reached after a time strictly longer than delay."""
+        """The future by a time strictly longer than delay."""
+        assert delay >= 0
         m = list(self.m)
         for i in range(1, self.dim):
             m[i * self.dim] = INF
@@ -272,7 +279,7 @@ class Dbm:
         return Dbm(self.dim, tuple(m))
 
     def down(self) -> Dbm:
-        """The past: the valuations from which letting time pass reaches the zone."""
+        """The past: the valuations from which some time leads into the zone."""
         dim, m = self.dim, list(self.m)
         for i in range(1, dim):
             # Nothing bounds a clock from below but 0 and the other clocks' being >= 0.
@@ -280,14 +287,16 @@ class Dbm:
         return Dbm(dim, tuple(m))
 
     def down_within(self, delay: int) -> Dbm:
-        """The valuations from which a time in [0, delay] reaches the zone."""
+        """The past by a time in [0, delay]."""
+        assert delay >= 0
         dim, m = self.dim, list(self.m)
         for i in range(1, dim):
             m[i] = min(LE_ZERO, self.m[i] + 2 * delay, *(m[j * dim + i] for j in range(1, dim)))
         return Dbm(dim, tuple(m))
 
     def lasting(self, delay: int) -> Optional[Dbm]:
-        """The points that are still in the zone at every time in [0, delay]; None if there are none."""
+        """The points from which every time in [0, delay] stays in the zone; None if there are none."""
+        assert delay >= 0
         zone: Optional[Dbm] = self
         for i in range(1, self.dim):
             bound = self.m[i * self.dim]
@@ -299,6 +308,7 @@ class Dbm:
         """The zone after these clocks are set to 0."""
         dim, m = self.dim, list(self.m)
         for i in indices:
+            assert 0 < i < dim
             for j in range(dim):
                 m[i * dim + j] = m[j]
                 m[j * dim + i] = m[j * dim]
@@ -308,6 +318,7 @@ class Dbm:
     def before_reset(self, indices: Iterable[int]) -> Optional[Dbm]:
         """The valuations that setting these clocks to 0 takes into the zone; None if there are none."""
         dim, clocks = self.dim, tuple(indices)
+        assert 0 not in clocks
         zone = self.constrained_all((i, 0, LE_ZERO) for i in clocks)
         if zone is None:
             return None
@@ -320,10 +331,11 @@ class Dbm:
         return Dbm(dim, tuple(m))
 
     def extrapolated(self, max_constants: Sequence[int]) -> Dbm:
-        """A zone that includes this one and forgets what no guard can see (ExtraM, Behrmann et al. 2006).
+        """A zone that includes this one and differs only beyond the constants (ExtraM, Behrmann et al. 2006).
 
-        `max_constants[i]` is the largest constant that clock i is compared with; entry 0 is 0.
+        `max_constants[i]` is the largest scaled constant that clock i is compared with; entry 0 is 0.
         """
+        assert len(max_constants) == self.dim and max_constants[0] == 0
         dim, m = self.dim, list(self.m)
         for i in range(dim):
             for j in range(dim):

@@ -14,7 +14,10 @@ from pursue_gen.zones.dbm import Dbm, Number
 
 @dataclass(frozen=True)
 class Federation:
-    """The union of its zones, all of one dimension. They may overlap; none of them is empty; no zone: no point."""
+    """The union of its zones, all of one dimension. They may overlap; none of them is empty; no zone: no point.
+
+    Operations require federations of one dimension (an empty one has any), and delays of 0 or more, in scaled time.
+    """
 
     zones: Tuple[Dbm, ...] = ()
 
@@ -71,22 +74,23 @@ class Federation:
         return Federation(tuple(rest))
 
     def up(self) -> Federation:
-        """The future: what is reached by letting time pass."""
+        """The future: the valuations that some time leads to from it."""
         return Federation(_maximal(zone.up() for zone in self.zones))
 
     def down(self) -> Federation:
-        """The past: the valuations from which letting time pass reaches it."""
+        """The past: the valuations from which some time leads into it."""
         return Federation(_maximal(zone.down() for zone in self.zones))
 
     def down_within(self, delay: int) -> Federation:
-        """The valuations from which a time in [0, delay] reaches it."""
+        """The past by a time in [0, delay]."""
         return Federation(_maximal(zone.down_within(delay) for zone in self.zones))
 
     def lasting(self, delay: int, universe: Dbm) -> Federation:
-        """The points of the universe that are in the federation at every time in [0, delay], from now on.
+        """The points of the universe from which every time in [0, delay] stays in the federation.
 
-        Points that time takes out of the universe are judged by the federation alone.
+        Time may leave the universe.
         """
+        assert delay >= 0
         inside = self.intersect_zone(universe)
         if delay == 0 or not inside:
             return inside

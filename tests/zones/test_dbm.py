@@ -1,4 +1,4 @@
-"""Zones: every operation against its definition, point by point."""
+"""Zones: every operation against its definition, point by point, in each implementation."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from tests.synthesis.zones import (
     times,
     zones,
 )
+from tests.zones.twins import Twin, holds, python, twins
 
 indices = st.integers(0, CLOCKS)
 bounds = st.tuples(st.integers(-LARGEST, LARGEST), st.booleans())
@@ -51,66 +52,96 @@ def _is_canonical(zone: Dbm) -> bool:
     )
 
 
-@given(zones, zones, zones, delays)
-def test_two_zones_are_joined_exactly_where_they_make_one(a: Dbm, b: Dbm, cut: Dbm, delay: int) -> None:
+@twins
+@given(a=zones, b=zones, cut=zones, delay=delays)
+def test_two_zones_are_joined_exactly_where_they_make_one(twin: Twin, a: Dbm, b: Dbm, cut: Dbm, delay: int) -> None:
     parts = a.minus(cut)
     for one, other in [(a, b), *((part, cut) for part in parts), *((part.up_within(delay), cut) for part in parts)]:
-        hull, joined = one.hull(other), one.joined(other)
+        hull = one.hull(other)
         between = [rest for piece in hull.minus(one) for rest in piece.minus(other)]
-        assert joined == (None if between else hull)
+        joined = twin.zone(one).joined(twin.zone(other))
+        assert (None if joined is None else python(joined)) == (None if between else hull)
 
 
-@given(zones, zones)
-def test_an_intersection_is_canonical(a: Dbm, b: Dbm) -> None:
-    common = a.intersect(b)
-    assert common is None or _is_canonical(common)
+@twins
+@given(a=zones, b=zones)
+def test_an_intersection_is_canonical(twin: Twin, a: Dbm, b: Dbm) -> None:
+    common = twin.zone(a).intersect(twin.zone(b))
+    assert common is None or _is_canonical(python(common))
 
 
-@given(zones, delays, resets)
-def test_what_operations_give_is_canonical(zone: Dbm, delay: int, clocks: Tuple[int, ...]) -> None:
-    made = [zone, zone.up(), zone.down(), zone.up_within(delay), zone.up_after(delay), zone.down_within(delay)]
-    made += [zone.reset(clocks), zone.extrapolated((0,) + (2,) * CLOCKS)]
-    made += [z for z in (zone.before_reset(clocks), zone.lasting(delay)) if z is not None]
-    assert all(_is_canonical(result) for result in made)
+@twins
+@given(zone=zones, other=zones, delay=delays, clocks=resets)
+def test_results_are_canonical(twin: Twin, zone: Dbm, other: Dbm, delay: int, clocks: Tuple[int, ...]) -> None:
+    its = twin.zone(zone)
+    made = [its, its.up(), its.down(), its.up_within(delay), its.down_within(delay), its.hull(twin.zone(other))]
+    made += [its.reset(clocks), its.extrapolated((0,) + (2,) * CLOCKS), *its.minus(twin.zone(other))]
+    made += [before for before in (its.before_reset(clocks),) if before is not None]
+    assert all(_is_canonical(python(result)) for result in made)
 
 
-@given(zones, indices, indices, bounds, points)
-def test_constrained(zone: Dbm, i: int, j: int, bound: Tuple[int, bool], point: Point) -> None:
-    result = zone.constrained(i, j, raw(*bound))
-    inside = result is not None and result.contains(point)
+@given(zones, delays)
+def test_results_of_the_checkers_operations_are_canonical(zone: Dbm, delay: int) -> None:
+    lasting = zone.lasting(delay)
+    assert _is_canonical(zone.up_after(delay)) and (lasting is None or _is_canonical(lasting))
+
+
+@twins
+@given(zone=zones, i=indices, j=indices, bound=bounds, point=points)
+def test_constrained(twin: Twin, zone: Dbm, i: int, j: int, bound: Tuple[int, bool], point: Point) -> None:
+    # Only Python's takes a bound on the difference of a clock and itself.
+    result = (zone if i == j else twin.zone(zone)).constrained(i, j, raw(*bound))
+    inside = result is not None and holds(result, point)
     assert inside == (zone.contains(point) and _holds(point, i, j, *bound))
 
 
-@given(zones, zones, points)
-def test_intersect_and_minus(a: Dbm, b: Dbm, point: Point) -> None:
-    common = a.intersect(b)
-    assert (common is not None and common.contains(point)) == (a.contains(point) and b.contains(point))
-    pieces = sum(piece.contains(point) for piece in a.minus(b))
+@twins
+@given(a=zones, b=zones, point=points)
+def test_intersect_and_minus(twin: Twin, a: Dbm, b: Dbm, point: Point) -> None:
+    mine, its = twin.zone(a), twin.zone(b)
+    common = mine.intersect(its)
+    assert (common is not None and holds(common, point)) == (a.contains(point) and b.contains(point))
+    pieces = sum(holds(piece, point) for piece in mine.minus(its))
     assert pieces == (a.contains(point) and not b.contains(point)), "each point in one piece, and only once"
 
 
-@given(zones, zones, points)
-def test_includes_and_hull(a: Dbm, b: Dbm, point: Point) -> None:
-    assert a.includes(b) == (not b.minus(a))
-    hull = a.hull(b)
-    assert hull.includes(a) and hull.includes(b)
-    assert hull.contains(point) or not (a.contains(point) or b.contains(point))
-    if a.has_gap(b) or a.is_disjoint(b):
+@twins
+@given(a=zones, b=zones, point=points)
+def test_includes_and_hull(twin: Twin, a: Dbm, b: Dbm, point: Point) -> None:
+    mine, its = twin.zone(a), twin.zone(b)
+    assert mine.includes(its) == (not its.minus(mine))
+    hull = mine.hull(its)
+    assert hull.includes(mine) and hull.includes(its)
+    assert holds(hull, point) or not (a.contains(point) or b.contains(point))
+    if mine.is_disjoint(its):
+        assert mine.intersect(its) is None
+
+
+@given(zones, zones)
+def test_a_gap_leaves_no_common_point(a: Dbm, b: Dbm) -> None:
+    if a.has_gap(b):
         assert a.intersect(b) is None
 
 
-@given(zones, points, delays)
-def test_past(zone: Dbm, point: Point, delay: int) -> None:
+@twins
+@given(zone=zones, point=points, delay=delays)
+def test_past(twin: Twin, zone: Dbm, point: Point, delay: int) -> None:
     hits = [t for t in times(point, delay) if zone.contains(later(point, t))]
-    assert zone.down().contains(point) == bool(hits)
-    assert zone.down_within(delay).contains(point) == any(t <= delay for t in hits)
+    assert holds(twin.zone(zone).down(), point) == bool(hits)
+    assert holds(twin.zone(zone).down_within(delay), point) == any(t <= delay for t in hits)
+
+
+@twins
+@given(zone=zones, point=points, delay=delays)
+def test_future(twin: Twin, zone: Dbm, point: Point, delay: int) -> None:
+    hits = [t for t in past_times(point, delay) if zone.contains(later(point, -t))]
+    assert holds(twin.zone(zone).up(), point) == bool(hits)
+    assert holds(twin.zone(zone).up_within(delay), point) == any(t <= delay for t in hits)
 
 
 @given(zones, points, delays)
-def test_future(zone: Dbm, point: Point, delay: int) -> None:
+def test_future_after_a_time(zone: Dbm, point: Point, delay: int) -> None:
     hits = [t for t in past_times(point, delay) if zone.contains(later(point, -t))]
-    assert zone.up().contains(point) == bool(hits)
-    assert zone.up_within(delay).contains(point) == any(t <= delay for t in hits)
     assert zone.up_after(delay).contains(point) == any(t > delay for t in hits)
 
 
@@ -121,20 +152,23 @@ def test_lasting(zone: Dbm, point: Point, delay: int) -> None:
     assert (result is not None and result.contains(point)) == stays
 
 
-@given(zones, points, resets)
-def test_reset_and_its_inverse(zone: Dbm, point: Point, clocks: Tuple[int, ...]) -> None:
+@twins
+@given(zone=zones, point=points, clocks=resets)
+def test_reset_and_its_inverse(twin: Twin, zone: Dbm, point: Point, clocks: Tuple[int, ...]) -> None:
+    its = twin.zone(zone)
     after = tuple(Fraction(0) if i + 1 in clocks else x for i, x in enumerate(point))
-    assert not zone.contains(point) or zone.reset(clocks).contains(after)
-    before = zone.before_reset(clocks)
-    assert (before is not None and before.contains(point)) == zone.contains(after)
+    assert not zone.contains(point) or holds(its.reset(clocks), after)
+    before = its.before_reset(clocks)
+    assert (before is not None and holds(before, point)) == zone.contains(after)
     if before is not None:
-        assert zone.includes(before.reset(clocks)), "the image of the inverse image lies in the zone"
+        assert its.includes(before.reset(clocks)), "the image of the inverse image lies in the zone"
 
 
-@given(zones, resets, points)
-def test_reset_gives_nothing_but_images(zone: Dbm, clocks: Tuple[int, ...], point: Point) -> None:
+@twins
+@given(zone=zones, clocks=resets, point=points)
+def test_reset_gives_nothing_but_images(twin: Twin, zone: Dbm, clocks: Tuple[int, ...], point: Point) -> None:
     after = tuple(Fraction(0) if i + 1 in clocks else x for i, x in enumerate(point))
-    image = zone.reset(clocks)
+    image = twin.zone(zone).reset(clocks)
     origin = zone.constrained_all(
         constraint
         for i, x in enumerate(after, start=1)
@@ -142,18 +176,27 @@ def test_reset_gives_nothing_but_images(zone: Dbm, clocks: Tuple[int, ...], poin
         for constraint in ((i, 0, raw(int(x), False)), (0, i, raw(-int(x), False)))
     )
     if all(x.denominator == 1 for x in after):
-        assert image.contains(after) == (origin is not None)
+        assert holds(image, after) == (origin is not None)
 
 
-@given(zones, points)
-def test_extrapolation_only_forgets_what_lies_beyond_the_constants(zone: Dbm, point: Point) -> None:
+@twins
+@given(zone=zones, point=points)
+def test_extrapolation_adds_only_what_lies_beyond_the_constants(twin: Twin, zone: Dbm, point: Point) -> None:
     largest = (0, 2, 3, 1)
-    wide = zone.extrapolated(largest)
-    assert wide.includes(zone)
+    wide = twin.zone(zone).extrapolated(largest)
+    assert wide.includes(twin.zone(zone))
     assert wide.extrapolated(largest) == wide
     if all(x <= m for x, m in zip(point, largest[1:])):
-        # The clocks are within the constants: nothing is forgotten there.
-        assert wide.contains(point) == zone.contains(point)
+        assert holds(wide, point) == zone.contains(point), "within the constants nothing is added"
+    assert python(wide) == zone.extrapolated(largest), "the implementations agree on what is"
+
+
+@twins
+def test_the_universe_and_the_start_are_the_same_in_all(twin: Twin) -> None:
+    for zone in (Dbm.universe(DIM), Dbm.zero(DIM)):
+        assert python(twin.zone(zone)) == zone
+    kind = type(twin.zone(Dbm.zero(DIM)))
+    assert python(kind.universe(DIM)) == Dbm.universe(DIM) and python(kind.zero(DIM)) == Dbm.zero(DIM)
 
 
 def test_universe_and_zero() -> None:

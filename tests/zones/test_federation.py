@@ -1,4 +1,4 @@
-"""Federations: every operation against its definition, point by point."""
+"""Federations: every operation against its definition, point by point, in each implementation."""
 
 from __future__ import annotations
 
@@ -7,29 +7,43 @@ from hypothesis import given
 from pursue_gen.zones.dbm import Dbm, raw
 from pursue_gen.zones.federation import Federation, predt
 from tests.synthesis.zones import DIM, Point, delays, federations, later, points, times, zones
+from tests.zones.twins import Twin, holds, python, twins
 
 
-@given(federations, federations, points)
-def test_union_intersect_minus(a: Federation, b: Federation, point: Point) -> None:
+@twins
+@given(a=federations, b=federations, point=points)
+def test_union_intersect_minus(twin: Twin, a: Federation, b: Federation, point: Point) -> None:
+    mine, its = twin.federation(a), twin.federation(b)
     in_a, in_b = a.contains(point), b.contains(point)
-    assert a.union(b).contains(point) == (in_a or in_b)
-    assert a.intersect(b).contains(point) == (in_a and in_b)
-    assert a.minus(b).contains(point) == (in_a and not in_b)
+    assert holds(mine.union(its), point) == (in_a or in_b)
+    assert holds(mine.intersect(its), point) == (in_a and in_b)
+    assert holds(mine.minus(its), point) == (in_a and not in_b)
 
 
-@given(federations, federations, zones)
-def test_includes(a: Federation, b: Federation, zone: Dbm) -> None:
-    assert a.includes(b) == (not b.minus(a))
-    assert a.includes_zone(zone) == (not Federation.of(zone).minus(a))
-    assert a.union(b).includes(a)
+@twins
+@given(a=federations, b=federations, zone=zones)
+def test_includes(twin: Twin, a: Federation, b: Federation, zone: Dbm) -> None:
+    mine, its, alone = twin.federation(a), twin.federation(b), twin.federation(Federation.of(zone))
+    assert mine.includes(its) == (not its.minus(mine))
+    assert mine.includes_zone(twin.zone(zone)) == (not alone.minus(mine))
+    assert mine.union(its).includes(mine)
 
 
-@given(federations, points)
-def test_reduced_has_the_same_points_in_no_more_zones(federation: Federation, point: Point) -> None:
-    reduced = federation.reduced()
-    assert reduced.contains(point) == federation.contains(point)
-    assert reduced.includes(federation) and federation.includes(reduced)
+@twins
+@given(federation=federations, point=points)
+def test_reduced_has_the_same_points_in_no_more_zones(twin: Twin, federation: Federation, point: Point) -> None:
+    its = twin.federation(federation)
+    reduced = its.reduced()
+    assert holds(reduced, point) == federation.contains(point)
+    assert reduced.includes(its) and its.includes(reduced)
     assert len(reduced.zones) <= len(federation.zones)
+
+
+@twins
+@given(federation=federations, point=points)
+def test_disjoint_zones_hold_each_point_once(twin: Twin, federation: Federation, point: Point) -> None:
+    zones_with_it = [zone for zone in twin.federation(federation).disjoint() if holds(zone, point)]
+    assert len(zones_with_it) == federation.contains(point)
 
 
 @given(federations, points, delays)
@@ -40,8 +54,11 @@ def test_past_and_future(federation: Federation, point: Point, delay: int) -> No
     assert not federation.contains(point) or federation.up().contains(later(point, times(point)[1]))
 
 
-@given(federations, federations, points)
-def test_predt_is_its_definition_with_a_closed_interval(good: Federation, bad: Federation, point: Point) -> None:
+@twins
+@given(good=federations, bad=federations, point=points)
+def test_predt_is_its_definition_with_a_closed_interval(
+    twin: Twin, good: Federation, bad: Federation, point: Point
+) -> None:
     wins = False
     for t in times(point):
         if bad.contains(later(point, t)):
@@ -49,31 +66,37 @@ def test_predt_is_its_definition_with_a_closed_interval(good: Federation, bad: F
         if good.contains(later(point, t)):
             wins = True
             break
-    assert predt(good, bad).contains(point) == wins
+    assert holds(twin.predt(twin.federation(good), twin.federation(bad)), point) == wins
 
 
-@given(federations, zones, points, delays)
-def test_lasting(federation: Federation, universe: Dbm, point: Point, delay: int) -> None:
+@twins
+@given(federation=federations, universe=zones, point=points, delay=delays)
+def test_lasting(twin: Twin, federation: Federation, universe: Dbm, point: Point, delay: int) -> None:
     stays = all(federation.contains(later(point, t)) for t in times(point, delay) if t <= delay)
-    assert federation.lasting(delay, universe).contains(point) == (universe.contains(point) and stays)
+    lasting = twin.federation(federation).lasting(delay, twin.zone(universe))
+    assert holds(lasting, point) == (universe.contains(point) and stays)
 
 
-def test_touching_zones_merge_and_zones_with_a_gap_do_not() -> None:
+@twins
+def test_touching_zones_merge_and_zones_with_a_gap_do_not(twin: Twin) -> None:
     low = Dbm.of(DIM, [(1, 0, raw(2, False))])
     high = Dbm.of(DIM, [(0, 1, raw(-2, True))])
     open_low = Dbm.of(DIM, [(1, 0, raw(2, True))])
     assert low and high and open_low
-    assert Federation.of(low, high).reduced() == Federation.of(Dbm.universe(DIM))
-    assert len(Federation.of(open_low, high).reduced().zones) == 2
+    (whole,) = twin.federation(Federation.of(low, high)).reduced().zones
+    assert python(whole) == Dbm.universe(DIM)
+    assert len(twin.federation(Federation.of(open_low, high)).reduced().zones) == 2
 
 
-def test_a_tie_is_lost() -> None:
+@twins
+def test_a_tie_is_lost(twin: Twin) -> None:
     at_two = Dbm.of(2, [(1, 0, raw(2, False)), (0, 1, raw(-2, False))])
     after_two = Dbm.of(2, [(0, 1, raw(-2, True))])
     assert at_two and after_two
-    assert not predt(Federation.of(at_two), Federation.of(at_two))
-    assert not predt(Federation.of(after_two), Federation.of(after_two)), "no first instant: the race is lost as well"
-    assert predt(Federation.of(at_two), Federation.of(after_two)).includes_zone(at_two.down())
+    at, after = twin.federation(Federation.of(at_two)), twin.federation(Federation.of(after_two))
+    assert not twin.predt(at, at)
+    assert not twin.predt(after, after), "no first instant: the race is lost as well"
+    assert twin.predt(at, after).includes_zone(twin.zone(at_two.down()))
 
 
 def test_the_empty_federation() -> None:

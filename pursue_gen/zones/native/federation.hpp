@@ -1,4 +1,6 @@
-// Federations: finite unions of zones, as vectors (they may overlap unless said otherwise).
+// Federations: finite unions of zones, as vectors. Zones may overlap unless a function says otherwise; no zone: no point.
+//
+// Every function requires zones as `dbm.hpp` has them, and ensures them.
 #pragma once
 
 #include <utility>
@@ -10,6 +12,7 @@ namespace pursue {
 template <class Z>
 using Federation = std::vector<Z>;
 
+// The points of fed that are not in the zone. Ensures: parts of one zone are disjoint, so a disjoint fed stays disjoint.
 template <class Z>
 Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
     Federation<Z> out;
@@ -18,6 +21,7 @@ Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
     return out;
 }
 
+// Whether one of fed may meet the zone: false means disjoint, see clearly_disjoint.
 template <class Z>
 bool touches(const Federation<Z>& fed, const Z& zone) {
     for (const auto& z : fed)
@@ -25,6 +29,7 @@ bool touches(const Federation<Z>& fed, const Z& zone) {
     return false;
 }
 
+// The points of fed that are not in the other.
 template <class Z>
 Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
     for (const auto& zone : other) {
@@ -34,6 +39,7 @@ Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
     return fed;
 }
 
+// The points in both. Ensures: disjoint if both are.
 template <class Z>
 Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
     Federation<Z> out;
@@ -45,12 +51,15 @@ Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
     return out;
 }
 
+// Ensures: a holds the points of either. Requires: two objects.
 template <class Z>
 void append(Federation<Z>& a, const Federation<Z>& b) {
+    assert(&a != &b);
     a.insert(a.end(), b.begin(), b.end());
 }
 
-// Adds a zone unless one that is there includes it; drops those that it includes.
+// Adds a zone unless one that is there includes it; drops those that it includes. Ensures: none includes another, if that
+// was so before.
 template <class Z>
 void insert(Federation<Z>& fed, const Z& zone) {
     for (const auto& z : fed)
@@ -59,7 +68,7 @@ void insert(Federation<Z>& fed, const Z& zone) {
     fed.push_back(zone);
 }
 
-// True when a and b together are exactly their hull.
+// Whether a and b together are exactly their hull.
 //
 // What the hull h has beyond them is the union, over each bound (i, j) that is tighter in a and (k, l) that is tighter in
 // b, of the points of h that break both. As h is canonical, such a part is empty iff the one cycle through both is negative.
@@ -87,7 +96,7 @@ bool joins(const Z& a, const Z& b) {
     return true;
 }
 
-// Adds a zone, merged with all that it forms a convex union with.
+// Adds a zone, merged with all that it forms a convex union with. Ensures: no two of fed form one, if that was so before.
 template <class Z>
 void absorb(Federation<Z>& fed, Z zone) {
     for (bool again = true; again;) {
@@ -106,7 +115,7 @@ void absorb(Federation<Z>& fed, Z zone) {
     fed.push_back(zone);
 }
 
-// The same set in fewer zones: drops what is included, merges pairs whose union is convex.
+// The same set in fewer zones. Ensures: no two of them have a convex union, so none includes another.
 template <class Z>
 Federation<Z> reduced(const Federation<Z>& fed) {
     Federation<Z> out;
@@ -123,6 +132,7 @@ Federation<Z> disjoint(const Federation<Z>& fed) {
     return out;
 }
 
+// Whether every point of the zone is in one of big.
 template <class Z>
 bool contains(const Federation<Z>& big, const Z& zone) {
     for (const auto& z : big)
@@ -162,9 +172,10 @@ Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
     return out;
 }
 
-// { q | q+t' in fed for all t' in [0, delay] }.
+// { q | q+t' in fed for all t' in [0, delay] }. Requires: delay >= 0.
 template <class Z>
 Federation<Z> lasting(const Federation<Z>& fed, int delay) {
+    assert(delay >= 0);
     if (delay == 0) return fed;
     Federation<Z> out;
     for (const auto& zone : fed) {

@@ -1,0 +1,111 @@
+"""The implementations of the zone library, in one form for the tests: Python's, and the native one in two sizes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, List, Sequence, Tuple
+
+import pytest
+
+from pursue_gen.zones.dbm import Dbm, Number
+from pursue_gen.zones.federation import Federation, predt
+
+try:
+    from pursue_gen.zones.native import _zones
+except ImportError:  # no compiler when the package was installed
+    _zones = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class NativeFederation:
+    """The native functions on federations, by the names of `Federation`."""
+
+    library: Any
+    zones: Tuple[Any, ...]
+
+    def _made(self, zones: Sequence[Any]) -> NativeFederation:
+        return NativeFederation(self.library, tuple(zones))
+
+    def __bool__(self) -> bool:
+        return bool(self.zones)
+
+    def includes_zone(self, zone: Any) -> bool:
+        return bool(self.library.contains(list(self.zones), zone))
+
+    def includes(self, other: NativeFederation) -> bool:
+        return all(map(self.includes_zone, other.zones))
+
+    def union(self, other: NativeFederation) -> NativeFederation:
+        zones: List[Any] = list(self.zones)
+        for zone in other.zones:
+            zones = self.library.inserted(zones, zone)
+        return self._made(zones)
+
+    def intersect(self, other: NativeFederation) -> NativeFederation:
+        return self._made(self.library.intersection(list(self.zones), list(other.zones)))
+
+    def minus(self, other: NativeFederation) -> NativeFederation:
+        return self._made(self.library.minus(list(self.zones), list(other.zones)))
+
+    def reduced(self) -> NativeFederation:
+        return self._made(self.library.reduced(list(self.zones)))
+
+    def disjoint(self) -> Tuple[Any, ...]:
+        return tuple(self.library.disjoint(list(self.zones)))
+
+    def lasting(self, delay: int, universe: Any) -> NativeFederation:
+        lasting = self.library.lasting(list(self.zones), delay)
+        return self._made(self.library.intersection(lasting, [universe]))
+
+
+@dataclass(frozen=True)
+class Twin:
+    """How an implementation makes its own zones and federations of Python's, and its timed predecessor."""
+
+    zone: Callable[[Dbm], Any]
+    federation: Callable[[Federation], Any]
+    predt: Callable[[Any, Any], Any]
+
+
+def _native(name: str) -> Twin:
+    library = getattr(_zones, name, None)
+
+    def zone(python: Dbm) -> Any:
+        assert library is not None
+        return library.Dbm(python.dim, python.m)
+
+    def federation(python: Federation) -> NativeFederation:
+        return NativeFederation(library, tuple(map(zone, python.zones)))
+
+    def predecessor(good: NativeFederation, bad: NativeFederation) -> NativeFederation:
+        assert library is not None
+        return NativeFederation(library, tuple(library.predt(list(good.zones), list(bad.zones))))
+
+    return Twin(zone, federation, predecessor)
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+_built = pytest.mark.skipif(_zones is None, reason="the native zone library is not built here (no compiler)")
+
+twins = pytest.mark.parametrize(
+    "twin",
+    [
+        pytest.param(Twin(_itself, _itself, predt), id="Python"),
+        pytest.param(_native("short"), marks=_built, id="native, 16 bits"),
+        pytest.param(_native("long"), marks=_built, id="native, 32 bits and padding"),
+    ],
+)
+
+
+def python(zone: Any) -> Dbm:
+    """A zone of any implementation as Python's."""
+    return Dbm(zone.dim, tuple(zone.m))
+
+
+def holds(zones: Any, point: Sequence[Number]) -> bool:
+    """True if the point is in the zone, or in one of the federation's zones."""
+    parts = zones.zones if hasattr(zones, "zones") else (zones,)
+    return any(python(zone).contains(point) for zone in parts)
