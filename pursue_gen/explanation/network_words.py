@@ -13,6 +13,8 @@ from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Edge, Network
 from pursue_gen.tga.positions import directions
 
+_DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
+
 
 @dataclass(frozen=True)
 class Words:
@@ -33,7 +35,7 @@ class Words:
         if automaton == names.REACH:
             return {"win": "reached", "unlocked": "to be reached"}.get(location, "not counting yet")
         if automaton == names.OBJECTIVE:
-            return {"idle": "kept", "atRisk": "a deadline is running", "lose": "broken"}.get(location, location)
+            return _DUTIES.get(location, location)
         return self.turns.get((automaton, location)) or self.places.get(location) or f"at {location}"
 
     def move(self, automaton: str, edge: Edge) -> str:
@@ -42,7 +44,7 @@ class Words:
             return self.moves.get((automaton, edge.sync.channel, ""), edge.sync.channel)
         if automaton == names.REACH:
             return "begins to count"
-        if automaton == names.OBJECTIVE and edge.target == "lose":
+        if automaton == names.OBJECTIVE and edge.target == names.LOSE:
             return "the objective is broken"
         return self.moves.get((automaton, "", edge.source), f"goes from {edge.source} to {edge.target}")
 

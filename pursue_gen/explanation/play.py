@@ -18,6 +18,7 @@ from pursue_gen.explanation.position import Oracle, Position
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 from pursue_gen.zones.dbm import constant
 
@@ -79,7 +80,7 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, clock: C
         bounded = {place.name for place in automaton.locations if place.invariant}
         sent = [e for e in automaton.edges if e.sync is not None and e.sync.sends]
         free = [e for e in sent if not e.controllable and e.source not in bounded]
-        starts = [e for e in free if e.target.startswith("going_")]
+        starts = [e for e in free if is_going(e.target)]
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)

@@ -12,8 +12,9 @@ from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, 
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
-from pursue_gen.synthesis.reference.directed import RelaxedPlanner
+from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
+from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.dbm import constant, is_strict
 
@@ -160,10 +161,11 @@ def _planner(game: Game) -> Tuple[Optional[RelaxedPlanner], Optional[Tuple[int, 
         return RelaxedPlanner(game), None
     assert game.bad is not None, "an objective names a goal or what is bad"
     number = game.bad[0]
-    names = game.automata[number].locations
-    if "atRisk" not in names:
+    locations = game.automata[number].locations
+    if names.AT_RISK not in locations:
         return None, None
-    return RelaxedPlanner(replace(game, goal=(number, names.index("idle")))), (number, names.index("atRisk"))
+    idle = (number, locations.index(names.IDLE))
+    return RelaxedPlanner(replace(game, goal=idle)), (number, locations.index(names.AT_RISK))
 
 
 def _named(game: Game, state: State) -> DiscreteState:

@@ -8,7 +8,6 @@ lost even so, the environment wins in that time, so it makes headway by just sta
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
@@ -16,6 +15,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.explanation.allowance import Clock
 from pursue_gen.synthesis.game import State
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
+from pursue_gen.zones.scale import common_denominator
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
 _HORIZON = "@horizon"
@@ -54,7 +54,7 @@ class Oracle:
             if horizon is not None:
                 network = with_horizon(network, horizon)
                 clocks = (*clocks, elapsed)
-            scale = _lcm(clocks)
+            scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
             self._known[key] = not self._clock.verdict(begun, self._objective, self._reaction * scale).won
         return self._known[key]
@@ -160,10 +160,3 @@ def _largest_constants(network: Network) -> Dict[str, int]:
         for bound in bounds:
             largest[bound.clock] = max(largest.get(bound.clock, 0), bound.bound)
     return largest
-
-
-def _lcm(values: Sequence[Fraction]) -> int:
-    result = 1
-    for value in values:
-        result = result * value.denominator // math.gcd(result, value.denominator)
-    return result

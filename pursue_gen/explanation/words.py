@@ -69,9 +69,9 @@ def _remarks(scenario: Scenario, play: Play, step: Step) -> Iterator[str]:
         for k in step.edges:
             edge = play.game.edges[k]
             if play.game.automata[edge.automaton].name == names.OBJECTIVE:
-                if play.game.origins[k].target == "atRisk":
+                if play.game.origins[k].target == names.AT_RISK:
                     yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
-                elif play.game.origins[k].target == "idle":
+                elif play.game.origins[k].target == names.IDLE:
                     yield " (in time)"
 
 
@@ -138,10 +138,5 @@ def _overdue(scenario: Scenario, play: Play) -> str:
 def _place(play: Play, agent: str) -> str:
     for automaton, location in zip(play.game.automata, play.position.state.locations):
         if automaton.name == agent:
-            name = automaton.locations[location]
-            if name.startswith("going_"):
-                return "on the way from " + name[len("going_") :].replace("_to_", " to ")
-            if name.startswith("doing_"):
-                return "doing " + name[len("doing_") :].replace("_in_", " at ")
-            return f"at {name}"
+            return names.in_words(automaton.locations[location])
     return ""

@@ -75,7 +75,7 @@ def _lasting(board: Board, table: Table, number: int) -> str:
     begun = table.now - here.clocks[clock - 1]
     lows = [e.duration for e in (game.edges[k] for k in game.automata[number].edges) if e.source == place]
     low = begun + max(lows, default=0)
-    verb = "arrives" if game.automata[number].locations[place].startswith("going_") else "ends"
+    verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
     return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + (high >> 1))}"
 
 
@@ -84,7 +84,7 @@ def _objective(board: Board, table: Table, where: Mapping[str, int]) -> Iterator
     if isinstance(safety, Respond):
         number = where[names.OBJECTIVE]
         place = board.game.automata[number].locations[table.here.state.locations[number]]
-        if place == "atRisk":
+        if place == names.AT_RISK:
             due = table.now - clocks[names.CLOCK_OBJECTIVE] + safety.deadline
             yield f"deadline: {safety.response.name} by {time_text(due)} at the latest"
     reach = board.scenario.reach

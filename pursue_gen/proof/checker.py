@@ -1,9 +1,9 @@
 """A second opinion on strategies: does every play that agrees with this one meet the objective?
 
 The closed loop of network and strategy is explored symbolically from the start. Nothing here is shared with the solver
-but the zone library: network and strategy are read anew (verify_moves: joint moves; verify_time: waiting and acting;
-verify_loop: the two together; verify_clocks: what may be forgotten; verify_invariant: all that a strategy covers, at
-once). See the design of the game for the rules.
+but the zone library: network and strategy are read anew (`moves`: joint moves; `delays`: waiting and acting;
+`closed_loop`: the two together; `extrapolation`: of zones; `invariant`: all that a strategy covers, at once). See the
+design of the game for the rules.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from functools import reduce
 from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.proof.clocks import Horizon
 from pursue_gen.proof.closed_loop import ClosedLoop, Entry, in_words, sample
 from pursue_gen.proof.delays import Broken
+from pursue_gen.proof.extrapolation import MaxConstants
 from pursue_gen.proof.invariant import is_invariant
 from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.proof.zones import with_neighbours
-from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, Limits, Listener, Watch
+from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.zones.dbm import Dbm
@@ -30,16 +30,16 @@ LIMIT = 300_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000."""
 
 _LARGE, _SOON = 20_000, 10_000
-"""Of a safety strategy with more zones all is looked at first; with fewer, where so many symbolic states do not do."""
+"""A safety strategy with more zones is checked as an invariant first; with fewer, after so many symbolic states."""
 
 _EXACT = 3_000
-"""So many states, and four times those of the first look, the second look with exact clock values may take."""
+"""So many states, and four times those of the first search, the second one with exact clock values may take."""
 
-_CROWD = 8
+_MANY_ZONES = 8
 """So many zones of a discrete state become their hull, which adds plays; where one of those fails, they do not."""
 
 _OFTEN = 8
-"""A discrete state that stands so often on one play of a reach game is looked at for a loop that only clocks hide."""
+"""A discrete state that is so often on one play of a reach game is searched for a loop that only clocks hide."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ def verify(
     `ranks` (reach): a number for each zone of the strategy. If from each zone every step leads to lower numbers, plays
     end, and that is quickly seen; the ranks need not be trusted. Without them every play is followed to its end.
 
-    Never says ok for a strategy that loses. A strategy that compares clock differences may in rare cases be refused
-    though it wins, because forgetting large clock values is not exact there. Whoever waits in a reach game may rely on
+    A strategy that loses is never ok. A strategy that compares clock differences may in rare cases be refused
+    though it wins, because extrapolation is not exact there. Whoever waits in a reach game may rely on
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
     Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on time or memory.
-    `progress` is told a few times a second how far it is.
+    `progress` is called a few times a second.
     """
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
@@ -90,18 +90,18 @@ def verify(
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
-    watch = Watch(limits, progress, PROVING)
+    monitor = LimitMonitor(limits, progress, PROVING)
     try:
         walked = _played if loop.rules.must_end else _safe
-        report = walked(loop, False, False, limit, watch)
+        report = walked(loop, False, False, limit, monitor)
         if prompt and not report.ok:
-            report = _played(loop, True, False, limit, watch)
+            report = _played(loop, True, False, limit, monitor)
         if report.ok or ranks is not None:
             return report
-        # It may fail only because clock values are forgotten: look again without that, and show a play that is real.
-        exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT), watch)
+        # It may fail only because zones are extrapolated: search again without that, and show a play that is real.
+        exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
     except MemoryError:
-        raise watch.stopped("memory") from None
+        raise monitor.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
 
 
@@ -137,33 +137,33 @@ def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int
     return found
 
 
-def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:
-    """What becomes of all plays when the strategy is played so; `exact`: forget nothing about the clocks."""
+def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
+    """What becomes of all plays when the strategy is played so; `exact`: zones are not extrapolated."""
     loop.rules, loop.used = replace(loop.rules, prompt=prompt), set()
     search = _check_ends if loop.rules.must_end and loop.ranks is None else _check_all
-    return search(loop, (loop.arena.initial, loop.arena.start), exact, limit, watch)
+    return search(loop, (loop.arena.initial, loop.arena.start), exact, limit, monitor)
 
 
-def _safe(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, watch: Watch) -> Report:
+def _safe(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
     """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers."""
     size = _size(loop.strategy)
     if size <= _LARGE:
-        report = _played(loop, prompt, exact, min(limit, _SOON), watch)
+        report = _played(loop, prompt, exact, min(limit, _SOON), monitor)
         if limit <= _SOON or not report.reason.startswith("limit"):
             return report
     if size <= limit:
         loop.rules, loop.used = replace(loop.rules, prompt=False), set()
-        looked = is_invariant(loop, watch)
-        if looked is not None:
-            return Report(True, "", (), frozenset(loop.used), looked)
-    return _played(loop, prompt, exact, limit, watch)
+        zones = is_invariant(loop, monitor)
+        if zones is not None:
+            return Report(True, "", (), frozenset(loop.used), zones)
+    return _played(loop, prompt, exact, limit, monitor)
 
 
 def _check_all(
-    loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch, crowd: Optional[int] = _CROWD
+    loop: ClosedLoop, start: Entry, exact: bool, limit: int, monitor: LimitMonitor, many: Optional[int] = _MANY_ZONES
 ) -> Report:
-    """Everything that is reachable, breadth first; `crowd` zones of a discrete state (None: never) become one."""
-    crowded = False
+    """Everything that is reachable, breadth first; `many` zones of a discrete state (None: never) become one."""
+    hulled = False
     found: List[Tuple[Entry, int, Optional[JointMove]]] = [(start, -1, None)]
     passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
     pending: Deque[int] = deque([0])
@@ -176,28 +176,28 @@ def _check_all(
         return steps[::-1]
 
     while pending:
-        watch.check(len(found), len(pending))
+        monitor.check(len(found), len(pending))
         n = pending.popleft()
         (state, zone), _, _ = found[n]
         if not any(other is zone for other in passed[state]):
             continue
         try:
-            followers = loop.followers((state, zone))
+            successors = loop.successors((state, zone))
         except Broken as broken:
-            if crowded:
+            if hulled:
                 loop.used = set()
-                return _check_all(loop, start, exact, limit, watch, None)
+                return _check_all(loop, start, exact, limit, monitor, None)
             return _failed(loop, broken.reason, steps_to(n), state, broken.zone, len(found))
-        for move, (target, after) in followers:
-            after = after if exact else loop.horizon.forget(after, target)
+        for move, (target, after) in successors:
+            after = after if exact else loop.max_constants.extrapolate(after, target)
             known = passed.setdefault(target, [])
             if any(other.includes(after) for other in known):
                 continue
             if len(found) >= limit:
                 return _failed(loop, _out_of(limit), steps_to(n) + [move], target, after, len(found))
             if not exact:
-                if crowd is not None and len(known) >= crowd:
-                    after, crowded = reduce(Dbm.hull, known, after), True
+                if many is not None and len(known) >= many:
+                    after, hulled = reduce(Dbm.hull, known, after), True
                 else:
                     after = with_neighbours(after, known)
             known[:] = [other for other in known if not after.includes(other)] + [after]
@@ -207,19 +207,19 @@ def _check_all(
 
 
 @dataclass
-class _Step:
-    """An entry on the play that is looked at, with the entries after it that are still to be proven."""
+class _PathEntry:
+    """An entry on the current play, with the entries after it that are still to be proven."""
 
     entry: Entry
     move: Optional[JointMove]
     left: List[Tuple[JointMove, Entry]]
 
 
-def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: Watch) -> Report:
+def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
     """Depth first: an entry is proven when all that may follow it are, so every play ends in the goal."""
     proven: Dict[State, List[Dbm]] = {}
     open_zones: Dict[State, List[Dbm]] = {}
-    path: List[_Step] = []
+    path: List[_PathEntry] = []
     states = 0
     coming: Optional[Tuple[Optional[JointMove], Entry]] = (None, start)
 
@@ -228,7 +228,7 @@ def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: 
         return _failed(loop, reason, steps, state, zone, states)
 
     while coming is not None or path:
-        watch.check(states, len(path))
+        monitor.check(states, len(path))
         if coming is None:
             step = path[-1]
             if step.left:
@@ -242,25 +242,25 @@ def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, watch: 
             continue
         move, (state, zone) = coming
         coming = None
-        zone = zone if exact else loop.horizon.forget(zone, state)
+        zone = zone if exact else loop.max_constants.extrapolate(zone, state)
         if loop.won(state) or any(other.includes(zone) for other in proven.get(state, ())):
             continue
         on_path = open_zones.setdefault(state, [])
-        if _comes_back(on_path, zone, loop.horizon, state):
+        if _comes_back(on_path, zone, loop.max_constants, state):
             return failed("for ever: a play comes back to where it was and need not reach the goal", move, state, zone)
         if states >= limit:
             return failed(_out_of(limit), move, state, zone)
         states += 1
         try:
-            followers = loop.followers((state, zone))
+            successors = loop.successors((state, zone))
         except Broken as broken:
             return failed(broken.reason, move, state, broken.zone)
         on_path.append(zone)
-        path.append(_Step((state, zone), move, followers))
+        path.append(_PathEntry((state, zone), move, successors))
     return Report(True, "", (), frozenset(loop.used), states)
 
 
-def _comes_back(on_path: Sequence[Dbm], zone: Dbm, horizon: Horizon, state: State) -> bool:
+def _comes_back(on_path: Sequence[Dbm], zone: Dbm, max_constants: MaxConstants, state: State) -> bool:
     """True if a play may go round for ever.
 
     With exact zones each point of the zone has a predecessor in the earlier one on the path. When the zone includes
@@ -270,8 +270,9 @@ def _comes_back(on_path: Sequence[Dbm], zone: Dbm, horizon: Horizon, state: Stat
         return True
     if len(on_path) < _OFTEN:
         return False
-    blurred = horizon.forget(zone, state)
-    return any(blurred == horizon.forget(other, state) for other in on_path)
+    widened = max_constants.extrapolate(zone, state)
+    return any(widened == max_constants.extrapolate(other, state) for other in on_path)
+
 
 def _size(strategy: Strategy) -> int:
     """The number of its zones."""

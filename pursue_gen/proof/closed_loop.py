@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from math import gcd
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.proof.clocks import Described, Horizon
 from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
+from pursue_gen.proof.extrapolation import Described, MaxConstants
 from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
+from pursue_gen.zones.scale import common_denominator
 
 INSTANTS = 4
-"""Into so many parts a time unit is cut when instants just after another are looked at (verify_time)."""
+"""Into so many parts a time unit is cut when instants just after another are explored (see `delays`)."""
 
 Entry = Tuple[State, Dbm]
 """A discrete state and the clocks' values just after the step into it."""
@@ -35,8 +35,8 @@ class ClosedLoop:
         ranks: Optional[Mapping[ZoneKey, int]],
         instant: Fraction = Fraction(0),
     ) -> None:
-        """`instant`, in time units: the strategy is played promptly, as `verify_time.Rules` has it."""
-        scale = _common_denominator(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
+        """`instant`, in time units: the strategy is played promptly, as `delays.Rules` has it."""
+        scale = _scale(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
         self.arena, self.strategy = Arena(network, scale), strategy
         self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
         self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
@@ -51,9 +51,9 @@ class ClosedLoop:
         self._advice: Dict[State, Advice] = {}
 
     @cached_property
-    def horizon(self) -> Horizon:
-        """What may be forgotten of the clocks."""
-        return Horizon(self.arena, self._described, self.rules.reaction)
+    def max_constants(self) -> MaxConstants:
+        """The constants by which zones are extrapolated."""
+        return MaxConstants(self.arena, self._described, self.rules.reaction)
 
     def won(self, state: State) -> bool:
         """True in the goal."""
@@ -63,7 +63,7 @@ class ClosedLoop:
         """True in the bad location."""
         return self.bad is not None and state[0][self.bad[0]] == self.bad[1]
 
-    def followers(self, entry: Entry) -> List[Tuple[JointMove, Entry]]:
+    def successors(self, entry: Entry) -> List[Tuple[JointMove, Entry]]:
         """All next entries. Raises Broken where the strategy fails on the way to them."""
         state, zone = entry
         if self.won(state):
@@ -180,7 +180,7 @@ class ClosedLoop:
         return bound.numerator * (self.arena.scale // bound.denominator)
 
     def _described(self, state: State) -> Described:
-        """For the horizon: what may happen in a state, and which constants the strategy compares clocks with there."""
+        """What may happen in a state, and which constants the strategy compares clocks with there."""
         if self.won(state) or self.lost(state) or state not in self._blocks:
             return (), ()
         situation = self.arena.situation(state)
@@ -227,15 +227,11 @@ def _zones_of(block: Block) -> Iterator[Zone]:
         yield from command.zones
 
 
-def _common_denominator(network: Network, strategy: Strategy, reaction: Fraction) -> int:
+def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:
     """What all bounds have to be multiplied by to be integers."""
-    zones = (zone for block in strategy.blocks for zone in _zones_of(block))
-    denominators = {reaction.denominator} | {c.bound.denominator for zone in zones for c in zone}
-    denominators |= {c.bound.denominator for c in network.start}
-    scale = 1
-    for d in denominators:
-        scale = scale * d // gcd(scale, d)
-    return scale
+    constraints = [*network.start, *(c for block in strategy.blocks for zone in _zones_of(block) for c in zone)]
+    return common_denominator([reaction, *(c.bound for c in constraints)])
+
 
 def in_words(move: JointMove) -> str:
     """The move as a step of a play: who, the event, the edges."""

@@ -1,6 +1,6 @@
 """A safety strategy as its own certificate: no play leaves the points that it covers.
 
-Plays are not followed. Each discrete state is looked at once, as if every point for which the strategy says something
+Plays are not followed. Each discrete state is checked once, as if every point for which the strategy says something
 could be entered: from there time, commands (on their way, too) and all that the environment can do must lead to points
 that are covered again.
 
@@ -19,12 +19,12 @@ from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.delays import Broken
 from pursue_gen.proof.moves import State
 from pursue_gen.proof.zones import outside
-from pursue_gen.synthesis.limits import Watch
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.zones.dbm import Dbm
 
 
-def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
-    """The number of zones that were looked at, if no play leaves what the strategy of a safety game covers.
+def is_invariant(loop: ClosedLoop, monitor: LimitMonitor) -> Optional[int]:
+    """The number of zones that were checked, if no play leaves what the strategy of a safety game covers.
 
     None where that is not so; then the strategy may win all the same. Only discrete states that steps lead to count,
     and only those are among what the loop then has as used.
@@ -35,7 +35,7 @@ def is_invariant(loop: ClosedLoop, watch: Watch) -> Optional[int]:
     known: Dict[State, Set[Dbm]] = {start: set()}
     pending: Deque[State] = deque([start])
     while pending:
-        watch.check(len(known), len(pending))
+        monitor.check(len(known), len(pending))
         try:
             steps = loop.steps_from_all(pending.popleft())
         except Broken:

@@ -1,10 +1,10 @@
 """How late commands may come: the margin of a strategy, and that of a game.
 
-The margin of a strategy is the largest delay with which it still wins, counted from the moment at which a command is
+The margin of a strategy is the largest delay with which it still wins, counted from the instant at which a command is
 due (the first one at which its zone holds), as the checker finds it. That of a game is the largest reaction with which
 there is a winning strategy at all; a strategy that was made for a smaller one need not stand it.
 
-Both are looked for on a grid of STEP time units, up to CAP. More delay only adds plays, so what wins with some delay
+Both are searched for on a grid of STEP time units, up to CAP. More delay only adds plays, so what wins with some delay
 wins with less.
 """
 
@@ -25,7 +25,7 @@ STEP = Fraction(1, 20)
 """The precision, in time units: the message of a busy robot takes about so long."""
 
 CAP = Fraction(10)
-"""Beyond this nobody looks: no machine is so late. It is a hundred times the reaction of the default game."""
+"""The search ends there: no machine is so late. It is a hundred times the reaction of the default game."""
 
 QUICK, USUAL = 1_000, 3_000
 """States for `strategy_margin` that are not noticed when a workspace is made, and such that are worth a second."""
@@ -79,7 +79,7 @@ def game_margin(
 
 
 def _largest(wins: Callable[[Fraction], Optional[bool]], known: Fraction) -> Margin:
-    """The last point of the grid where `wins`, which says None where it does not know, and the first where not."""
+    """The last point of the grid where `wins`, which is None where it is not known, and the first where not."""
     wins = _unless_limited(wins)
     if known >= CAP or wins(CAP):
         return Margin(max(known, CAP), None)
@@ -119,7 +119,7 @@ def in_words(margin: Margin) -> str:
     return f"{_decimal(margin.wins)}, not {_decimal(margin.fails)}"
 
 
-def told(margin: Margin, strategy: Strategy) -> str:
+def describe(margin: Margin, strategy: Strategy) -> str:
     """What the margin of the strategy means, in one or two sentences; what no robot can play is called so."""
     if margin.wins == 0 and margin.fails is not None:
         late = f"Margin 0: it loses when a command takes effect {_decimal(margin.fails)} time units late"

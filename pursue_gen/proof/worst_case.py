@@ -1,7 +1,7 @@
-"""How long a strategy takes to the goal at worst, when whoever plays it acts as soon as it may.
+"""How long a strategy takes to the goal at worst, when the controller acts as soon as it may.
 
 The closed loop of network and strategy is played as the checker plays it (see `verify`), with one more clock, that
-counts from the start and is never reset. What is told is the latest moment at which a play comes to the goal.
+counts from the start and is never reset. The result is the latest time at which a play comes to the goal.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pursue_gen.proof.closed_loop import ClosedLoop, Entry
 from pursue_gen.proof.delays import Broken
 from pursue_gen.proof.moves import State
 from pursue_gen.proof.zones import with_neighbours
-from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Watch
+from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
 from pursue_gen.zones.dbm import INF, Dbm, constant
@@ -25,10 +25,10 @@ INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units."""
 
 LIMIT = 20_000
-"""So many symbolic states are looked at."""
+"""So many symbolic states are explored."""
 
 LONGEST = 100_000
-"""Times above this number of time units are not told apart."""
+"""Times above this number of time units are not distinguished."""
 
 
 def counting_clock(network: Network) -> Optional[str]:
@@ -94,13 +94,13 @@ def worst_case(
     loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
     count = loop.arena.clock[counting_clock(game) or ""]
     try:
-        latest = _latest(loop, count, limit, Watch(limits))
+        latest = _latest(loop, count, limit, LimitMonitor(limits))
     except (Broken, PursueError):
         return None
     return None if latest is None else Fraction(latest, loop.arena.scale)
 
 
-def _latest(loop: ClosedLoop, count: int, limit: int, watch: Watch) -> Optional[int]:
+def _latest(loop: ClosedLoop, count: int, limit: int, monitor: LimitMonitor) -> Optional[int]:
     """The largest value of the counting clock at the goal, breadth first."""
     latest = 0
     start: Entry = (loop.arena.initial, loop.arena.start)
@@ -117,9 +117,9 @@ def _latest(loop: ClosedLoop, count: int, limit: int, watch: Watch) -> Optional[
                 return None
             latest = max(latest, constant(bound))
             continue
-        watch.check(met, len(pending))
-        for _, (target, after) in loop.followers((state, zone)):
-            after = loop.horizon.forget(after, target)
+        monitor.check(met, len(pending))
+        for _, (target, after) in loop.successors((state, zone)):
+            after = loop.max_constants.extrapolate(after, target)
             known = passed.setdefault(target, [])
             if any(other.includes(after) for other in known):
                 continue

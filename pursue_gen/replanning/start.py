@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
-from math import ceil, gcd
+from math import ceil
 from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
+from pursue_gen.zones.scale import least_common_multiple
 
 T = TypeVar("T")
 
@@ -36,7 +37,7 @@ def begun(network: Network, request: Request) -> Network:
         automata.append(moved)
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
-    grid = reaction.denominator * _FINEST // gcd(reaction.denominator, _FINEST)
+    grid = least_common_multiple((reaction.denominator, _FINEST))
     return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
 
 

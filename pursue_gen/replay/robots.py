@@ -10,6 +10,7 @@ from pursue_gen.replay.finding import FAULT, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import Order, Record, State
+from pursue_gen.tga.names import going, is_doing, is_going
 
 LATE = 2.0
 """Seconds by which an order may be heard after its activity is over: messages take time, and robots may be quick."""
@@ -31,7 +32,7 @@ def check_robots(record: Record, game: Game, steps: Sequence[Done], orders: Mapp
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots)
     where = {name: (pose.x, pose.y, pose.z) for name, pose in poses(game.scenario)[0].items()}
-    ways = {f"going_{x.name}_to_{y.name}": y.name for x in game.scenario.pois for y in game.scenario.pois}
+    ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _Diary(activities)
     found: List[Finding] = []
     told: Set[int] = set()
@@ -76,10 +77,10 @@ def _activities(steps: Sequence[Done], robots: Sequence[str]) -> List[Activity]:
             if robot in open_:
                 place = open_.pop(robot)
                 begun[place] = (begun[place][0], state.stamp, robot, begun[place][3])
-            if there.startswith("going_"):
+            if is_going(there):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, there))
-            elif there.startswith("doing_"):
+            elif is_doing(there):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, ""))
     return begun

@@ -9,7 +9,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.explanation.explain import DEFAULT_SECONDS, explain
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.margin import told
+from pursue_gen.proof.margin import describe
 from pursue_gen.report import tables
 from pursue_gen.report.commands import Game
 from pursue_gen.report.recording import simulated
@@ -52,7 +52,7 @@ def won_report(
 ) -> Report:
     """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
-    margin = told(margins(won, False, limits)[0], won.strategy)
+    margin = describe(margins(won, False, limits)[0], won.strategy)
     game, ideal = (Game(one.network, one.strategy, one.reaction) for one in both)
     policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
     policy = policies[0].reach_obj

@@ -205,7 +205,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
         return
     parts: List[str] = []
     for stay in stays(recording, names.OBJECTIVE):
-        if stay.what == "atRisk":
+        if stay.what == names.AT_RISK:
             due = stay.start + safety.deadline
             told = f"{safety.response.name} due by {_time(due)}"
             parts.append(_box(scale, stay, f"due by {_time(due)}", told))

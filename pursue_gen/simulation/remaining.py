@@ -113,8 +113,8 @@ class Remaining:
             self._met += 1
             if self._met - before > self._states:
                 return None
-            for _, (target, entered) in loop.followers((state, zone)):
-                after = loop.horizon.forget(entered, target)
+            for _, (target, entered) in loop.successors((state, zone)):
+                after = loop.max_constants.extrapolate(entered, target)
                 known = passed.setdefault(target, [])
                 if any(other.includes(after) for other in known):
                     continue

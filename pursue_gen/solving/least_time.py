@@ -20,7 +20,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import gcd
 from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
@@ -32,6 +31,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
+from pursue_gen.zones.scale import least_common_multiple
 
 SECONDS = 120.0
 """The time of the search where no limit is set; then the best strategy found so far counts."""
@@ -145,7 +145,7 @@ class _Search:
     def __init__(self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> None:
         self._objective, self._options, self._start = objective, options, time.monotonic()
         self._unit = reaction.denominator
-        self._fine = _common_multiple(2 * self._unit, TOLERANCE.denominator)
+        self._fine = least_common_multiple((2 * self._unit, TOLERANCE.denominator))
         self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
         self.low = 0
         self.high: Optional[int] = None
@@ -234,10 +234,6 @@ def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:
         return replace(one, wait=tuple(map(zone, one.wait)), commands=tuple(map(command, one.commands)))
 
     return replace(strategy, blocks=tuple(map(block, strategy.blocks)))
-
-
-def _common_multiple(a: int, b: int) -> int:
-    return a * b // gcd(a, b)
 
 
 def _decimal(value: Fraction) -> str:

@@ -8,7 +8,7 @@ from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.checker import pruned, pruned_ranks, verify
-from pursue_gen.proof.smaller import smaller
+from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.tga.network import Network, Objective
@@ -47,11 +47,11 @@ def prove(
     if not simpler or report.states > _LITTLE:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
-    fewer = smaller(network, kept, reaction, left)
+    fewer = simplified(network, kept, reaction, left)
     try:
         again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
     except PursueError as problem:
         if problem.exit_status != 5:
             raise
-        return kept  # what is proven stays so when there is no time left to make it smaller
+        return kept  # what is proven stays so when there is no time left to simplify it
     return pruned(fewer, again) if again.ok else kept

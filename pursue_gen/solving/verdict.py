@@ -6,7 +6,7 @@ from typing import Any, Dict, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, as_json, counted
 from pursue_gen.proof.checker import LIMIT
-from pursue_gen.proof.margin import USUAL, Margin, decides_ends, game_margin, strategy_margin, told
+from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
 from pursue_gen.proof.margin import as_json as margin_json
 from pursue_gen.proof.margin import in_words as margin_in_words
 from pursue_gen.solving.rules import Rules, rules_text
@@ -31,7 +31,7 @@ def verdict_text(won: Solution) -> str:
 
 def margin_text(won: Solution, margin: Margin, game: Optional[Margin] = None) -> str:
     """Lines about how late commands may come; `game` is the game's margin, where it was computed."""
-    lines = [told(margin, won.strategy)]
+    lines = [describe(margin, won.strategy)]
     if game is not None:
         lines.append(f"Margin of the game, with a strategy that is made for it (--reaction): {margin_in_words(game)}.")
     return "\n".join(lines)

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from math import gcd
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
 from pursue_gen.zones.dbm import Dbm, constant, raw
+from pursue_gen.zones.scale import common_denominator
 
 Bound = Tuple[int, int, int]
 """`x_i - x_j` within a raw bound: (i, j, raw)."""
@@ -129,7 +129,8 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
     problems: List[Diagnostic] = []
     if reaction < 0:
         problems.append(error("SYN001", f"the reaction delay is {reaction}, expected 0 or more time units"))
-    tables = _Tables(network, _common_denominator(network, reaction), problems)
+    scale = common_denominator([reaction, *(constraint.bound for constraint in network.start)])
+    tables = _Tables(network, scale, problems)
     goal, bad = tables.position(objective.goal), tables.position(objective.bad)
     if objective.kind is not Kind.SAFETY and objective.goal is None:
         problems.append(error("SYN002", "the objective names no location to reach"))
@@ -160,14 +161,6 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
         origins=tuple(edge for automaton in network.automata for edge in automaton.edges),
         start=start,
     )
-
-
-def _common_denominator(network: Network, reaction: Fraction) -> int:
-    """What all times have to be multiplied by to be integers."""
-    scale = reaction.denominator
-    for constraint in network.start:
-        scale = scale * constraint.bound.denominator // gcd(scale, constraint.bound.denominator)
-    return scale
 
 
 class _Tables:

@@ -1,4 +1,4 @@
-"""How much time and memory a search may take, how far it is, and what is told where a limit ends it."""
+"""Limits on the time and memory of a search, its progress, and the error at a limit."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Callable, Iterator, Optional
 from pursue_gen.diagnostics import PursueError, error
 
 CAREFUL = 4096
-"""MiB that the commands allow themselves where nobody says otherwise, if the machine has them."""
+"""MiB that the commands allow themselves by default, if the machine has them."""
 
 _SHARE = 0.8
 """The part of the available memory that may be taken; the machine has to go on."""
 
-_LOOK, _TELL = 0.05, 0.2
-"""Seconds from one look at the memory to the next, and from one report to the next."""
+_CHECK_INTERVAL, _REPORT_INTERVAL = 0.05, 0.2
+"""Seconds from one check of the memory to the next, and from one report to the next."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Progress:
-    """States reached (the checker's: symbolic ones), those that wait to be looked at, seconds, MiB of the process."""
+    """States reached (the checker's: symbolic ones), those that wait to be explored, seconds, MiB of the process."""
 
     states: int
     waiting: int
@@ -54,23 +54,23 @@ class Progress:
 
 
 Listener = Callable[[Progress], None]
-"""Is told the progress a few times a second."""
+"""Called with the progress a few times a second."""
 
 SOLVING, PROVING = "solving", "proving"
 UNDECIDED = "SYN010"
-"""The code of a finding that says that a limit was hit."""
+"""The code of the error at a limit."""
 
 NOTHING_YET = Progress(0, 0, 0.0, 0)
 NO_LIMITS = Limits()
 
 
-class Watch:
-    """For engines that ask, between steps, whether they may go on; the listener learns how far they are."""
+class LimitMonitor:
+    """Checks the limits between the steps of a search, and reports its progress to the listener."""
 
     def __init__(self, limits: Limits = NO_LIMITS, listener: Optional[Listener] = None, phase: str = SOLVING) -> None:
         self._limits, self._listener, self._phase = limits, listener, phase
         self._start = time.monotonic()
-        self._look = self._tell = 0.0
+        self._next_check = self._next_report = 0.0
         self._reached = NOTHING_YET
 
     def admit(self, states: int, waiting: int) -> None:
@@ -84,16 +84,16 @@ class Watch:
         """Raises PursueError (exit status 5) at a limit."""
         seconds = time.monotonic() - self._start
         late = 0 < self._limits.left < seconds
-        if seconds < self._look and not late:
+        if seconds < self._next_check and not late:
             return
-        self._look = seconds + _LOOK
+        self._next_check = seconds + _CHECK_INTERVAL
         self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
         if late:
             raise self.stopped("seconds")
         if 0 < self._limits.memory < self._reached.memory:
             raise self.stopped("memory")
-        if self._listener is not None and seconds >= self._tell:
-            self._tell = seconds + _TELL
+        if self._listener is not None and seconds >= self._next_report:
+            self._next_report = seconds + _REPORT_INTERVAL
             self._listener(self._reached)
 
     def stopped(self, which: str) -> PursueError:
@@ -120,7 +120,7 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
 
 
 def memory_in_use() -> int:
-    """MiB of this process in memory; where the system does not tell, the most that it was so far."""
+    """MiB of this process in memory; where the system does not report it, the most that it was so far."""
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * resource.getpagesize() >> 20
@@ -129,7 +129,7 @@ def memory_in_use() -> int:
 
 
 def careful_memory() -> int:
-    """The limit on memory (MiB) where nobody names one: some GiB, and never all that the machine has left."""
+    """The default limit on memory (MiB): some GiB, and never all that the machine has left."""
     return max(1, min([CAREFUL, *(int(_SHARE * size) for size in _available())]))
 
 

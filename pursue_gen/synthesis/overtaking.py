@@ -27,7 +27,7 @@ def without_overtaking(
     """The blocks of a reach game and their ranks, with later beginnings where commands may be overtaken.
 
     The pieces of a block must be disjoint. A zone stays as it is where time takes none of its points to a part of it
-    that is out of reach: the checker will tell whether that does harm.
+    that is out of reach: the checker finds out whether such a strategy wins.
     """
     new_blocks: List[RawBlock] = []
     new_ranks: List[Ranks] = []

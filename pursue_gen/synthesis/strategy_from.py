@@ -38,7 +38,7 @@ def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict
 
 
 def followed(game: Game, blocks: Iterable[RawBlock]) -> Tuple[RawBlock, ...]:
-    """The blocks of the discrete states that a play by the strategy can come to (clocks are not looked at)."""
+    """The blocks of the discrete states that a play by the strategy can come to (whatever the clocks)."""
     by_state: Dict[State, RawBlock] = {State(tuple(block[0]), tuple(block[1])): block for block in blocks}
     start = initial_state(game)
     met: Set[State] = {start}

@@ -1,9 +1,9 @@
 """How long it takes at least to the goal: a lower bound that holds whatever the controller does.
 
-The environment is taken to be lazy: it moves only where an invariant forces it, at the last moment, and commands take
-effect as late as the reaction delay allows. Against that the relaxed problem (see `directed`) is solved, with times:
-each fact is there as soon as the cheapest edge can give it, and the latest of an edge's needs decides when that is (the
-h-max of Bonet and Geffner 2001). The environment may play so, so no strategy guarantees less.
+The environment is taken to be lazy: it moves only where an invariant forces it, as late as possible, and commands take
+effect as late as the reaction delay allows. Against that the relaxed problem (see `reference.relaxed`) is solved, with
+times: each fact holds as soon as the cheapest edge can give it, and the latest of an edge's preconditions decides when
+that is (the h-max of Bonet and Geffner 2001). The environment may play so, so no strategy guarantees less.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from pursue_gen.synthesis.game import NO_CHANNEL, Game, GameEdge, initial_state,
 from pursue_gen.zones.dbm import INF, constant
 
 Fact = Tuple[str, int, int]
-"""("at", automaton, location), ("is", variable, value) or ("heard", channel, 0)."""
+"""("at", automaton, location), ("is", variable, value) or ("channel", channel, 0)."""
 
 
 @dataclass(frozen=True)
-class _Step:
-    """An edge in the relaxed problem: when all of the needs (any fact of each) are there, the facts of `gives` come.
+class _TimedOperator:
+    """An edge in the relaxed problem: when all `preconditions` (any fact of each) hold, the facts of `effects` come.
 
     It waits for `wait` if the game starts in its source, and for `dwell` after the source was entered; then comes the
     `delay` of a command.
     """
 
     source: Fact
-    needs: Tuple[FrozenSet[Fact], ...]
-    gives: Tuple[Fact, ...]
+    preconditions: Tuple[FrozenSet[Fact], ...]
+    effects: Tuple[Fact, ...]
     wait: int
     dwell: int
     delay: int
@@ -45,15 +45,15 @@ def least_time(game: Game) -> Optional[int]:
     start, goal = initial_state(game), ("at", *game.goal)
     now: Set[Fact] = {("at", k, location) for k, location in enumerate(start.locations)}
     now |= {("is", k, value) for k, value in enumerate(start.values)}
-    return _soonest(_steps(game), now, goal)
+    return _soonest(_timed_operators(game), now, goal)
 
 
-def _soonest(steps: List[_Step], now: Set[Fact], goal: Fact) -> Optional[int]:
-    """When the goal comes: Dijkstra's algorithm over facts. An edge is possible once the last of its needs is met."""
+def _soonest(operators: List[_TimedOperator], now: Set[Fact], goal: Fact) -> Optional[int]:
+    """When the goal comes: Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold."""
     watchers: Dict[Fact, List[Tuple[int, int]]] = {}
-    for k, step in enumerate(steps):
-        for position, need in enumerate(step.needs):
-            for fact in need:
+    for k, operator in enumerate(operators):
+        for position, precondition in enumerate(operator.preconditions):
+            for fact in precondition:
                 watchers.setdefault(fact, []).append((k, position))
     queue = [(0, fact) for fact in sorted(now)]
     times: Dict[Fact, int] = {}
@@ -66,27 +66,27 @@ def _soonest(steps: List[_Step], now: Set[Fact], goal: Fact) -> Optional[int]:
             return time
         times[fact] = time
         for k, position in watchers.get(fact, ()):
-            positions, step = met.setdefault(k, set()), steps[k]
+            positions, operator = met.setdefault(k, set()), operators[k]
             if position in positions:
                 continue
             positions.add(position)
-            if len(positions) == len(step.needs):
-                ready = step.wait if step.source in now else times[step.source] + step.dwell
-                for given in step.gives:
-                    heapq.heappush(queue, (max(time, ready) + step.delay, given))
+            if len(positions) == len(operator.preconditions):
+                ready = operator.wait if operator.source in now else times[operator.source] + operator.dwell
+                for given in operator.effects:
+                    heapq.heappush(queue, (max(time, ready) + operator.delay, given))
     return None
 
 
-def _steps(game: Game) -> List[_Step]:
+def _timed_operators(game: Game) -> List[_TimedOperator]:
     entering: Dict[Tuple[int, int], List[GameEdge]] = {}
     for edge in game.edges:
-        if edge.source != edge.target:  # a loop makes nobody come sooner
+        if edge.source != edge.target:  # a loop makes no fact come sooner
             entering.setdefault((edge.automaton, edge.target), []).append(edge)
     # A command that an uncontrollable edge may receive need not be one.
     first = start_zone(game)
     most = [first.m[clock * game.dim] for clock in range(game.dim)]
     unsure = {edge.channel for edge in game.edges if not edge.sends and not edge.controllable}
-    steps: List[_Step] = []
+    operators: List[_TimedOperator] = []
     for edge in game.edges:
         bounds = game.automata[edge.automaton].invariants[edge.source]
         forced = edge.sends and not edge.controllable
@@ -98,21 +98,22 @@ def _steps(game: Game) -> List[_Step]:
         before = entering.get((edge.automaton, edge.source), [])
         dwell = [c for clock, c in waits if all(clock in other.resets for other in before)]
         late = edge.sends and edge.controllable and edge.channel not in unsure
-        source, needs, gives = _facts(edge)
+        source, preconditions, effects = _facts(edge)
         wait = max([0] + [c - constant(most[clock]) for clock, c in waits if most[clock] < INF])
-        steps.append(_Step(source, needs, gives, wait, max([0] + dwell), game.delta if late else 0))
-    return steps
+        delay = game.delta if late else 0
+        operators.append(_TimedOperator(source, preconditions, effects, wait, max([0] + dwell), delay))
+    return operators
 
 
 def _facts(edge: GameEdge) -> Tuple[Fact, Tuple[FrozenSet[Fact], ...], Tuple[Fact, ...]]:
-    """The edge's source, what it needs and what it gives."""
+    """The edge's source, preconditions and effects."""
     source: Fact = ("at", edge.automaton, edge.source)
-    needs: List[FrozenSet[Fact]] = [frozenset({source})]
-    needs += [frozenset(("is", variable, value) for variable, value in clause) for clause in edge.clauses]
-    gives: List[Fact] = [("at", edge.automaton, edge.target)]
-    gives += [("is", variable, value) for variable, value in edge.assignments]
+    preconditions: List[FrozenSet[Fact]] = [frozenset({source})]
+    preconditions += [frozenset(("is", variable, value) for variable, value in clause) for clause in edge.clauses]
+    effects: List[Fact] = [("at", edge.automaton, edge.target)]
+    effects += [("is", variable, value) for variable, value in edge.assignments]
     if not edge.sends:
-        needs.append(frozenset({("heard", edge.channel, 0)}))
+        preconditions.append(frozenset({("channel", edge.channel, 0)}))
     elif edge.channel != NO_CHANNEL:
-        gives.append(("heard", edge.channel, 0))
-    return source, tuple(needs), tuple(gives)
+        effects.append(("channel", edge.channel, 0))
+    return source, tuple(preconditions), tuple(effects)

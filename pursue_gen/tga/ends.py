@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import Mapping
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
-
-_BUSY = ("going_", "doing_")
 
 
 def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
@@ -38,7 +37,7 @@ def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
 def is_agent(automaton: Automaton) -> bool:
     """True for the automaton of an agent: it sends, or it can be on its way or at work."""
     return any(edge.sync is not None and edge.sync.sends for edge in automaton.edges) or any(
-        location.name.startswith(_BUSY) for location in automaton.locations
+        is_under_way(location.name) for location in automaton.locations
     )
 
 
@@ -50,7 +49,7 @@ def _reported(automaton: Automaton, slack: int) -> Automaton:
 
 
 def _late(location: Location, slack: int) -> Location:
-    if not location.name.startswith(_BUSY):
+    if not is_under_way(location.name):
         return location
     bounds = tuple(ClockBound(bound.clock, bound.op, bound.bound + slack) for bound in location.invariant)
     return replace(location, invariant=bounds)

@@ -10,6 +10,11 @@ OBJECTIVE = "obj"
 REACH = "reachObj"
 STATES = "states"
 
+IDLE, AT_RISK, LOSE = "idle", "atRisk", "lose"
+"""The locations of the objective's automaton: no duty, a deadline is running, a duty was missed."""
+
+_GOING, _DOING = "going_", "doing_"
+
 
 def agent_clock(agent: str) -> str:
     """The clock of an agent: how long since its last action or movement began or ended."""
@@ -38,12 +43,36 @@ def movement(agent: str, a: str, b: str) -> str:
 
 def going(a: str, b: str) -> str:
     """The location on the way from a to b."""
-    return f"going_{a}_to_{b}"
+    return f"{_GOING}{a}_to_{b}"
 
 
 def doing(event: str, poi: str) -> str:
     """The location at work at a POI."""
-    return f"doing_{event}_in_{poi}"
+    return f"{_DOING}{event}_in_{poi}"
+
+
+def is_going(location: str) -> bool:
+    """True for a location on the way, see `going`."""
+    return location.startswith(_GOING)
+
+
+def is_doing(location: str) -> bool:
+    """True for a location at work, see `doing`."""
+    return location.startswith(_DOING)
+
+
+def is_under_way(location: str) -> bool:
+    """True for a location whose end takes time to come: on the way or at work."""
+    return is_going(location) or is_doing(location)
+
+
+def in_words(location: str) -> str:
+    """Where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
+    if is_going(location):
+        return "on the way from " + location[len(_GOING) :].replace("_to_", " to ")
+    if is_doing(location):
+        return "doing " + location[len(_DOING) :].replace("_in_", " at ")
+    return f"at {location}"
 
 
 def done(event: str) -> str:

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Optional, Tuple
 
+from pursue_gen.tga.names import is_under_way
+
 
 @dataclass(frozen=True)
 class ClockBound:
@@ -147,7 +149,7 @@ class Objective:
 
 def is_end(edge: Edge) -> bool:
     """True for the end of a movement or an action: the edge leaves a `going_…` or `doing_…` location."""
-    return edge.source != edge.target and edge.source.startswith(("going_", "doing_"))
+    return edge.source != edge.target and is_under_way(edge.source)
 
 
 def with_controllability(edge: Edge, controllable: bool) -> Edge:

@@ -6,11 +6,10 @@ from typing import List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Avoid, NeverWith, Reach, Respond, Safety, Scenario
-from pursue_gen.tga.names import CLOCK_OBJECTIVE, CLOCK_REACH, OBJECTIVE, REACH, agent_position
+from pursue_gen.tga.names import AT_RISK, CLOCK_OBJECTIVE, CLOCK_REACH, IDLE, LOSE, OBJECTIVE, REACH, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.positions import Positions
 
-_IDLE, _LOSE, _AT_RISK = "idle", "lose", "atRisk"
 _START, _UNLOCKED, _WIN = "initial_location", "unlocked", "win"
 
 Happened = Mapping[str, str]
@@ -19,7 +18,7 @@ Happened = Mapping[str, str]
 
 def scenario_objective(scenario: Scenario) -> Objective:
     """What the scenario's controller wants. Raises PursueError where it has no objective."""
-    goal, bad = (REACH, _WIN), (OBJECTIVE, _LOSE)
+    goal, bad = (REACH, _WIN), (OBJECTIVE, LOSE)
     if scenario.reach and scenario.safety:
         return Objective(Kind.REACH_WHILE_SAFE, goal=goal, bad=bad)
     if scenario.reach:
@@ -39,24 +38,24 @@ def reach_automaton(reach: Reach, happened: Happened) -> Automaton:
 
 def safety_automaton(safety: Safety, happened: Happened, positions: Positions) -> Automaton:
     """The automaton that goes to `lose` when the safety objective is broken."""
-    locations: Tuple[Location, ...] = (Location(_IDLE), Location(_LOSE))
+    locations: Tuple[Location, ...] = (Location(IDLE), Location(LOSE))
     if isinstance(safety, Respond):
-        locations += (Location(_AT_RISK, (ClockBound(CLOCK_OBJECTIVE, "<=", safety.deadline),)),)
-        return Automaton(OBJECTIVE, locations, _IDLE, _respond(safety, happened))
+        locations += (Location(AT_RISK, (ClockBound(CLOCK_OBJECTIVE, "<=", safety.deadline),)),)
+        return Automaton(OBJECTIVE, locations, IDLE, _respond(safety, happened))
     if isinstance(safety, Avoid):
-        lose = Edge(_IDLE, _LOSE, sync=Sync(happened[safety.event.name], sends=False))
-        return Automaton(OBJECTIVE, locations, _IDLE, (lose,))
-    return Automaton(OBJECTIVE, locations, _IDLE, _never_with(safety, positions))
+        lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
+        return Automaton(OBJECTIVE, locations, IDLE, (lose,))
+    return Automaton(OBJECTIVE, locations, IDLE, _never_with(safety, positions))
 
 
 def _respond(safety: Respond, happened: Happened) -> Tuple[Edge, ...]:
     trigger = Sync(happened[safety.trigger.name], sends=False)
     response = Sync(happened[safety.response.name], sends=False)
     return (
-        Edge(_IDLE, _AT_RISK, sync=trigger, resets=(CLOCK_OBJECTIVE,)),
-        Edge(_AT_RISK, _IDLE, sync=response),
+        Edge(IDLE, AT_RISK, sync=trigger, resets=(CLOCK_OBJECTIVE,)),
+        Edge(AT_RISK, IDLE, sync=response),
         # The deadline is the invariant of atRisk; this is what remains to do when it is reached.
-        Edge(_AT_RISK, _LOSE),
+        Edge(AT_RISK, LOSE),
     )
 
 
@@ -74,8 +73,8 @@ def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
 
     return tuple(
         Edge(
-            _IDLE,
-            _LOSE,
+            IDLE,
+            LOSE,
             Guard(integers=(among(safety.first.name, codes), among(safety.second.name, codes))),
             controllable=False,
         )

@@ -14,5 +14,5 @@ def event_word(automaton: str, edge: Edge) -> str:
     """
     if edge.sync is not None:
         return edge.sync.channel
-    going = "going_" if automaton == REACH else ""
+    going = "going_" if automaton == REACH else ""  # as the thesis writes it: no agent is on its way
     return f"{automaton}_{going}{edge.source}2{edge.target}"

@@ -8,7 +8,7 @@ from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.margin import QUICK, strategy_margin, told
+from pursue_gen.proof.margin import QUICK, describe, strategy_margin
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, machines_for, write_workspace
@@ -56,7 +56,8 @@ def make_workspace(
 ) -> Made:
     """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it and `machines_for`."""
     limits = request.options.limits
-    margin = told(strategy_margin(won.network, won.objective, won.strategy, won.reaction, QUICK, limits), won.strategy)
+    found = strategy_margin(won.network, won.objective, won.strategy, won.reaction, QUICK, limits)
+    margin = describe(found, won.strategy)
     options = options_for(request, won, margin, extras)
     findings: Tuple[Diagnostic, ...] = ()
     if extras.machines is not None:

@@ -29,8 +29,8 @@ PATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = 1e9"
 SLOW_CHECKER = """
 import time
 from pursue_gen.proof.closed_loop import ClosedLoop
-quick, pauses = ClosedLoop.followers, iter([300])  # it is told of before its first step
-ClosedLoop.followers = lambda self, entry: time.sleep(next(pauses, 0)) or quick(self, entry)
+quick, pauses = ClosedLoop.successors, iter([300])  # it is told of before its first step
+ClosedLoop.successors = lambda self, entry: time.sleep(next(pauses, 0)) or quick(self, entry)
 """
 
 needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")

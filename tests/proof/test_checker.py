@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from benchmarks.families import clean_by_robots
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
-from pursue_gen.proof import checker as verify_module
+from pursue_gen.proof import checker
 from pursue_gen.proof.checker import Report, pruned, verify
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
@@ -328,21 +328,21 @@ def test_limits_and_strategies_of_the_other_side() -> None:
 
 
 @pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-def test_where_the_hull_of_many_zones_fails_they_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_the_hull_of_many_zones_fails_they_are_checked_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = parse(clean_by_robots(1), "cleaning.pur", "cleaning")
     net, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
     reaction = Fraction(1, 10)
     strategy = solve(net, objective, reaction).strategy
     assert strategy is not None
-    look, looks = verify_module._check_all, []
+    check_all, calls = checker._check_all, []
 
     def at_once(*arguments: object) -> Report:
-        looks.append(len(arguments))
-        return look(*arguments, *[1][len(arguments) - 5 :])
+        calls.append(len(arguments))
+        return check_all(*arguments, *[1][len(arguments) - 5 :])
 
-    monkeypatch.setattr(verify_module, "_check_all", at_once)
+    monkeypatch.setattr(checker, "_check_all", at_once)
     assert verify(net, objective, strategy, reaction).ok
-    assert looks == [5, 6]
+    assert calls == [5, 6]
 
 
 def test_unused_parts_are_pruned() -> None:

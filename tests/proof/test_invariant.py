@@ -14,7 +14,7 @@ from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.invariant import is_invariant
-from pursue_gen.synthesis.limits import Watch
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -31,7 +31,7 @@ needs_native = pytest.mark.skipif(not native.available(), reason="the native eng
 
 
 def covered(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> bool:
-    return is_invariant(ClosedLoop(network, objective, strategy, reaction, None), Watch()) is not None
+    return is_invariant(ClosedLoop(network, objective, strategy, reaction, None), LimitMonitor()) is not None
 
 
 @settings(max_examples=200)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.margin import CAP, STEP, Margin, as_json, game_margin, in_words, strategy_margin, told
+from pursue_gen.proof.margin import CAP, STEP, Margin, as_json, describe, game_margin, in_words, strategy_margin
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.native import engine as native
@@ -83,7 +83,7 @@ def test_the_thesis_s_scenarios_can_be_played_at_leisure_but_not_in_the_ideal_ga
     ideal = solve_scenario(scenario, IDEAL)
     margin = strategy_margin(ideal.network, ideal.objective, ideal.strategy, ideal.reaction)
     assert margin.wins < 1
-    assert "no real robot" in told(margin, ideal.strategy)
+    assert "no real robot" in describe(margin, ideal.strategy)
 
 
 @pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
@@ -93,14 +93,15 @@ def test_the_thief_is_caught_with_commands_that_are_late_but_not_by_the_ideal_st
     assert strategy_margin(won.network, won.objective, won.strategy, won.reaction).wins >= Fraction(1, 10)
     margin = strategy_margin(ideal.network, ideal.objective, ideal.strategy, ideal.reaction)
     assert margin.wins == 0
-    assert told(margin, ideal.strategy).startswith("Margin 0: it loses when a command takes effect 0.05 time units")
+    assert describe(margin, ideal.strategy).startswith("Margin 0: it loses when a command takes effect 0.05 time units")
 
 
 def test_margins_in_words_and_as_json() -> None:
     some, most = Margin(Fraction(7, 20), Fraction(2, 5)), Margin(CAP, None)
     assert in_words(some) == "0.35, not 0.4" and in_words(most) == "at least 10"
     assert as_json(some) == {"wins": "7/20", "fails": "2/5"} and as_json(most) == {"wins": "10", "fails": None}
-    assert told(some, plan("", "")) == "Margin: it still wins when commands take effect 0.35 time units late, not 0.4."
+    late = "Margin: it still wins when commands take effect 0.35 time units late, not 0.4."
+    assert describe(some, plan("", "")) == late
 
 
 def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:

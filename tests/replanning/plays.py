@@ -69,10 +69,10 @@ def walk(name: str, seed: int, steps: int) -> Iterator[Tuple[State, Tuple[Fracti
     for _ in range(steps):
         if loop.won(state):
             return
-        followers = loop.followers((state, zone))
-        if not followers:
+        successors = loop.successors((state, zone))
+        if not successors:
             return
-        _, (state, zone) = draw.choice(followers)
+        _, (state, zone) = draw.choice(successors)
         point = some_point(zone, draw)
         yield state, tuple(value / loop.arena.scale for value in point)
 

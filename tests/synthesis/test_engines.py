@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import load, parse
+from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.engine import Engine, Outcome
 from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
@@ -32,7 +32,7 @@ from tests.synthesis.region_game import RegionGame
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DEFAULT = Fraction(1, 10)
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
 
 native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built here (no compiler)")
 ENGINES = [
@@ -41,17 +41,6 @@ ENGINES = [
     pytest.param(ReferenceEngine(), id="reference"),
     pytest.param(ReferenceEngine(directed=False), id="reference, all moves at once"),
 ]
-
-RING = """
-poi "a" poi "b" poi "c" poi "d"
-connect a and b distance 10 connect b and c distance 10 connect c and d distance 10 connect d and a distance 10
-event "catch" collaborative
-agent "first" controllable mobile 1 location a can_do catch
-agent "second" controllable mobile 1 location a can_do catch
-agent "thief" mobile 1 location c reacts_to catch
-reach_objective: do catch after 0
-"""
-
 
 def published(folder: Path, name: str, default: bool) -> Tuple[Network, Objective, Fraction]:
     network = read_network((folder / name / "TGA.xml").read_text(), "TGA.xml")
@@ -132,7 +121,7 @@ class TestEngine:
     def test_an_outcome_is_well_formed(self, engine: Engine, game: Game) -> None:
         is_well_formed(game, engine.solve(game))
 
-    @RANDOM
+    @settings(RANDOM, max_examples=30)
     @given(game=games(EVERY_KIND, (0, 1)))
     def test_a_game_is_decided_the_same_twice(self, engine: Engine, game: Game) -> None:
         first, second = engine.solve(game), engine.solve(game)
@@ -206,14 +195,6 @@ class TestEngine:
         outcome = engine.solve(compile_game(_network(_automaton("A", 0)), here))
         assert outcome.won
         assert not outcome.blocks, "nothing is left to do"
-
-    @pytest.mark.parametrize("reaction", [Fraction(0), DEFAULT])
-    def test_a_search_that_has_to_open_states_again_and_again_stays_right(
-        self, engine: Engine, reaction: Fraction
-    ) -> None:
-        scenario = parse(RING, "ring.pur")
-        game = compile_game(translate(scenario), scenario_objective(scenario), reaction)
-        assert not engine.solve(game).won, "on a ring of four a thief outruns two officers"
 
     def test_a_limit_on_states_is_exact(self, engine: Engine) -> None:
         scenario = load(thesis_scenario("1"))

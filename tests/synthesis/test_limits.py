@@ -26,9 +26,9 @@ from pursue_gen.synthesis.limits import (
     CAREFUL,
     PROVING,
     SOLVING,
+    LimitMonitor,
     Limits,
     Progress,
-    Watch,
     careful_memory,
     limit_reached,
     memory_in_use,
@@ -65,8 +65,8 @@ def strategy(game: Game) -> Strategy:
 @pytest.fixture
 def eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever asks a watch is looked at and told of, every time."""
-    monkeypatch.setattr(limits_module, "_LOOK", 0.0)
-    monkeypatch.setattr(limits_module, "_TELL", 0.0)
+    monkeypatch.setattr(limits_module, "_CHECK_INTERVAL", 0.0)
+    monkeypatch.setattr(limits_module, "_REPORT_INTERVAL", 0.0)
 
 
 def told(problem: PursueError) -> str:
@@ -239,7 +239,7 @@ def test_a_watch_is_quiet_between_two_reports() -> None:
     heard: List[Progress] = []
     clock = iter([0.0, 0.0, 0.01, 0.1, 0.19, 0.25])
     with mock.patch.object(time, "monotonic", side_effect=lambda: next(clock)):
-        watch = Watch(listener=heard.append)
+        watch = LimitMonitor(listener=heard.append)
         for states in range(5):
             watch.check(states, 0)
     assert [p.states for p in heard] == [0, 4]

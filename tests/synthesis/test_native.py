@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from pursue_gen.language import load
+from pursue_gen.language import load, parse
 from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
@@ -79,3 +79,21 @@ def test_ranks_fall_with_every_command() -> None:
         for (_, action), rank in zip(pieces, ranks):
             if action is not None and moves[action].target in lowest:
                 assert lowest[moves[action].target] < rank
+
+
+RING = """
+poi "a" poi "b" poi "c" poi "d"
+connect a and b distance 10 connect b and c distance 10 connect c and d distance 10 connect d and a distance 10
+event "catch" collaborative
+agent "first" controllable mobile 1 location a can_do catch
+agent "second" controllable mobile 1 location a can_do catch
+agent "thief" mobile 1 location c reacts_to catch
+reach_objective: do catch after 0
+"""
+
+
+@pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10)])
+def test_a_search_that_has_to_open_states_again_and_again_stays_right(reaction: Fraction) -> None:
+    scenario = parse(RING, "ring.pur")
+    game = compile_game(translate(scenario), scenario_objective(scenario), reaction)
+    assert not NATIVE.solve(game).won, "on a ring of four a thief outruns two officers"

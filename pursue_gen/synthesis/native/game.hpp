@@ -70,10 +70,10 @@ inline bool holds(const Game& game, const Discrete& d, const std::vector<Clause>
 }
 
 // For each automaton, location and clock the largest constant that the automaton may compare the clock with before it
-// resets it, -1: none (Behrmann et al. 2003). Clocks that no automaton asks for do not matter in a discrete state.
-class Horizon {
+// resets it, -1: none (Behrmann et al. 2003). Clocks that no automaton compares do not matter in a discrete state.
+class MaxConstants {
   public:
-    explicit Horizon(const Game& game) : clocks_(game.clocks) {
+    explicit MaxConstants(const Game& game) : clocks_(game.clocks) {
         for (const auto& automaton : game.automata) {
             auto& table = largest_.emplace_back(automaton.invariants.size(), std::vector<wide_t>(clocks_ + 1, -1));
             const auto note = [&](int location, const std::vector<Bound>& bounds) {

@@ -1,4 +1,4 @@
-// Limits on time, memory and states, and the progress that is told.
+// Limits on time, memory and states, and reports of progress.
 #pragma once
 
 #include <sys/resource.h>
@@ -24,7 +24,7 @@ struct Limits {
     std::function<void(std::size_t, std::size_t, double, std::size_t)> progress;
 };
 
-// MiB of this process in memory; where the system does not tell, the most that it was so far.
+// MiB of this process in memory; where the system does not report it, the most that it was so far.
 inline std::size_t memory_in_use() {
     if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
         unsigned long pages = 0;
@@ -41,10 +41,10 @@ inline std::size_t memory_in_use() {
 #endif
 }
 
-// Looks at the limits by the clock.
-class Watch {
+// Checks the limits between steps, and reports the progress.
+class LimitMonitor {
   public:
-    explicit Watch(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {}
+    explicit LimitMonitor(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {}
 
     double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
@@ -54,16 +54,16 @@ class Watch {
     }
 
     // To be called often. Throws Limit, and what `poll` and `progress` throw.
-    void look(std::size_t states, std::size_t waiting) {
+    void check(std::size_t states, std::size_t waiting) {
         const double now = spent();
         if (limits_.seconds > 0 && now > limits_.seconds) stop("seconds", states, waiting);
-        if (now < look_) return;
-        look_ = now + 0.02;  // looking at memory costs a system call or three
+        if (now < next_check_) return;
+        next_check_ = now + 0.02;  // reading the memory in use costs a system call or three
         limits_.poll();
         const std::size_t memory = memory_in_use();
         if (limits_.memory && memory > limits_.memory) stop("memory", states, waiting);
-        if (now < tell_) return;
-        tell_ = now + 0.2;
+        if (now < next_report_) return;
+        next_report_ = now + 0.2;
         if (limits_.progress) limits_.progress(states, waiting, now, memory);
     }
 
@@ -75,7 +75,7 @@ class Watch {
 
     const Limits& limits_;
     std::chrono::steady_clock::time_point start_;
-    double look_ = 0, tell_ = 0;  // when to look at memory, and to tell the progress, again
+    double next_check_ = 0, next_report_ = 0;  // seconds: of memory, and of the progress
 };
 
 }  // namespace pursue

@@ -89,7 +89,7 @@ py::dict outcome(bool won, Fixpoint<Z>& solver, const Game& game) {
         ++reached;
         zones += game.kind == Kind::safety ? node.rest.size() : node.plan.size();
         if (!won) continue;
-        solver.look();
+        solver.check_limits();
         py::list actions;
         for (const auto& action : solver.plan(static_cast<int>(k))) {
             const py::object edges = action.joint < 0 ? py::object(py::none()) : py::cast(solver.joint(action.joint).edges);
@@ -106,10 +106,10 @@ py::dict outcome(bool won, Fixpoint<Z>& solver, const Game& game) {
 }
 
 template <int N, class R>
-py::dict solve_with(const Game& game, const Limits& limits, double moment) {
+py::dict solve_with(const Game& game, const Limits& limits, double small_budget) {
     using Z = Dbm<N, R>;
     if (game.kind == Kind::safety) {
-        const auto [won, solver] = solve_safety<Z>(game, limits, moment);
+        const auto [won, solver] = solve_safety<Z>(game, limits, small_budget);
         return outcome<Z>(won, *solver, game);
     }
     Reach<Z> solver(game, limits);
@@ -133,7 +133,7 @@ bool fits(const Game& game) {
 }
 
 py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
-               double moment) {
+               double small_budget) {
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
@@ -148,16 +148,16 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     };
     const int dim = game.clocks + 1;
     if (fits<std::int16_t>(game)) {
-        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, moment);
-        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, moment);
-        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, moment);
-        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, moment);
-        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, moment);
+        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget);
+        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, small_budget);
+        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, small_budget);
+        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, small_budget);
+        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, small_budget);
     }
     if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
-    if (dim <= 8) return solve_with<8, wide_t>(game, limits, moment);
-    if (dim <= 16) return solve_with<16, wide_t>(game, limits, moment);
-    if (dim <= 40) return solve_with<40, wide_t>(game, limits, moment);
+    if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget);
+    if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget);
+    if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget);
     throw std::invalid_argument("more than 39 clocks");
 }
 

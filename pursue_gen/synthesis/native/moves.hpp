@@ -63,7 +63,7 @@ struct Joint {
     std::vector<Bound> guard;
     std::vector<int> resets;
     std::vector<std::pair<int, int>> writes;  // index in the discrete state, value
-    std::vector<std::pair<int, int>> longer;  // edge id, number of the joint move that has this edge as well
+    std::vector<std::pair<int, int>> extensions;  // edge id, number of the joint move that has this edge as well
 
     Discrete target(Discrete d) const {
         for (const auto& [index, value] : writes) d[index] = value;
@@ -77,9 +77,9 @@ class Joints {
     explicit Joints(const Game& game) : game_(game), count_(static_cast<int>(game.automata.size())) {
         for (int a = 0; a < count_; ++a) {
             auto& own = senders_.emplace_back(game.automata[a].invariants.size());
-            auto& heard = receivers_.emplace_back(game.automata[a].invariants.size());
+            auto& receiving = receivers_.emplace_back(game.automata[a].invariants.size());
             for (const Edge& edge : game.automata[a].edges) {
-                if (edge.channel >= 0 && !edge.sends) heard[edge.source].push_back(&edge);
+                if (edge.channel >= 0 && !edge.sends) receiving[edge.source].push_back(&edge);
                 else own[edge.source].emplace_back(&edge, add(edge, a));
             }
         }
@@ -96,7 +96,7 @@ class Joints {
                 const std::size_t first = out.size();
                 out.push_back(joint);
                 for (int b = 0; sender->channel >= 0 && b < count_; ++b)
-                    if (b != a) listen(d, b, sender->channel, first, out);
+                    if (b != a) add_receivers(d, b, sender->channel, first, out);
             }
     }
 
@@ -117,23 +117,23 @@ class Joints {
     }
 
     // Every move from `first` on goes on with each enabled receiving edge of automaton b, if there is one.
-    void listen(const Discrete& d, int b, int channel, std::size_t first, std::vector<int>& out) {
+    void add_receivers(const Discrete& d, int b, int channel, std::size_t first, std::vector<int>& out) {
         const std::size_t last = out.size();
         for (std::size_t k = first; k < last; ++k)
             for (const Edge* edge : receivers_[b][d[b]])
-                if (edge->channel == channel && holds(game_, d, edge->clauses)) out.push_back(with(out[k], *edge, b));
+                if (edge->channel == channel && holds(game_, d, edge->clauses)) out.push_back(extended(out[k], *edge, b));
         const auto begin = out.begin() + static_cast<std::ptrdiff_t>(first);
         if (out.size() > last) out.erase(begin, begin + static_cast<std::ptrdiff_t>(last - first));
     }
 
-    int with(int k, const Edge& edge, int automaton) {
-        for (const auto& [id, number] : joints_[k].longer)
+    int extended(int k, const Edge& edge, int automaton) {
+        for (const auto& [id, number] : joints_[k].extensions)
             if (id == edge.id) return number;
         Joint joint = joints_[k];
-        joint.longer.clear();
+        joint.extensions.clear();
         extend(joint, edge, automaton);
         joints_.push_back(std::move(joint));
-        joints_[k].longer.emplace_back(edge.id, static_cast<int>(joints_.size()) - 1);
+        joints_[k].extensions.emplace_back(edge.id, static_cast<int>(joints_.size()) - 1);
         return static_cast<int>(joints_.size()) - 1;
     }
 

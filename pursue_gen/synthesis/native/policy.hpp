@@ -9,61 +9,61 @@ namespace pursue {
 
 class Policy {
   public:
-    explicit Policy(const Game& game) : game_(game), sure_(game), hopeful_(game, true) {
+    explicit Policy(const Game& game) : game_(game), pessimistic_(game), optimistic_(game, true) {
         for (int a = 0; a < static_cast<int>(game.automata.size()); ++a)
-            if (a != game.bad.automaton && game.automata[a].invariants.size() > 1 && only_listens(a)) {
-                orders_.push_back(a);
-                if (begun_by_controller(a)) errands_.push_back(a);
+            if (a != game.bad.automaton && game.automata[a].invariants.size() > 1 && only_receives(a)) {
+                event_orders_.push_back(a);
+                if (begun_by_controller(a)) controller_orders_.push_back(a);
             }
         const int count = static_cast<int>(game.automata.size());
-        touching_.resize(count + game.variables.size());
+        changed_by_.resize(count + game.variables.size());
         for (int a = 0; a < count; ++a)
             for (const Edge& e : game.automata[a].edges) {
                 if (e.controllable || (e.channel >= 0 && !e.sends)) continue;
-                if (e.source != e.target) touching_[a].push_back(e.id);
-                for (const auto& set : e.assign) touching_[count + set.variable].push_back(e.id);
+                if (e.source != e.target) changed_by_[a].push_back(e.id);
+                for (const auto& set : e.assign) changed_by_[count + set.variable].push_back(e.id);
             }
     }
 
     // Reach: the one controllable edge that a relaxed plan to the goal takes first, or none.
     std::vector<int> towards_goal(const Discrete& d) const {
-        std::vector<int> first = sure_.plan(d, game_.goal).first[true];
+        std::vector<int> first = pessimistic_.plan(d, game_.goal).first[true];
         if (first.size() > 1) first.resize(1);
         return first;
     }
 
-    // Safety: what to do about the first wish that the controller can do something about. First the duty, then to bring
-    // to their beginnings the orders of events (rules) that were begun, then to have another duty behind one some day.
-    std::vector<int> towards_rest(const Discrete& d) const {
+    // Safety: what to do for the first subgoal to which the controller can contribute. First the duty, then to bring to
+    // their beginnings the orders of events (rules) that were begun, then to have done another duty later.
+    std::vector<int> towards_subgoals(const Discrete& d) const {
         std::vector<int> first;
-        for (const Place& wish : wishes(d)) {
-            const auto plan = sure_.plan(d, wish);
+        for (const Place& subgoal : subgoals(d)) {
+            const auto plan = pessimistic_.plan(d, subgoal);
             append(first, plan.first[true]);
             if (plan.acts[true]) return first;
         }
-        append(first, hopeful_.plan(d, RelaxedPlanner::DUTY_DONE).first[true]);
+        append(first, optimistic_.plan(d, RelaxedPlanner::DUTY_DONE).first[true]);
         return first;
     }
 
-    // Safety: whether the controller follows a move at first, given what it wishes.
-    bool serves(const Discrete& d, const Joint& joint, const std::vector<int>& wished) const {
+    // Safety: whether the controller follows a move at first, given the edges that it prefers.
+    bool serves_subgoals(const Discrete& d, const Joint& joint, const std::vector<int>& preferred) const {
         if (ends(d, joint)) return true;
-        if (std::find(wished.begin(), wished.end(), joint.edges[0]) == wished.end()) return false;
-        // One errand at a time.
+        if (std::find(preferred.begin(), preferred.end(), joint.edges[0]) == preferred.end()) return false;
+        // One order of events at a time.
         const auto under_way = [&](int a) { return d[a] != game_.automata[a].home; };
         const Discrete target = joint.target(d);
         const auto begun = [&](int a) { return !under_way(a) && target[a] != d[a]; };
-        return std::none_of(errands_.begin(), errands_.end(), under_way) ||
-               std::none_of(errands_.begin(), errands_.end(), begun);
+        return std::none_of(controller_orders_.begin(), controller_orders_.end(), under_way) ||
+               std::none_of(controller_orders_.begin(), controller_orders_.end(), begun);
     }
 
-    // Safety: what the environment does at first: what brings it nearer to the controller's loss or to one more duty, and
-    // all that agents can do on whose state the controller's wishes build.
+    // Safety: what the environment does at first: what brings it nearer to the controller's loss or to one more duty,
+    // and all that agents can do on whose state the controller's plans for its subgoals build.
     std::vector<int> towards_loss(const Discrete& d) const {
-        std::vector<int> first = hopeful_.plan(d, game_.bad).first[false];
-        append(first, hopeful_.plan(d, RelaxedPlanner::DUTY_COME).first[false]);
-        for (const Place& wish : wishes(d))
-            for (int what : hopeful_.plan(d, wish).uses) append(first, touching_[what]);
+        std::vector<int> first = optimistic_.plan(d, game_.bad).first[false];
+        append(first, optimistic_.plan(d, RelaxedPlanner::DUTY_COME).first[false]);
+        for (const Place& subgoal : subgoals(d))
+            for (int what : optimistic_.plan(d, subgoal).uses) append(first, changed_by_[what]);
         return first;
     }
 
@@ -74,7 +74,7 @@ class Policy {
 
     // Whether states in which an automaton is at such a location come after others. In a reach game the controller's
     // agents do not count: they would be won for one after the other, and not be under way together.
-    bool comes_late(int a, int location) const {
+    bool is_deferred(int a, int location) const {
         if (a == game_.bad.automaton) return false;
         const auto& edges = game_.automata[a].edges;
         return std::none_of(edges.begin(), edges.end(), [&](const Edge& e) {
@@ -82,14 +82,14 @@ class Policy {
         });
     }
 
-    // What the controller of a safety game likes to do, best first.
-    std::vector<int> liked(const Discrete& d) const { return sure_.plan(d, duty_done()).first[true]; }
+    // What the controller of a safety game prefers to do, best first.
+    std::vector<int> preferred(const Discrete& d) const { return pessimistic_.plan(d, duty_done()).first[true]; }
 
   private:
-    std::vector<Place> wishes(const Discrete& d) const {
+    std::vector<Place> subgoals(const Discrete& d) const {
         std::vector<Place> out;
         if (!at(d, duty_done())) out.push_back(duty_done());
-        for (int a : orders_)
+        for (int a : event_orders_)
             if (d[a] != game_.automata[a].home) out.push_back({a, game_.automata[a].home});
         return out;
     }
@@ -98,7 +98,7 @@ class Policy {
 
     static void append(std::vector<int>& a, const std::vector<int>& b) { a.insert(a.end(), b.begin(), b.end()); }
 
-    bool only_listens(int a) const {
+    bool only_receives(int a) const {
         const auto& edges = game_.automata[a].edges;
         return std::none_of(edges.begin(), edges.end(), [](const Edge& e) { return e.channel < 0 || e.sends; });
     }
@@ -114,10 +114,10 @@ class Policy {
     }
 
     const Game& game_;
-    RelaxedPlanner sure_, hopeful_;
-    std::vector<int> orders_;   // automata that only listen, and count where one is in an order of events
-    std::vector<std::vector<int>> touching_;  // the environment's sender edges that change an automaton or a variable
-    std::vector<int> errands_;  // those that only the controller begins
+    RelaxedPlanner pessimistic_, optimistic_;
+    std::vector<int> event_orders_;             // automata that only receive: they follow an order of events
+    std::vector<int> controller_orders_;        // those of them that only the controller begins
+    std::vector<std::vector<int>> changed_by_;  // the environment's sender edges that change an automaton or a variable
 };
 
 }  // namespace pursue

@@ -8,22 +8,22 @@ namespace pursue {
 template <class Z>
 class Reach : public Fixpoint<Z> {
   public:
-    Reach(const Game& game, const Limits& limits) : Fixpoint<Z>(game, limits, Few::controllers) {}
+    Reach(const Game& game, const Limits& limits) : Fixpoint<Z>(game, limits, Restricted::controllable) {}
 
     // Whether the controller wins. With few moves first; after a loss, states that are not won get all of theirs.
     bool run() {
-        if (!this->start()) return false;
+        if (!this->enter_start()) return false;
         while (true) {
-            for (int k : this->explore()) this->wake(k);
-            if (this->settle()) return true;
+            for (int k : this->explore()) this->schedule(k);
+            if (this->iterate()) return true;
             const std::size_t count = nodes_.size();
             for (std::size_t k = 0; k < count; ++k)
                 if (nodes_[k].reached && !nodes_[k].rest.empty()) this->expand(static_cast<int>(k), true);
-            if (this->touched_.empty()) return false;
+            if (this->queue_.empty()) return false;
         }
     }
 
-    std::vector<Action<Z>> plan(int k) override { return nodes_[k].plan; }
+    std::vector<Piece<Z>> plan(int k) override { return nodes_[k].plan; }
 
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_;
@@ -39,17 +39,17 @@ class Reach : public Fixpoint<Z> {
     bool evaluate(Node<Z>& n) override {
         if (n.lost) return false;
         if (n.won) return this->decide_all(n);
-        const auto won = [&](const Step& step) {
-            const Node<Z>& target = nodes_[step.target];
+        const auto won = [&](const Transition& transition) {
+            const Node<Z>& target = nodes_[transition.target];
             return !target.done.empty() || !target.fresh.empty();
         };
-        if (n.rest.empty() || std::none_of(n.steps.begin(), n.steps.end(), won)) return false;
-        const Federation<Z> harmful = this->harm(n);
-        const auto usable = this->commands(n, harmful);
+        if (n.rest.empty() || std::none_of(n.transitions.begin(), n.transitions.end(), won)) return false;
+        const Federation<Z> unsafe = this->upre(n);
+        const auto usable = this->cpre(n, unsafe);
         // X need not be added: whoever can wait for X can wait for what made X winning.
-        Federation<Z> good = minus(forced(n), harmful);
+        Federation<Z> good = minus(forced(n), unsafe);
         for (const auto& [joint, zones] : usable) append(good, zones);
-        const Federation<Z> fresh = reduced(intersection(predt(good, harmful), n.rest));
+        const Federation<Z> fresh = reduced(intersection(predt(good, unsafe), n.rest));
         if (fresh.empty()) return false;
         Federation<Z> rest, cut;
         for (const Z& r : n.rest)
@@ -57,7 +57,7 @@ class Reach : public Fixpoint<Z> {
             else rest.push_back(r);
         for (const Z& z : cut) absorb(rest, z);
         n.rest = std::move(rest);
-        advise(n, fresh, usable, harmful);
+        record_commands(n, fresh, usable, unsafe);
         append(n.fresh, fresh);
         return true;
     }
@@ -73,11 +73,12 @@ class Reach : public Fixpoint<Z> {
         return out;
     }
 
-    // What to do at points that are won now.
-    void advise(Node<Z>& n, const Federation<Z>& fresh, const typename Fixpoint<Z>::Usable& usable, const Federation<Z>& harmful) {
+    // Adds what to do at points that are won now.
+    void record_commands(Node<Z>& n, const Federation<Z>& fresh, const typename Fixpoint<Z>::Usable& usable,
+                         const Federation<Z>& unsafe) {
         Federation<Z> rest = fresh;
         for (const auto& [joint, zones] : usable) {
-            const Federation<Z> now = minus(zones, harmful);
+            const Federation<Z> now = minus(zones, unsafe);
             for (const Z& z : disjoint(intersection(rest, now))) n.plan.push_back({z, joint, rank_});
             rest = minus(rest, now);
         }

@@ -1,7 +1,7 @@
-// Which controllable edge looks best: the first one of a relaxed plan (delete relaxation, as the FF planner has it).
+// Which controllable edge to try first: the first one of a relaxed plan (delete relaxation, Hoffmann and Nebel 2001).
 //
-// Facts are "automaton a is at location l" and "variable x has value v"; a step never takes a fact away. Uncontrollable
-// edges count only where an invariant will force them (ends of movements and actions): nobody may hope for the rest.
+// Facts are "automaton a is at location l" and "variable x has value v"; an operator never takes a fact away.
+// Uncontrollable edges count only where an invariant will force them (ends of movements and actions).
 #pragma once
 
 #include "game.hpp"
@@ -21,17 +21,17 @@ class RelaxedPlanner {
             for (const Edge& edge : game.automata[a].edges) {
                 if (edge.channel >= 0 && !edge.sends) continue;
                 if (!optimistic && !edge.controllable && game.automata[a].invariants[edge.source].empty()) continue;
-                add_step(a, edge, -1, nullptr);
+                add_operator(a, edge, -1, nullptr);
                 if (edge.channel < 0) continue;
                 for (int b = 0; b < static_cast<int>(game.automata.size()); ++b)
                     for (const Edge& other : game.automata[b].edges)
-                        if (b != a && other.channel == edge.channel && !other.sends) add_step(a, edge, b, &other);
+                        if (b != a && other.channel == edge.channel && !other.sends) add_operator(a, edge, b, &other);
             }
     }
 
     struct Plan {
         std::vector<int> first[2];  // sender edges that it takes first: uncontrollable ones, controllable ones
-        bool acts[2] = {false, false};  // whether there are such steps at all, now or later
+        bool acts[2] = {false, false};  // whether it takes such edges at all, now or later
         std::vector<int> uses;          // the automata and (behind them) variables on whose state it builds
     };
 
@@ -40,7 +40,7 @@ class RelaxedPlanner {
         const int goal = known(to.automaton, to.location);
         if (goal < 0) return {};
         std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1), missing(missing_), ready, fresh;
-        std::vector<bool> met(needs_.size(), false);
+        std::vector<bool> met(preconditions_.size(), false);
         for (std::size_t k = 0; k < d.size(); ++k) {
             const int fact = known(static_cast<int>(k), d[k]);
             if (fact < 0) continue;
@@ -53,15 +53,15 @@ class RelaxedPlanner {
                 for (int need : met_by_[fact]) {
                     if (met[need]) continue;
                     met[need] = true;
-                    if (--missing[needs_[need]] == 0) ready.push_back(needs_[need]);
+                    if (--missing[preconditions_[need]] == 0) ready.push_back(preconditions_[need]);
                 }
             std::sort(ready.begin(), ready.end());
             fresh.clear();
-            for (int step : ready)
-                for (int fact : steps_[step].effects)
+            for (int op : ready)
+                for (int fact : operators_[op].effects)
                     if (layer[fact] < 0) {
                         layer[fact] = depth + 1;
-                        achiever[fact] = step;
+                        achiever[fact] = op;
                         fresh.push_back(fact);
                     }
             if (fresh.empty()) return {};
@@ -70,10 +70,10 @@ class RelaxedPlanner {
     }
 
   private:
-    struct Step {
+    struct Operator {
         int edge;
         bool controllable;
-        std::vector<std::vector<int>> needs;  // of each at least one fact
+        std::vector<std::vector<int>> preconditions;  // of each at least one fact
         std::vector<int> effects;
     };
 
@@ -88,37 +88,37 @@ class RelaxedPlanner {
         return number;
     }
 
-    void add_part(Step& step, int automaton, const Edge& edge) {
+    void add_part(Operator& op, int automaton, const Edge& edge) {
         const int base = static_cast<int>(game_.automata.size());
-        step.needs.push_back({fact(automaton, edge.source)});
+        op.preconditions.push_back({fact(automaton, edge.source)});
         for (const auto& clause : edge.clauses) {
             std::vector<int> any;
             for (const auto& test : clause) any.push_back(fact(base + test.variable, test.value));
-            step.needs.push_back(any);
+            op.preconditions.push_back(any);
         }
-        step.effects.push_back(fact(automaton, edge.target));
+        op.effects.push_back(fact(automaton, edge.target));
         if (automaton == game_.bad.automaton && edge.source != edge.target) {
             const int rest = game_.automata[automaton].home;
-            if (edge.target == rest) step.effects.push_back(fact(DUTY_DONE.automaton, DUTY_DONE.location));
-            if (edge.source == rest) step.effects.push_back(fact(DUTY_COME.automaton, DUTY_COME.location));
+            if (edge.target == rest) op.effects.push_back(fact(DUTY_DONE.automaton, DUTY_DONE.location));
+            if (edge.source == rest) op.effects.push_back(fact(DUTY_COME.automaton, DUTY_COME.location));
         }
-        for (const auto& set : edge.assign) step.effects.push_back(fact(base + set.variable, set.value));
+        for (const auto& set : edge.assign) op.effects.push_back(fact(base + set.variable, set.value));
     }
 
-    void add_step(int a, const Edge& sender, int b, const Edge* receiver) {
-        Step step{sender.id, sender.controllable && (!receiver || receiver->controllable), {}, {}};
-        add_part(step, a, sender);
-        if (receiver) add_part(step, b, *receiver);
-        const int number = static_cast<int>(steps_.size());
-        for (const auto& any : step.needs) {
-            for (int fact : any) met_by_[fact].push_back(static_cast<int>(needs_.size()));
-            needs_.push_back(number);
+    void add_operator(int a, const Edge& sender, int b, const Edge* receiver) {
+        Operator op{sender.id, sender.controllable && (!receiver || receiver->controllable), {}, {}};
+        add_part(op, a, sender);
+        if (receiver) add_part(op, b, *receiver);
+        const int number = static_cast<int>(operators_.size());
+        for (const auto& any : op.preconditions) {
+            for (int fact : any) met_by_[fact].push_back(static_cast<int>(preconditions_.size()));
+            preconditions_.push_back(number);
         }
-        missing_.push_back(static_cast<int>(step.needs.size()));
-        steps_.push_back(std::move(step));
+        missing_.push_back(static_cast<int>(op.preconditions.size()));
+        operators_.push_back(std::move(op));
     }
 
-    // The number of a fact, -1: no step knows it.
+    // The number of a fact, -1: no operator has it.
     int known(int what, int value) const {
         if (what + FIRST >= static_cast<int>(values_.size())) return -1;
         for (const auto& [of, fact] : values_[what + FIRST])
@@ -137,18 +137,18 @@ class RelaxedPlanner {
             seen[fact] = true;
             if (facts_[fact] >= 0) plan.uses.push_back(facts_[fact]);
             if (layer[fact] == 0) continue;
-            const Step& step = steps_[achiever[fact]];
-            plan.acts[step.controllable] = true;
+            const Operator& op = operators_[achiever[fact]];
+            plan.acts[op.controllable] = true;
             bool now = true;
-            for (const auto& any : step.needs) {
+            for (const auto& any : op.preconditions) {
                 int best = -1;
                 for (int need : any)
                     if (layer[need] >= 0 && (best < 0 || layer[need] < layer[best])) best = need;
                 now = now && layer[best] == 0;
                 open.push_back(best);
             }
-            auto& first = plan.first[step.controllable];
-            if (now && std::find(first.begin(), first.end(), step.edge) == first.end()) first.push_back(step.edge);
+            auto& first = plan.first[op.controllable];
+            if (now && std::find(first.begin(), first.end(), op.edge) == first.end()) first.push_back(op.edge);
         }
         return plan;
     }
@@ -158,10 +158,10 @@ class RelaxedPlanner {
 
     std::vector<int> facts_;                                // per fact what it is about: an automaton, or a variable behind them
     std::vector<std::vector<std::pair<int, int>>> values_;  // per what, from FIRST on: values and their facts
-    std::vector<int> needs_;                                // per need the step that has it
-    std::vector<std::vector<int>> met_by_;                  // per fact the needs that it meets
-    std::vector<int> missing_;                              // per step how many needs it has
-    std::vector<Step> steps_;
+    std::vector<int> preconditions_;                        // per precondition the operator that has it
+    std::vector<std::vector<int>> met_by_;                  // per fact the preconditions that it meets
+    std::vector<int> missing_;                              // per operator how many preconditions it has
+    std::vector<Operator> operators_;
 };
 
 }  // namespace pursue

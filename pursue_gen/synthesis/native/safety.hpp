@@ -14,45 +14,48 @@ class Safety : public Fixpoint<Z> {
 
     enum class Verdict { open, won, lost };
 
-    // Goes on for a while. "Won" and "lost" are final. A search with few moves of the controller that loses says "open",
-    // as they may be too few, and is `finished`.
-    Verdict go_on(double work) {
-        if (this->nodes_.empty() && !begin()) return Verdict::lost;
-        if (this->settle(work)) return lost();
-        if (!this->settled()) return Verdict::open;
-        if (this->few_ == Few::controllers || this->all_) return Verdict::won;
+    // Goes on until the budget is used up. `won` and `lost` are final. A search with few moves of the controller that loses
+    // returns `open`, as they may be too few, and is `finished`.
+    Verdict resume(double budget) {
+        if (this->nodes_.empty() && !explore_from_start()) return Verdict::lost;
+        if (this->iterate(budget)) return lost();
+        if (!this->converged()) return Verdict::open;
+        if (this->restricted_ == Restricted::controllable || this->all_) return Verdict::won;
         open_all();
         return Verdict::open;
     }
 
-    // A look at the game that decides it if it is small.
-    Verdict glance(double work) {
+    // Tries the game as it is: decides it if it is small.
+    Verdict try_small(double budget) {
         constexpr double per_state = 24;
-        if (!this->start()) return Verdict::lost;
-        wake_all(this->explore(static_cast<std::size_t>(work / per_state)));
-        if (!this->touched_.empty()) return Verdict::open;
-        if (this->settle(work)) return Verdict::lost;
-        return this->settled() ? Verdict::won : Verdict::open;
+        if (!this->enter_start()) return Verdict::lost;
+        schedule_all(this->explore(static_cast<std::size_t>(budget / per_state)));
+        if (!this->queue_.empty()) return Verdict::open;
+        if (this->iterate(budget)) return Verdict::lost;
+        return this->converged() ? Verdict::won : Verdict::open;
     }
 
     bool finished() const { return finished_; }
 
-    // Safe points: where waiting for ever is safe, wait; else the command that a relaxed plan likes, else any safe one.
-    std::vector<Action<Z>> plan(int k) override {
+    // Safe points: where waiting for ever is safe, wait; else the command that a relaxed plan prefers, else any safe one.
+    std::vector<Piece<Z>> plan(int k) override {
         Node<Z>& n = nodes_[k];
-        std::vector<Action<Z>> out;
+        std::vector<Piece<Z>> out;
         if (n.lost || n.rest.empty()) return out;
-        const Federation<Z> harmful = this->harm(n);
-        auto usable = this->commands(n, harmful);
-        const std::vector<int> liked = this->policy_.liked(this->state(k));
-        const auto rank = [&](int joint) { return std::find(liked.begin(), liked.end(), this->joint(joint).edges[0]) - liked.begin(); };
-        std::stable_sort(usable.begin(), usable.end(), [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
-        Federation<Z> evil = harmful;
-        append(evil, obliged(n));
-        const Federation<Z> duty = pasts(evil);  // from here the controller has to act some time
-        Federation<Z> safe = n.rest, urgent = reduced(intersection(duty, safe));
+        const Federation<Z> unsafe = this->upre(n);
+        auto usable = this->cpre(n, unsafe);
+        const std::vector<int> preferred = this->policy_.preferred(this->state(k));
+        const auto place = [&](const auto& command) {
+            const int edge = this->joint(command.first).edges[0];
+            return std::find(preferred.begin(), preferred.end(), edge) - preferred.begin();
+        };
+        std::stable_sort(usable.begin(), usable.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+        Federation<Z> to_avoid = unsafe;
+        append(to_avoid, time_blocked(n));
+        const Federation<Z> must_act = pasts(to_avoid);  // from here the controller has to act some time
+        Federation<Z> safe = n.rest, urgent = reduced(intersection(must_act, safe));
         for (const auto& [joint, zones] : usable) {
-            const Federation<Z> here = disjoint(intersection(urgent, minus(zones, harmful)));
+            const Federation<Z> here = disjoint(intersection(urgent, minus(zones, unsafe)));
             for (const Z& z : here) out.push_back({z, joint, 0});
             urgent = minus(urgent, here);
             safe = minus(safe, here);
@@ -64,20 +67,20 @@ class Safety : public Fixpoint<Z> {
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_, Fixpoint<Z>::joints_;
 
-    bool begin() {
-        if (!this->start()) return false;
-        wake_all(this->explore());
+    bool explore_from_start() {
+        if (!this->enter_start()) return false;
+        schedule_all(this->explore());
         return true;
     }
 
-    // What leads to a loss is looked at after what it leads to.
-    void wake_all(const std::vector<int>& states) {
-        for (auto k = states.rbegin(); k != states.rend(); ++k) this->wake(*k);
+    // What leads to a loss is evaluated after what it leads to.
+    void schedule_all(const std::vector<int>& states) {
+        for (auto k = states.rbegin(); k != states.rend(); ++k) this->schedule(*k);
     }
 
     Verdict lost() {
         finished_ = true;
-        return this->few_ == Few::controllers ? Verdict::open : Verdict::lost;
+        return this->restricted_ == Restricted::controllable ? Verdict::open : Verdict::lost;
     }
 
     // What is lost against few moves of the environment is lost against all of them, so the fixpoint goes on.
@@ -85,13 +88,13 @@ class Safety : public Fixpoint<Z> {
         this->all_ = true;
         for (std::size_t k = 0, count = nodes_.size(); k < count; ++k)
             if (nodes_[k].reached) this->expand(static_cast<int>(k), true);
-        wake_all(this->explore());
+        schedule_all(this->explore());
     }
 
     bool finished_ = false;
 
     // Stuck before escapes are taken off: at the bound of an automaton that the environment cannot move.
-    Federation<Z> obliged(const Node<Z>& n) const {
+    Federation<Z> time_blocked(const Node<Z>& n) const {
         Federation<Z> out;
         int last = -1;
         for (const auto& [a, bound] : n.limits) {
@@ -121,14 +124,15 @@ class Safety : public Fixpoint<Z> {
     bool evaluate(Node<Z>& n) override {
         if (n.rest.empty()) return false;
         if (n.lost) return this->decide_all(n);
-        const Federation<Z> harmful = this->harm(n), bound = obliged(n);
-        if (harmful.empty() && bound.empty()) return false;
+        const Federation<Z> unsafe = this->upre(n), bound = time_blocked(n);
+        if (unsafe.empty() && bound.empty()) return false;
         Federation<Z> escapes;
-        for (const auto& [joint, zones] : this->commands(n, harmful)) append(escapes, zones);
-        Federation<Z> evil = minus(bound, escapes);
-        append(evil, harmful);
-        const Federation<Z> danger = pasts(evil), ways = predt(minus(escapes, evil), evil);
-        this->work_ += static_cast<double>(n.rest.size() + evil.size()) * static_cast<double>(danger.size() + ways.size());
+        for (const auto& [joint, zones] : this->cpre(n, unsafe)) append(escapes, zones);
+        Federation<Z> to_avoid = minus(bound, escapes);
+        append(to_avoid, unsafe);
+        const Federation<Z> danger = pasts(to_avoid), ways = predt(minus(escapes, to_avoid), to_avoid);
+        this->work_ += static_cast<double>(n.rest.size() + to_avoid.size()) *
+                       static_cast<double>(danger.size() + ways.size());
         Federation<Z> lost, rest, cut;
         for (const Z& r : n.rest) {
             Federation<Z> gone;
@@ -149,23 +153,23 @@ class Safety : public Fixpoint<Z> {
     }
 };
 
-// Small games, for which `moment` is enough work, are decided as they are. Otherwise two searches take turns, each with twice the work of its turn before: one
-// keeps the controller to few moves, so that what it wins is won; the other keeps the environment to few, so that what it
-// loses is lost, and plays the whole game when those are not enough.
+// Small games, for which `small_budget` is enough work, are decided as they are. Otherwise two searches take turns, each
+// with twice the work of its turn before: one keeps the controller to few moves, so that what it wins is won; the other
+// keeps the environment to few, so that what it loses is lost, and plays the whole game when those are not enough.
 template <class Z>
-std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, const Limits& limits, double moment) {
+std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, const Limits& limits, double small_budget) {
     using Verdict = typename Safety<Z>::Verdict;
-    auto glance = std::make_unique<Safety<Z>>(game, limits, Few::nobodys);
-    const Verdict seen = glance->glance(moment);
-    if (seen != Verdict::open) return {seen == Verdict::won, std::move(glance)};
-    glance.reset();
-    auto careful = std::make_unique<Safety<Z>>(game, limits, Few::controllers);
-    auto whole = std::make_unique<Safety<Z>>(game, limits, Few::environments);
-    for (double work = std::max(moment, 1.0);; work *= 2) {
-        if (careful && careful->go_on(work) == Verdict::won) return {true, std::move(careful)};
-        if (careful && careful->finished()) careful.reset();
-        const Verdict verdict = whole->go_on(work);
-        if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(whole)};
+    auto small = std::make_unique<Safety<Z>>(game, limits, Restricted::none);
+    const Verdict first = small->try_small(small_budget);
+    if (first != Verdict::open) return {first == Verdict::won, std::move(small)};
+    small.reset();
+    auto winning = std::make_unique<Safety<Z>>(game, limits, Restricted::controllable);
+    auto losing = std::make_unique<Safety<Z>>(game, limits, Restricted::uncontrollable);
+    for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
+        if (winning && winning->resume(budget) == Verdict::won) return {true, std::move(winning)};
+        if (winning && winning->finished()) winning.reset();
+        const Verdict verdict = losing->resume(budget);
+        if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(losing)};
     }
 }
 

@@ -1,4 +1,4 @@
-"""The readable solver: what the rules of the game say, as fixpoints over one federation per discrete state.
+"""The reference engine: the rules of the game as fixpoints over one federation per discrete state.
 
 With X the positions won so far, `cPre` and `uPre` the discrete predecessors by the controller's and by uncontrollable
 moves, and Predt the timed predecessor (a tie is lost):
@@ -9,7 +9,7 @@ moves, and Predt the timed predecessor (a tie is lost):
   where an automaton is at its bound, the environment cannot move it and the controller has no safe move.
 
 A command may take effect late by up to the reaction delay, so cPre holds the positions from which the move is right at
-every time of the delay and no uncontrollable move spoils it meanwhile.
+every time of the delay and no uncontrollable move out of X comes first.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Set, Tuple
 
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
-from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener, Watch
-from pursue_gen.synthesis.reference.arena import Arena, Move, Node
-from pursue_gen.synthesis.reference.directed import RelaxedPlanner
+from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listener
+from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
+from pursue_gen.synthesis.reference.zone_graph import Node, Transition, ZoneGraph
 from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
@@ -34,7 +34,7 @@ Piece = Tuple[Dbm, Action]
 
 @dataclass(frozen=True)
 class ReferenceEngine(Engine):
-    """The engine in Python, which says what the native one does in fewer words.
+    """The engine in Python, the readable twin of the native one.
 
     `directed` (reach only): at first one of the controller's moves in each discrete state, the first of a relaxed plan,
     or none; where that does not win, all of them. Without it all moves at once. The verdict is the same.
@@ -46,21 +46,21 @@ class ReferenceEngine(Engine):
     def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
         """Decide the game, see `Engine`. It keeps no ranks."""
         start = time.perf_counter()
-        watch = Watch(limits, progress)
+        monitor = LimitMonitor(limits, progress)
         try:
-            fixpoint = _Safety(game, watch) if game.kind is Kind.SAFETY else _Reach(game, watch, self.directed)
+            fixpoint = _Safety(game, monitor) if game.kind is Kind.SAFETY else _Reach(game, monitor, self.directed)
             won = fixpoint.solve()
             blocks = fixpoint.blocks() if won else ()
         except MemoryError:
-            raise watch.stopped("memory") from None
+            raise monitor.stopped("memory") from None
         return Outcome(won, blocks, None, fixpoint.counts(), time.perf_counter() - start)
 
 
 class _Fixpoint(ABC):
     """A federation per node that only grows, and a FIFO of the nodes to evaluate again."""
 
-    def __init__(self, arena: Arena) -> None:
-        self.arena = arena
+    def __init__(self, graph: ZoneGraph) -> None:
+        self.graph = graph
         self.evaluations = 0
         self.found: List[Federation] = []
         self.rest: List[Federation] = []
@@ -94,42 +94,42 @@ class _Fixpoint(ABC):
 
     def check(self) -> None:
         """Raises PursueError at a limit."""
-        self.arena.watch.check(len(self.arena.nodes), len(self._queue))
+        self.graph.monitor.check(len(self.graph.nodes), len(self._queue))
 
     def grow(self, number: int, new: Federation) -> None:
         """Add the new positions (disjoint from what was found), and look again at what leads to the node."""
         self.found[number] = self.found[number].union(new).reduced()
         self.rest[number] = self.rest[number].minus(new).reduced()
-        self.push(self.arena.nodes[number].sources | {number})
+        self.push(self.graph.nodes[number].sources | {number})
 
-    def usable(self, number: int, targets: List[Federation], spoilt: Federation) -> List[Tuple[Move, Federation]]:
-        """Of each of the controller's moves, from where it leads into the targets however late within the delay.
+    def cpre(self, number: int, targets: List[Federation], upre: Federation) -> List[Tuple[Transition, Federation]]:
+        """cPre by move of the controller: from where it leads into the targets, however late within the delay.
 
-        Not where an uncontrollable move may spoil it (`spoilt`) while the command is on its way.
+        Not where an uncontrollable move may come first (`upre`) while the command is on its way.
         """
-        delay, arena = self.arena.game.delta, self.arena
-        result: List[Tuple[Move, Federation]] = []
-        for move in arena.nodes[number].controllable:
+        delay, graph = self.graph.game.delta, self.graph
+        result: List[Tuple[Transition, Federation]] = []
+        for move in graph.nodes[number].controllable:
             if move.target >= 0 and targets[move.target]:
-                before = arena.pre(number, move, targets[move.target])
+                before = graph.pre(number, move, targets[move.target])
                 if delay:
-                    before = before.minus(spoilt).reduced().lasting(delay, arena.nodes[number].reach)
+                    before = before.minus(upre).reduced().lasting(delay, graph.nodes[number].reach)
                 if before:
                     result.append((move, before))
         return result
 
-    def spoilt(self, number: int, targets: List[Federation]) -> Federation:
-        """Where an uncontrollable move leads into the targets."""
+    def upre(self, number: int, targets: List[Federation]) -> Federation:
+        """uPre: from where an uncontrollable move leads into the targets."""
         result = Federation()
-        for move in self.arena.nodes[number].uncontrollable:
+        for move in self.graph.nodes[number].uncontrollable:
             if move.target >= 0 and targets[move.target]:
-                result = result.union(self.arena.pre(number, move, targets[move.target]))
+                result = result.union(self.graph.pre(number, move, targets[move.target]))
         return result.reduced()
 
     def counts(self) -> Counts:
         """What it took so far."""
         zones = sum(len(federation.zones) for federation in self.found)
-        return Counts(len(self.arena.nodes), zones, self.evaluations)
+        return Counts(len(self.graph.nodes), zones, self.evaluations)
 
 
 def _union(parts: Iterable[Federation]) -> Federation:
@@ -139,10 +139,10 @@ def _union(parts: Iterable[Federation]) -> Federation:
     return result
 
 
-def _assign(region: Federation, usable: Iterable[Tuple[Move, Federation]]) -> List[Piece]:
-    """Disjoint pieces of the region with the first move that is usable there; where none is: wait."""
+def _assign(region: Federation, cpre: Iterable[Tuple[Transition, Federation]]) -> List[Piece]:
+    """Disjoint pieces of the region with the first move whose predecessor holds there; where there is none: wait."""
     pieces: List[Piece] = []
-    for move, before in usable:
+    for move, before in cpre:
         part = region.intersect(before)
         if part:
             pieces += [(zone, move.joint.edges) for zone in part.disjoint()]
@@ -168,43 +168,43 @@ def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
 class _Reach(_Fixpoint):
     """`found` is what is won, `rest` what is reached and not won (yet)."""
 
-    def __init__(self, game: Game, watch: Watch, directed: bool) -> None:
-        super().__init__(Arena(game, watch, RelaxedPlanner(game).choose if directed else None))
+    def __init__(self, game: Game, monitor: LimitMonitor, directed: bool) -> None:
+        super().__init__(ZoneGraph(game, monitor, RelaxedPlanner(game).choose if directed else None))
         self._pieces: Dict[int, List[Piece]] = {}
         self._forced: Dict[int, Tuple[Dbm, Federation]] = {}
 
     def solve(self) -> bool:
         """The fixpoint; after each round without a win, nodes that are not won get all their moves."""
-        self._refresh(self.arena.explore())
+        self._refresh(self.graph.explore())
         self._run()
         while not self._won():
-            narrow = [k for k, node in enumerate(self.arena.nodes) if node.omitted and self.rest[k]]
+            narrow = [k for k, node in enumerate(self.graph.nodes) if node.omitted and self.rest[k]]
             if not narrow:
                 return False
             for number in narrow:
-                self.arena.widen(number)
-            self._refresh(self.arena.explore())
+                self.graph.widen(number)
+            self._refresh(self.graph.explore())
             self.push(narrow)
             self._run()
         return True
 
     def blocks(self) -> Tuple[RawBlock, ...]:
         """The pieces in the order in which they were won."""
-        return tuple(_block(self.arena.nodes[k].state, _tidied(pieces)) for k, pieces in sorted(self._pieces.items()))
+        return tuple(_block(self.graph.nodes[k].state, _tidied(pieces)) for k, pieces in sorted(self._pieces.items()))
 
     def _won(self) -> bool:
         """True if all of the start is won."""
-        return bool(self.found) and self.found[0].includes_zone(self.arena.start)
+        return bool(self.found) and self.found[0].includes_zone(self.graph.start)
 
     def _refresh(self, changed: Set[int]) -> None:
         """Take in new nodes, and those in which more is reached: what was won there stays won."""
-        nodes = self.arena.nodes
+        nodes = self.graph.nodes
         for _ in range(len(self.found), len(nodes)):
             self.found.append(Federation())
             self.rest.append(Federation())
         for number in sorted(changed):
             reach = Federation.of(nodes[number].reach)
-            if is_goal(self.arena.game, nodes[number].state):
+            if is_goal(self.graph.game, nodes[number].state):
                 self.found[number] = reach
             else:
                 self.rest[number] = reach.minus(self.found[number])
@@ -216,32 +216,32 @@ class _Reach(_Fixpoint):
     def _run(self) -> None:
         number = self.pop()
         while number is not None and not self._won():
-            if not is_bad(self.arena.game, self.arena.nodes[number].state):
+            if not is_bad(self.graph.game, self.graph.nodes[number].state):
                 self._evaluate(number)
             number = self.pop()
-        # Left early: what was taken out is looked at if the search goes on.
+        # Left early: what was taken out is evaluated if the search goes on.
         if number is not None:
             self.push([number])
 
     def _evaluate(self, number: int) -> None:
-        node = self.arena.nodes[number]
+        node = self.graph.nodes[number]
         moves = node.controllable + node.uncontrollable
         if not any(move.target >= 0 and self.found[move.target] for move in moves):
             return
-        spoilt = self.spoilt(number, self.rest)
-        usable = self.usable(number, self.found, spoilt)
-        targets = _union([self.found[number], self._forced_moves(number, node), *(before for _, before in usable)])
-        new = predt(targets, spoilt).intersect(self.rest[number]).reduced()
+        upre = self.upre(number, self.rest)
+        cpre = self.cpre(number, self.found, upre)
+        targets = _union([self.found[number], self._forced_moves(number, node), *(before for _, before in cpre)])
+        new = predt(targets, upre).intersect(self.rest[number]).reduced()
         if new:
-            self._pieces.setdefault(number, []).extend(_assign(new, usable))
+            self._pieces.setdefault(number, []).extend(_assign(new, cpre))
             self.grow(number, new)
 
     def _forced_moves(self, number: int, node: Node) -> Federation:
         """Where an automaton is at its bound and the environment, that can move it, has to."""
         known = self._forced.get(number)
         if known is None or known[0] is not node.reach:
-            owners = self.arena.limited(number)
-            forced = _union(self.arena.expiring(number, k).intersect(self.arena.own(number, k)) for k in owners)
+            owners = self.graph.limited(number)
+            forced = _union(self.graph.at_bound(number, k).intersect(self.graph.own_moves(number, k)) for k in owners)
             known = self._forced[number] = (node.reach, forced)
         return known[1]
 
@@ -249,27 +249,27 @@ class _Reach(_Fixpoint):
 class _Safety(_Fixpoint):
     """`found` is what is lost, `rest` what is reached and not lost (yet)."""
 
-    def __init__(self, game: Game, watch: Watch) -> None:
-        super().__init__(Arena(game, watch))
+    def __init__(self, game: Game, monitor: LimitMonitor) -> None:
+        super().__init__(ZoneGraph(game, monitor))
         self._unforced: List[Federation] = []
 
     def solve(self) -> bool:
         """The fixpoint, given up as soon as some of the start is lost."""
-        arena = self.arena
-        arena.explore()
-        for k, node in enumerate(arena.nodes):
+        graph = self.graph
+        graph.explore()
+        for k, node in enumerate(graph.nodes):
             self.check()
-            reach, bad = Federation.of(node.reach), is_bad(arena.game, node.state)
+            reach, bad = Federation.of(node.reach), is_bad(graph.game, node.state)
             self.found.append(reach if bad else Federation())
             self.rest.append(Federation() if bad else reach)
-            unforced = (arena.expiring(k, owner).minus(arena.own(k, owner)) for owner in arena.limited(k))
+            unforced = (graph.at_bound(k, owner).minus(graph.own_moves(k, owner)) for owner in graph.limited(k))
             self._unforced.append(_union(unforced))
         # What can be lost first is found from the end.
-        self.push(reversed(range(len(arena.nodes))))
+        self.push(reversed(range(len(graph.nodes))))
         number = self.pop()
         while number is not None and not self._lost():
-            danger, usable = self._look(number)
-            lost = danger.down().minus(predt(_union(before for _, before in usable), danger))
+            danger, cpre = self._dangers(number)
+            lost = danger.down().minus(predt(_union(before for _, before in cpre), danger))
             new = lost.intersect(self.rest[number]).reduced()
             if new:
                 self.grow(number, new)
@@ -277,25 +277,25 @@ class _Safety(_Fixpoint):
         return not self._lost()
 
     def _lost(self) -> bool:
-        return not self.rest or not self.rest[0].includes_zone(self.arena.start)
+        return not self.rest or not self.rest[0].includes_zone(self.graph.start)
 
-    def _look(self, number: int) -> Tuple[Federation, List[Tuple[Move, Federation]]]:
+    def _dangers(self, number: int) -> Tuple[Federation, List[Tuple[Transition, Federation]]]:
         """E, where something bad is at hand, and where each of the controller's moves is safe."""
-        spoilt = self.spoilt(number, self.found)
-        usable = self.usable(number, self.rest, spoilt)
-        stuck = self._unforced[number].minus(_union(before for _, before in usable))
-        return _union([self.found[number], spoilt, stuck]).reduced(), usable
+        upre = self.upre(number, self.found)
+        cpre = self.cpre(number, self.rest, upre)
+        stuck = self._unforced[number].minus(_union(before for _, before in cpre))
+        return _union([self.found[number], upre, stuck]).reduced(), cpre
 
     def blocks(self) -> Tuple[RawBlock, ...]:
         """Wait where that may go on for ever; else take a safe move where there is one; else wait for one."""
         blocks: List[RawBlock] = []
-        for number, node in enumerate(self.arena.nodes):
+        for number, node in enumerate(self.graph.nodes):
             self.check()
             safe = self.rest[number]
             if safe:
-                danger, usable = self._look(number)
+                danger, cpre = self._dangers(number)
                 # At a bound that only the controller can leave, waiting on is not possible.
                 threatened = safe.intersect(danger.union(self._unforced[number]).down())
                 pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
-                blocks.append(_block(node.state, [*pieces, *_assign(threatened, usable)]))
+                blocks.append(_block(node.state, [*pieces, *_assign(threatened, cpre)]))
         return tuple(blocks)

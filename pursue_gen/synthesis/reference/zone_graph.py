@@ -21,7 +21,7 @@ from pursue_gen.synthesis.game import (
     joint_moves,
     start_zone,
 )
-from pursue_gen.synthesis.limits import Watch
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.zones.dbm import Dbm, complement
 from pursue_gen.zones.federation import Federation
 
@@ -30,7 +30,7 @@ Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
 
 
 @dataclass
-class Move:
+class Transition:
     """A joint move and the node it leads to; -1: nothing that is reached so far can take it."""
 
     joint: JointMove
@@ -44,22 +44,22 @@ class Node:
     state: State
     within: Dbm
     reach: Dbm
-    controllable: List[Move] = field(default_factory=list)
-    uncontrollable: List[Move] = field(default_factory=list)
-    omitted: List[Move] = field(default_factory=list)
+    controllable: List[Transition] = field(default_factory=list)
+    uncontrollable: List[Transition] = field(default_factory=list)
+    omitted: List[Transition] = field(default_factory=list)
     sources: Set[int] = field(default_factory=set)
     expanded: bool = False
 
 
-class Arena:
-    """The part of the game that is looked at; it grows by `explore` and `widen`. Node 0 is where the game starts.
+class ZoneGraph:
+    """The part of the game that is explored; it grows by `explore` and `widen`. Node 0 is where the game starts.
 
     There is none where an invariant does not hold at the start.
     """
 
-    def __init__(self, game: Game, watch: Watch, choose: Optional[Chooser] = None) -> None:
+    def __init__(self, game: Game, monitor: LimitMonitor, choose: Optional[Chooser] = None) -> None:
         self.game = game
-        self.watch = watch
+        self.monitor = monitor
         self.nodes: List[Node] = []
         self._choose = choose
         self._index: Dict[State, int] = {}
@@ -74,7 +74,7 @@ class Arena:
         """Follow the moves until nothing new is reached; returns the nodes in which more is reached than before."""
         changed: Set[int] = set()
         while self._waiting:
-            self.watch.check(len(self.nodes), len(self._waiting))
+            self.monitor.check(len(self.nodes), len(self._waiting))
             number = self._waiting.popleft()
             self._queued.discard(number)
             changed.add(number)
@@ -91,11 +91,11 @@ class Arena:
         node.controllable += added
         self._follow(number, added)
 
-    def guard(self, number: int, move: Move) -> Optional[Dbm]:
+    def guard(self, number: int, move: Transition) -> Optional[Dbm]:
         """Where in the node the move's guard holds; None: nowhere."""
         return self.nodes[number].reach.constrained_all(move.joint.bounds)
 
-    def pre(self, number: int, move: Move, targets: Federation) -> Federation:
+    def pre(self, number: int, move: Transition, targets: Federation) -> Federation:
         """The positions of the node from which the move leads into the targets (zones of the move's target node)."""
         guard = self.guard(number, move) if targets else None
         if guard is None:
@@ -103,14 +103,14 @@ class Arena:
         before = (zone.before_reset(move.joint.resets) for zone in targets.zones)
         return Federation(tuple(zone for zone in before if zone is not None)).intersect_zone(guard)
 
-    def expiring(self, number: int, owner: int) -> Federation:
+    def at_bound(self, number: int, owner: int) -> Federation:
         """Where the owner's invariant is at its bound, so that time cannot pass."""
         node = self.nodes[number]
         bounds = self.game.automata[owner].invariants[node.state.locations[owner]]
         faces = (node.reach.constrained(0, clock, complement(bound - 1)) for clock, bound in bounds)
         return Federation(tuple(face for face in faces if face is not None))
 
-    def own(self, number: int, owner: int) -> Federation:
+    def own_moves(self, number: int, owner: int) -> Federation:
         """Where an uncontrollable move that the owner sends (or makes by itself) is enabled."""
         moves = [m for m in self.nodes[number].uncontrollable if m.joint.owner == owner and m.target >= 0]
         enabled = Federation()
@@ -127,14 +127,14 @@ class Arena:
         # At the goal and at what is to be avoided the game is decided.
         decided = is_goal(self.game, node.state) or is_bad(self.game, node.state)
         moves = [] if decided else list(joint_moves(self.game, node.state))
-        own = [joint for joint in moves if joint.controllable]
-        chosen = own if self._choose is None else self._choose(node.state, own)
-        node.controllable = [Move(joint) for joint in own if joint in chosen]
-        node.omitted = [Move(joint) for joint in own if joint not in chosen]
-        node.uncontrollable = [Move(joint) for joint in moves if not joint.controllable]
+        commands = [joint for joint in moves if joint.controllable]
+        chosen = commands if self._choose is None else self._choose(node.state, commands)
+        node.controllable = [Transition(joint) for joint in commands if joint in chosen]
+        node.omitted = [Transition(joint) for joint in commands if joint not in chosen]
+        node.uncontrollable = [Transition(joint) for joint in moves if not joint.controllable]
         node.expanded = True
 
-    def _follow(self, number: int, moves: Iterable[Move]) -> None:
+    def _follow(self, number: int, moves: Iterable[Transition]) -> None:
         for move in moves:
             guard = self.guard(number, move)
             if guard is not None:
@@ -152,10 +152,10 @@ class Arena:
             if within is None or entered is None:
                 return None
             number = len(self.nodes)
-            self.watch.admit(number, len(self._waiting))
+            self.monitor.admit(number, len(self._waiting))
             self._index[state] = number
             self.nodes.append(Node(state, within, self._closed(entered, within)))
-            self._wait(number)
+            self._enqueue(number)
             return number
         node = self.nodes[number]
         inside = zone.intersect(node.within)
@@ -163,10 +163,10 @@ class Arena:
             return None
         if not node.reach.includes(inside):
             node.reach = self._closed(node.reach.hull(inside), node.within)
-            self._wait(number)
+            self._enqueue(number)
         return number
 
-    def _wait(self, number: int) -> None:
+    def _enqueue(self, number: int) -> None:
         if number not in self._queued:
             self._queued.add(number)
             self._waiting.append(number)

@@ -1,4 +1,4 @@
-"""Which move to try first: the first step of a relaxed plan to the goal (delete relaxation, Hoffmann and Nebel 2001).
+"""Which move to try first: the first one of a relaxed plan to the goal (delete relaxation, Hoffmann and Nebel 2001).
 
 The relaxed problem: automata that are at a location stay there as well when they move on, variables keep their old
 values beside the new ones, clocks do not matter but for how long a guard makes one wait. Its plan is found fast and
@@ -14,9 +14,9 @@ from typing import Dict, FrozenSet, List, Sequence, Set, Tuple
 from pursue_gen.synthesis.game import NO_CHANNEL, Game, JointMove, State
 
 Fact = Tuple[str, int, int]
-"""("at", automaton, location), ("is", variable, value) or ("heard", channel, 0)."""
+"""("at", automaton, location), ("is", variable, value) or ("channel", channel, 0)."""
 
-Need = FrozenSet[Fact]
+Precondition = FrozenSet[Fact]
 """Any of these facts."""
 
 UNRELIABLE = 1 << 40
@@ -24,24 +24,24 @@ UNRELIABLE = 1 << 40
 
 
 @dataclass(frozen=True)
-class Step:
-    """An edge in the relaxed problem: it needs one fact of each of `needs` and gives the facts of `gives`."""
+class Operator:
+    """An edge in the relaxed problem: where one fact of each of `preconditions` holds, it adds those of `effects`."""
 
-    needs: Tuple[Need, ...]
-    gives: Tuple[Fact, ...]
+    preconditions: Tuple[Precondition, ...]
+    effects: Tuple[Fact, ...]
     cost: int
 
 
 class RelaxedPlanner:
-    """The relaxed problem of one game; made once, asked for every discrete state."""
+    """The relaxed problem of one game; made once, for all discrete states."""
 
     def __init__(self, game: Game) -> None:
         self._game = game
-        self._steps = [_step(game, k) for k in range(len(game.edges))]
+        self._operators = [_operator(game, k) for k in range(len(game.edges))]
         self._watchers: Dict[Fact, List[Tuple[int, int]]] = {}
-        for k, step in enumerate(self._steps):
-            for position, need in enumerate(step.needs):
-                for fact in need:
+        for k, operator in enumerate(self._operators):
+            for position, precondition in enumerate(operator.preconditions):
+                for fact in precondition:
                     self._watchers.setdefault(fact, []).append((k, position))
 
     def choose(self, state: State, moves: Sequence[JointMove]) -> Sequence[JointMove]:
@@ -63,16 +63,16 @@ class RelaxedPlanner:
         plan: Set[int] = set()
         wanted: List[Fact] = [("at", *goal)]
         while wanted:
-            step = achiever.get(wanted.pop(), -1)
-            if step >= 0 and step not in plan:
-                plan.add(step)
-                wanted += support[step]
+            operator = achiever.get(wanted.pop(), -1)
+            if operator >= 0 and operator not in plan:
+                plan.add(operator)
+                wanted += support[operator]
         return plan
 
     def _achievers(self, state: State, goal: Fact) -> Tuple[Dict[Fact, int], Dict[int, List[Fact]]]:
-        """For each fact the edge that gives it soonest (-1: it holds), for each edge the facts that made it possible.
+        """The cheapest edge to each fact (-1: it holds), and the facts that made each edge possible.
 
-        Dijkstra's algorithm over facts; an edge is possible once the last of its needs is met. Stops at the goal.
+        Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold. Stops at the goal.
         """
         now: List[Fact] = [("at", k, location) for k, location in enumerate(state.locations)]
         now += [("is", k, value) for k, value in enumerate(state.values)]
@@ -86,29 +86,29 @@ class RelaxedPlanner:
                 continue
             achiever[fact] = by
             for k, position in self._watchers.get(fact, ()):
-                needs = met.setdefault(k, {})
-                if position in needs:
+                preconditions = met.setdefault(k, {})
+                if position in preconditions:
                     continue
-                needs[position] = fact
-                step = self._steps[k]
-                if len(needs) == len(step.needs):
-                    for given in step.gives:
-                        heapq.heappush(queue, (cost + step.cost, k, given))
-        return achiever, {k: list(needs.values()) for k, needs in met.items()}
+                preconditions[position] = fact
+                operator = self._operators[k]
+                if len(preconditions) == len(operator.preconditions):
+                    for given in operator.effects:
+                        heapq.heappush(queue, (cost + operator.cost, k, given))
+        return achiever, {k: list(preconditions.values()) for k, preconditions in met.items()}
 
 
-def _step(game: Game, number: int) -> Step:
+def _operator(game: Game, number: int) -> Operator:
     edge = game.edges[number]
-    needs: List[Need] = [frozenset({("at", edge.automaton, edge.source)})]
-    needs += [frozenset(("is", variable, value) for variable, value in clause) for clause in edge.clauses]
-    gives: List[Fact] = [("at", edge.automaton, edge.target)]
-    gives += [("is", variable, value) for variable, value in edge.assignments]
+    preconditions: List[Precondition] = [frozenset({("at", edge.automaton, edge.source)})]
+    preconditions += [frozenset(("is", variable, value) for variable, value in clause) for clause in edge.clauses]
+    effects: List[Fact] = [("at", edge.automaton, edge.target)]
+    effects += [("is", variable, value) for variable, value in edge.assignments]
     cost = edge.duration + 1
     if not edge.sends:
-        needs.append(frozenset({("heard", edge.channel, 0)}))
+        preconditions.append(frozenset({("channel", edge.channel, 0)}))
         cost = 0
     elif edge.channel != NO_CHANNEL:
-        gives.append(("heard", edge.channel, 0))
+        effects.append(("channel", edge.channel, 0))
     if edge.sends and not edge.controllable and not game.automata[edge.automaton].invariants[edge.source]:
         cost += UNRELIABLE
-    return Step(tuple(needs), tuple(gives), cost)
+    return Operator(tuple(preconditions), tuple(effects), cost)

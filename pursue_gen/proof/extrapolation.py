@@ -1,7 +1,8 @@
-"""What the rest of a play can still see of each clock, so that the checker may forget the rest.
+"""The largest constants that the rest of a play compares each clock with, by which the checker extrapolates zones.
 
 Per discrete state the largest constant that a clock is compared with before its next reset (Behrmann, Bouyer, Fleury
-and Larsen, TACAS 2003, with the strategy's zones as further guards). Forgetting only adds points: it hides no failure.
+and Larsen, TACAS 2003, with the strategy's zones as further guards). Extrapolation only adds points, so it hides no
+failure.
 """
 
 from __future__ import annotations
@@ -12,16 +13,14 @@ from typing import Callable, Deque, Dict, Iterable, List, Sequence, Set, Tuple
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.zones.dbm import Dbm
 
-Seen = Tuple[int, ...]
-"""For each clock (and 0 for the constant) the largest scaled constant; UNSEEN: none at all."""
-
-UNSEEN = -1
+NEVER = -1
+"""The largest constant of a clock that is not compared before its next reset."""
 
 Described = Tuple[Sequence[JointMove], Iterable[Tuple[int, int]]]
 """The joint moves that may happen in a state, and the (clock, constant) pairs that the strategy compares there."""
 
 
-class Horizon:
+class MaxConstants:
     """The largest constants of every discrete state that the moves lead to from the initial one.
 
     `late` is how long after its decision a command may take effect, in scaled time units.
@@ -29,36 +28,36 @@ class Horizon:
 
     def __init__(self, arena: Arena, described: Callable[[State], Described], late: int) -> None:
         self._arena, self._late = arena, late
-        self._seen: Dict[State, List[int]] = {}
+        self._largest: Dict[State, List[int]] = {}
         self._before: Dict[State, Set[Tuple[State, Tuple[int, ...]]]] = {}
         self._explore(described)
         self._spread()
 
-    def forget(self, zone: Dbm, state: State) -> Dbm:
+    def extrapolate(self, zone: Dbm, state: State) -> Dbm:
         """The zone and all points that the rest of the play cannot tell from it, within the state's invariant."""
-        seen = self._seen[state]
-        unseen = [x for x in range(1, zone.dim) if seen[x] == UNSEEN]
+        largest = self._largest[state]
+        never = [x for x in range(1, zone.dim) if largest[x] == NEVER]
         larger = zone
-        if unseen:
-            freed = zone.reset(unseen).before_reset(unseen)
+        if never:
+            freed = zone.reset(never).before_reset(never)
             larger = zone if freed is None else freed
-        larger = larger.extrapolated([0] + [max(0, c) for c in seen[1:]])
+        larger = larger.extrapolated([0] + [max(0, c) for c in largest[1:]])
         invariant = self._arena.situation(state).invariant
         within = None if invariant is None else larger.intersect(invariant)
         return zone if within is None else within
 
     def _explore(self, described: Callable[[State], Described]) -> None:
         pending: Deque[State] = deque([self._arena.initial])
-        self._seen[self._arena.initial] = [UNSEEN] * self._arena.dim
+        self._largest[self._arena.initial] = [NEVER] * self._arena.dim
         while pending:
             state = pending.popleft()
-            here = self._seen[state]
+            here = self._largest[state]
             moves, compared = described(state)
             for x, c in [*compared, *self._guards(state, moves)]:
                 here[x] = max(here[x], c + self._late)
             for move in moves:
-                if move.target not in self._seen:
-                    self._seen[move.target] = [UNSEEN] * self._arena.dim
+                if move.target not in self._largest:
+                    self._largest[move.target] = [NEVER] * self._arena.dim
                     pending.append(move.target)
                 self._before.setdefault(move.target, set()).add((state, move.resets))
 
@@ -70,15 +69,15 @@ class Horizon:
                 yield self._arena.clock[clock_bound.clock], clock_bound.bound * self._arena.scale
 
     def _spread(self) -> None:
-        """What is seen in a state is seen before it, but for clocks that the step into it resets."""
-        pending = deque(self._seen)
+        """What a clock is compared with in a state counts before it, but for clocks that the step into it resets."""
+        pending = deque(self._largest)
         queued = set(pending)
         while pending:
             state = pending.popleft()
             queued.discard(state)
-            here = self._seen[state]
+            here = self._largest[state]
             for earlier, resets in self._before.get(state, ()):
-                there, changed = self._seen[earlier], False
+                there, changed = self._largest[earlier], False
                 for x in range(1, self._arena.dim):
                     if here[x] > there[x] and x not in resets:
                         there[x], changed = here[x], True

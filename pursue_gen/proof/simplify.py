@@ -1,4 +1,4 @@
-"""A strategy in fewer zones and bounds that is played just the same.
+"""Simplify a strategy: fewer zones and bounds, the same plays.
 
 In each discrete state zones with one action become one where their hull meets no other action, and bounds go that only
 keep out points of which the strategy says nothing. The points with an action keep it, so zones never shrink, and the
@@ -15,13 +15,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import gcd
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
 from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
+from pursue_gen.zones.scale import common_denominator
 
 Bound = Tuple[int, int, int]
 
@@ -94,9 +94,8 @@ class _Units:
     def __init__(self, network: Network, strategy: Strategy, reaction: Fraction) -> None:
         self.names = (None, *network.clocks)
         self._index = {name: k for k, name in enumerate(self.names)}
-        self.scale = reaction.denominator
-        for bound in {c.bound.denominator for block in strategy.blocks for zone in _zones(block) for c in zone}:
-            self.scale = self.scale * bound // gcd(self.scale, bound)
+        bounds = (c.bound for block in strategy.blocks for zone in _zones(block) for c in zone)
+        self.scale = common_denominator([reaction, *bounds])
         self.late = int(reaction * self.scale)
         self._invariants = {
             (automaton.name, location.name): tuple(
@@ -128,7 +127,7 @@ class _Units:
         return bound.numerator * (self.scale // bound.denominator)
 
 
-def smaller(
+def simplified(
     network: Network, strategy: Strategy, reaction: Fraction, ranks: Optional[Mapping[ZoneKey, int]] = None
 ) -> Strategy:
     """The strategy, proven for the network and the reaction, in fewer zones and bounds.
@@ -136,11 +135,11 @@ def smaller(
     `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank.
     """
     units = _Units(network, strategy, reaction)
-    blocks = (_smaller_block(units, b, block, ranks or {}) for b, block in enumerate(strategy.blocks))
+    blocks = (_simplified_block(units, b, block, ranks or {}) for b, block in enumerate(strategy.blocks))
     return replace(strategy, blocks=tuple(blocks))
 
 
-def _smaller_block(units: _Units, b: int, block: Block, ranks: Mapping[ZoneKey, int]) -> Block:
+def _simplified_block(units: _Units, b: int, block: Block, ranks: Mapping[ZoneKey, int]) -> Block:
     """The block, number b of the strategy, in fewer zones."""
     invariant = units.invariant(block)
     if invariant is None:

@@ -1,4 +1,4 @@
-// The arena of a game: discrete states with one hull of zones each, the moves that are followed, symbolic steps.
+// The zone graph of a game: discrete states with one hull of zones each, the moves that are followed, symbolic steps.
 #pragma once
 
 #include <limits>
@@ -10,56 +10,56 @@
 namespace pursue {
 
 template <class Z>
-struct Action {
+struct Piece {
     Z zone;
     int joint;  // -1: wait
     int rank;   // reach: every step from here leads to lower ranks
 };
 
-struct Step {
+struct Transition {
     int joint, target;
 };
 
-// Whose moves a search keeps to a few at first; it opens the rest later.
-enum class Few { controllers, environments, nobodys };
+// Of whose moves a search follows only a few at first; it opens the rest later.
+enum class Restricted { controllable, uncontrollable, none };
 
 template <class Z>
 struct Node {
     Z hull{};
     bool won = false, lost = false;           // by its locations alone
-    bool reached = false, full = false, touched = false, waiting = false;
-    int travellers = 0;                       // automata that stop time here until the environment moves them
+    bool reached = false, full = false, queued = false, scheduled = false;
+    int deferred = 0;                         // automata that stop time here until the environment moves them
     std::vector<wide_t> max;                  // the largest constants that matter here
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
-    std::vector<Step> steps;                  // the moves that are followed
-    std::vector<Step> others;                 // uncontrollable moves that are not, but oblige the environment at a bound
+    std::vector<Transition> transitions;      // the moves that are followed
+    std::vector<Transition> unfollowed;       // uncontrollable moves that are not, but oblige the environment at a bound
     std::vector<int> parents;
     Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
-    Federation<Z> done, fresh;                // the others: gathered, and not gathered yet
-    std::vector<Action<Z>> plan;              // reach: in the order in which the points were won
+    Federation<Z> done, fresh;                // the other points: gathered, and not gathered yet
+    std::vector<Piece<Z>> plan;              // reach: in the order in which the points were won
 };
 
 template <class Z>
-class Arena {
+class ZoneGraph {
   public:
     using R = typename Z::raw_t;
 
-    Arena(const Game& game, const Limits& limits, Few few)
-        : game_(game), few_(few), watch_(limits), policy_(game), horizon_(game), joints_(game),
+    ZoneGraph(const Game& game, const Limits& limits, Restricted restricted)
+        : game_(game), restricted_(restricted), monitor_(limits), policy_(game), max_constants_(game), joints_(game),
           states_(game.automata.size() + game.variables.size()) {}
 
     const std::deque<Node<Z>>& nodes() const { return nodes_; }
     Discrete state(int k) const { return states_[k]; }
     const Joint& joint(int k) const { return joints_[k]; }
-    double seconds() const { return watch_.spent(); }
+    double seconds() const { return monitor_.spent(); }
     std::size_t symbolic_states() const { return symbolic_states_; }  // zones whose successors were computed
-    void look() { watch_.look(nodes_.size(), touched_.size()); }
+    void check_limits() { monitor_.check(nodes_.size(), queue_.size()); }
 
   protected:
     // --- discrete states -------------------------------------------------------------------------------------------
 
-    // The clocks at the start.
-    Z beginning() const {
+    // The clocks at the start. Throws where there are none.
+    Z start_zone() const {
         if (game_.start.empty()) return origin<Z>(game_.clocks);
         Z z = universe<Z>();
         for (const Bound& b : game_.start)
@@ -68,17 +68,17 @@ class Arena {
     }
 
     // Enters the initial state; false: its invariants do not hold for all clocks at the start.
-    bool start() {
+    bool enter_start() {
         Discrete d;
         for (const auto& a : game_.automata) d.push_back(a.initial);
         d.insert(d.end(), game_.variables.begin(), game_.variables.end());
         Node<Z>& n = nodes_[node(d)];
-        const Z start = n.hull = beginning();
+        const Z start = n.hull = start_zone();
         n.reached = invariant(n, n.hull) && includes(n.hull, start);
         if (!n.reached) return false;
         elapse(n, n.hull);
         n.rest = {n.hull};
-        touch(0);
+        enqueue(0);
         expand(0, false);
         return true;
     }
@@ -86,15 +86,15 @@ class Arena {
     int node(const Discrete& d) {
         const int k = states_.number(d);
         if (k < static_cast<int>(nodes_.size())) return k;
-        watch_.admit(nodes_.size(), touched_.size());
+        monitor_.admit(nodes_.size(), queue_.size());
         Node<Z>& n = nodes_.emplace_back();
         n.won = game_.kind != Kind::safety && at(d, game_.goal);
         n.lost = !n.won && at(d, game_.bad);
-        n.max = horizon_.at(d, Z::size);
+        n.max = max_constants_.at(d, Z::size);
         for (std::size_t a = 0; a < game_.automata.size(); ++a) {
             const auto& bounds = game_.automata[a].invariants[d[a]];
             for (const Bound& b : bounds) n.limits.emplace_back(static_cast<int>(a), b);
-            n.travellers += !bounds.empty() && policy_.comes_late(static_cast<int>(a), d[a]);
+            n.deferred += !bounds.empty() && policy_.is_deferred(static_cast<int>(a), d[a]);
         }
         return k;
     }
@@ -110,73 +110,75 @@ class Arena {
     static void elapse(const Node<Z>& n, Z& z) {
         up(z);
         invariant(n, z);
-        forget(n, z);
+        extrapolate_within(n, z);
     }
 
-    static void forget(const Node<Z>& n, Z& z) {
+    static void extrapolate_within(const Node<Z>& n, Z& z) {
         extrapolate(z, n.max);
         invariant(n, z);
     }
 
-    // Follows the moves of a state that the policy likes, or all.
+    // Follows the moves of a state that the policy prefers, or all.
     void expand(int k, bool full) {
         if (nodes_[k].full || nodes_[k].won || nodes_[k].lost) return;
         nodes_[k].full = full;
-        nodes_[k].others.clear();
+        nodes_[k].unfollowed.clear();
         const Discrete d = states_[k];
         joints_.enabled(d, enabled_);
-        const std::vector<int> wished = full ? std::vector<int>{} : wishes(d);
+        const std::vector<int> preferred = full ? std::vector<int>{} : preferred_edges(d);
         bool chosen = false;
         for (const int j : enabled_) {
             const Joint& joint = joints_[j];
-            if (full || follows(d, joint, wished, chosen)) follow(k, j, node(joint.target(d)));
-            else if (!joint.controllable) nodes_[k].others.push_back({j, node(joint.target(d))});
+            if (full || follows(d, joint, preferred, chosen)) follow(k, j, node(joint.target(d)));
+            else if (!joint.controllable) nodes_[k].unfollowed.push_back({j, node(joint.target(d))});
         }
-        touch(k);
+        enqueue(k);
     }
 
-    std::vector<int> wishes(const Discrete& d) const {
-        if (few_ == Few::nobodys) return {};
+    std::vector<int> preferred_edges(const Discrete& d) const {
+        if (restricted_ == Restricted::none) return {};
         if (game_.kind != Kind::safety) return policy_.towards_goal(d);
-        return few_ == Few::controllers ? policy_.towards_rest(d) : policy_.towards_loss(d);
+        return restricted_ == Restricted::controllable ? policy_.towards_subgoals(d) : policy_.towards_loss(d);
     }
 
-    // Reach: one controllable move; safety: those that serve the side's wishes.
-    bool follows(const Discrete& d, const Joint& joint, const std::vector<int>& wished, bool& chosen) const {
-        if (few_ == Few::nobodys || joint.controllable != (few_ == Few::controllers)) return true;
-        if (game_.kind == Kind::safety && few_ == Few::controllers) return policy_.serves(d, joint, wished);
-        const bool liked = std::find(wished.begin(), wished.end(), joint.edges[0]) != wished.end();
-        if (few_ == Few::environments) return liked || policy_.ends(d, joint);
-        const bool first = liked && !chosen;
+    // Reach: one controllable move; safety: those that the restricted side prefers.
+    bool follows(const Discrete& d, const Joint& joint, const std::vector<int>& preferred, bool& chosen) const {
+        const bool few_own = restricted_ == Restricted::controllable;
+        if (restricted_ == Restricted::none || joint.controllable != few_own) return true;
+        if (game_.kind == Kind::safety && few_own) return policy_.serves_subgoals(d, joint, preferred);
+        const bool is_preferred = std::find(preferred.begin(), preferred.end(), joint.edges[0]) != preferred.end();
+        if (!few_own) return is_preferred || policy_.ends(d, joint);
+        const bool first = is_preferred && !chosen;
         chosen = chosen || first;
         return first;
     }
 
     void follow(int k, int joint, int target) {
-        for (const Step& step : nodes_[k].steps)
-            if (step.joint == joint) return;
-        nodes_[k].steps.push_back({joint, target});
+        for (const Transition& transition : nodes_[k].transitions)
+            if (transition.joint == joint) return;
+        nodes_[k].transitions.push_back({joint, target});
         if (nodes_[target].parents.empty() || nodes_[target].parents.back() != k) nodes_[target].parents.push_back(k);
     }
 
-    void touch(int k) {
-        if (nodes_[k].touched) return;
-        nodes_[k].touched = true;
-        touched_.push_back(k);
+    void enqueue(int k) {
+        if (nodes_[k].queued) return;
+        nodes_[k].queued = true;
+        queue_.push_back(k);
     }
 
     // Grows the hulls until every followed move of every reached point leads into a hull, or there are `most` symbolic
     // states. Returns the states that changed.
     std::vector<int> explore(std::size_t most = std::numeric_limits<std::size_t>::max()) {
         std::vector<int> changed;
-        while (!touched_.empty() && symbolic_states_ < most) {
-            watch_.look(nodes_.size(), touched_.size());
-            const int k = touched_.front();
-            touched_.pop_front();
-            nodes_[k].touched = false;
+        while (!queue_.empty() && symbolic_states_ < most) {
+            monitor_.check(nodes_.size(), queue_.size());
+            const int k = queue_.front();
+            queue_.pop_front();
+            nodes_[k].queued = false;
             changed.push_back(k);
             ++symbolic_states_;
-            for (std::size_t s = 0; s < nodes_[k].steps.size(); ++s) arrive(nodes_[k].hull, nodes_[k].steps[s]);
+            for (std::size_t t = 0; t < nodes_[k].transitions.size(); ++t)
+                propagate(nodes_[k].hull, nodes_[k].transitions[t]);
         }
         std::sort(changed.begin(), changed.end());
         changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
@@ -184,9 +186,9 @@ class Arena {
         return changed;
     }
 
-    void arrive(Z z, const Step& step) {
-        const Joint& joint = joints_[step.joint];
-        Node<Z>& target = nodes_[step.target];
+    void propagate(Z z, const Transition& transition) {
+        const Joint& joint = joints_[transition.joint];
+        Node<Z>& target = nodes_[transition.target];
         if (!guard(joint, z)) return;
         for (int x : joint.resets) reset(z, x);
         if (!invariant(target, z)) return;
@@ -194,20 +196,20 @@ class Arena {
         if (target.reached) {
             if (includes(target.hull, z)) return;
             z = hull(target.hull, z);
-            forget(target, z);
+            extrapolate_within(target, z);
         }
         const bool fresh = !target.reached;
         gathered(target);  // while the rest still is what this hull leaves
         target.hull = z;
         target.reached = true;
-        touch(step.target);
-        if (fresh) expand(step.target, all_);
+        enqueue(transition.target);
+        if (fresh) expand(transition.target, all_);
     }
 
     // --- sets -------------------------------------------------------------------------------------------------------
 
-    // The points of a state that are decided, in few zones: gathered when somebody asks, which is seldom. Requires that
-    // they and the rest make up the hull.
+    // The points of a state that are decided, in few zones: gathered on demand, which is seldom. Requires that they and
+    // the rest make up the hull.
     static const Federation<Z>& gathered(Node<Z>& n) {
         if (n.fresh.empty()) return n.done;
         // A set in many zones is often the complement of a complement in fewer.
@@ -259,26 +261,26 @@ class Arena {
     // The points where automaton a can make an uncontrollable move of its own, followed or not.
     Federation<Z> own_moves(const Node<Z>& n, int a) const {
         Federation<Z> out;
-        for (const std::vector<Step>* steps : {&n.steps, &n.others})
-            for (const Step& step : *steps) {
-                const Joint& joint = joints_[step.joint];
+        for (const std::vector<Transition>* transitions : {&n.transitions, &n.unfollowed})
+            for (const Transition& transition : *transitions) {
+                const Joint& joint = joints_[transition.joint];
                 if (joint.owner != a || joint.controllable) continue;
                 Z anywhere = universe<Z>();
-                if (invariant(nodes_[step.target], anywhere)) before(n, joint, {anywhere}, out);
+                if (invariant(nodes_[transition.target], anywhere)) before(n, joint, {anywhere}, out);
             }
         return out;
     }
 
     const Game& game_;
-    const Few few_;
+    const Restricted restricted_;
     bool all_ = false;  // new states get all their moves at once
-    Watch watch_;
+    LimitMonitor monitor_;
     Policy policy_;
-    Horizon horizon_;
+    MaxConstants max_constants_;
     Joints joints_;
     States states_;
     std::deque<Node<Z>> nodes_;
-    std::deque<int> touched_;  // hulls that grew, moves that came
+    std::deque<int> queue_;  // hulls that grew, moves that came
 
   private:
     std::vector<int> enabled_;
