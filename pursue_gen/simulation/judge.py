@@ -12,12 +12,11 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, commands_in
+from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
 from pursue_runtime.state import SystemState
-
-BUSY = ("going_", "doing_")
 
 
 class Step(NamedTuple):
@@ -155,7 +154,7 @@ class Judge:
             self._problem(f"wrong order: {what}, as of state {seq}, though state {newest} is known")
         elif last is None or (last.target, True) != (target, last.commanded):
             self._problem(f"wrong order: {what}, which is not what was last commanded")
-        elif target.startswith(BUSY):
+        elif is_under_way(target):
             here = self._before.locations.get(agent) if self._before is not None else None
             if here != target and not again:
                 self._problem(f"wrong order: {what}, which is over already")

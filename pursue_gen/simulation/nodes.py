@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
 from pursue_gen.simulation.clockwork import Alarm, Clockwork
 from pursue_gen.simulation.stage import Stage
+from pursue_gen.tga.names import is_doing, is_going
 from pursue_runtime.controller.player import Order, Player
 from pursue_runtime.observer.journal import replay
 from pursue_runtime.observer.mission import Mission
@@ -207,6 +208,6 @@ class PeopleNode:
 
 def _is_for_robots(order: Order) -> bool:
     """What the exeggutor sends: goals and actions, not ends."""
-    if order.target.startswith("going_"):
+    if is_going(order.target):
         return order.target != order.origin
-    return order.target == order.origin or order.target.startswith("doing_")
+    return order.target == order.origin or is_doing(order.target)

@@ -12,6 +12,7 @@ from pursue_gen.simulation.clockwork import Alarm, Clockwork
 from pursue_gen.simulation.faults import Breakdown, Trouble
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.wires import share
+from pursue_gen.tga.names import is_under_way
 from pursue_runtime.simulator.simulator import Simulator, Window, spoken, window_at
 from pursue_runtime.state import SystemState
 
@@ -56,7 +57,7 @@ class Mover:
         place = state.locations.get(self.agent, "")
         if place != self._place:
             self._place = place
-            if place.startswith(("going_", "doing_")):
+            if is_under_way(place):
                 self._activities += 1
                 self._stamp = state.stamp
                 self._may_break()
