@@ -1,3 +1,33 @@
 """PuRSUE-gen: from a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot."""
 
-__version__ = "0.1.0"
+import importlib.util
+import sys
+from pathlib import Path
+
+
+def _use_own_runtime() -> None:
+    """Import the run time that was installed with this package.
+
+    A sourced workspace puts its own copy, which may be older, on PYTHONPATH.
+    """
+    folder = Path(__file__).resolve().parent.parent / "pursue_runtime"
+    imported = sys.modules.get("pursue_runtime")
+    if imported is not None and Path(imported.__file__ or "").resolve().parent == folder:
+        return
+    spec = importlib.util.spec_from_file_location(
+        "pursue_runtime", folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    if spec is None or spec.loader is None or not folder.is_dir():
+        return  # installed elsewhere: Python finds it
+    for name in [name for name in sys.modules if name.split(".")[0] == "pursue_runtime"]:
+        del sys.modules[name]
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["pursue_runtime"] = module
+    spec.loader.exec_module(module)
+
+
+_use_own_runtime()
+
+from pursue_runtime import __version__  # noqa: E402 (the own one)
+
+__all__ = ["__version__"]

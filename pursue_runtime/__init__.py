@@ -2,3 +2,5 @@
 
 Plain Python; nothing but `nodes` needs ROS.
 """
+
+__version__ = "0.1.0"

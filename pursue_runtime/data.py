@@ -7,6 +7,11 @@ from typing import Any, Dict, NamedTuple
 
 import yaml
 
+from pursue_runtime import __version__
+
+FORMAT = 1
+"""The format of data files that this run time reads."""
+
 
 class Package(NamedTuple):
     """The generated package whose node runs: its name, the scenario it was made from, the path of the node's script."""
@@ -37,9 +42,21 @@ def parse_data(content: bytes, path: str) -> Dict[str, Any]:
         data = yaml.load(content, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except (ValueError, yaml.YAMLError) as problem:
         raise DataError(f"cannot read {path}: {problem}") from problem
-    if not isinstance(data, dict) or data.get("format") != 1:
-        raise DataError(f"{path} is not a file of format 1: generate the workspace again")
-    return data
+    return check_format(data, path)
+
+
+def check_format(data: object, what: str) -> Dict[str, Any]:
+    """Return the data if this run time reads their format; `what` names them in messages. Raises DataError."""
+    found = data.get("format") if isinstance(data, dict) else None
+    if isinstance(data, dict) and found == FORMAT:
+        return data
+    reads = f"pursue_runtime {__version__} reads format {FORMAT}"
+    if isinstance(found, int) and found > FORMAT:
+        raise DataError(
+            f"{what} has format {found}, and {reads}: put the packages pursue_runtime and pursue_msgs of the workspace "
+            "that it was generated with on this machine, and build them"
+        )
+    raise DataError(f"{what} is not a data file of format {FORMAT} ({reads}): generate the workspace again")
 
 
 def data_file(package: Package, name: str, config: str = "") -> str:

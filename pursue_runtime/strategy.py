@@ -9,7 +9,7 @@ import json
 from fractions import Fraction
 from typing import Any, Dict, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import DataError, check_format
 from pursue_runtime.state import SystemState
 from pursue_runtime.zones import EPSILON, Zone, due, parse_zone
 
@@ -139,9 +139,10 @@ def _command(data: Mapping[str, Any]) -> Command:
 def parse_plan(text: str) -> Dict[str, Any]:
     """The data of a plan on pursue/plan. Raises DataError."""
     try:
-        data = json.loads(text)
+        plan = json.loads(text)
     except ValueError as problem:
         raise DataError(f"not a plan: {problem}") from problem
-    if not isinstance(data, dict) or data.get("format") != 1 or not isinstance(data.get("plan"), int):
-        raise DataError("not a plan of format 1")
+    data = check_format(plan, "the new plan")
+    if not isinstance(data.get("plan"), int):
+        raise DataError("not a plan: it has no number")
     return data

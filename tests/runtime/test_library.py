@@ -252,7 +252,10 @@ def test_a_strategy_with_something_amiss_is_told() -> None:
 
 
 def test_a_file_of_another_format_is_told(tmp_path: Path) -> None:
-    for text in ("format: 2", "[1, 2]", "format: [", "{"):
+    (tmp_path / "strategy.yaml").write_text("format: 2")
+    with pytest.raises(DataError, match=r"strategy\.yaml has format 2, and pursue_runtime [\d.]+ reads format 1: put"):
+        read_data(str(tmp_path / "strategy.yaml"))
+    for text in ("format: 0", "[1, 2]", "format: [", "{"):
         (tmp_path / "strategy.yaml").write_text(text)
         with pytest.raises(DataError, match=r"strategy\.yaml"):
             read_data(str(tmp_path / "strategy.yaml"))
