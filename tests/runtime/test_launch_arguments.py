@@ -144,6 +144,18 @@ def test_parameters_of_the_nodes_that_take_missions_are_those_of_their_own_launc
     launch: Any, packages: Path, package: str
 ) -> None:
     own = (packages / package / "launch" / f"{package}.launch").read_text()
-    known = set(re.findall(r'<param name="(\w+)"', own))
+    known = set(re.findall(r'<param [^>]*?\bname="(\w+)"', own))
     ours = {name.split("/")[-1] for name in launch("robot.launch", "name:=bot1").params if f"/{package}/" in name}
     assert ours and ours <= known
+
+
+@pytest.mark.parametrize("file", ["mission.launch", "robot.launch"])
+def test_what_has_a_default_is_optional_and_all_say_what_they_are(packages: Path, file: str, launch: Any) -> None:
+    """As `roslaunch --ros-args` tells them apart: it takes an empty default for none."""
+    arg_dump = pytest.importorskip("roslaunch.arg_dump")
+    launch("mission.launch")  # the packages are found
+    path = packages / "scenario_1_bringup" / "launch" / file
+    told = arg_dump.get_args([str(path)])
+    required = [name for name, (_, default) in told.items() if not default]
+    assert required == (["name"] if file == "robot.launch" else [])
+    assert [name for name, (doc, _) in told.items() if not doc] == []
