@@ -1,4 +1,4 @@
-"""ROS for benchmarks: a master of their own, generated workspaces run from where they stand, processes measured."""
+"""ROS for benchmarks: a master of their own, generated workspaces, processes measured."""
 
 from __future__ import annotations
 
@@ -66,10 +66,12 @@ class World:
         return subprocess.run(command, env=self._environment, capture_output=True, text=True, timeout=60, check=False)
 
     def node(self, workspace: Path, package: str, script: str = "", *arguments: str) -> None:
-        """Starts a node of a generated workspace, which needs no build for that."""
+        """Starts a node of a workspace that was built."""
         script = script or package
         program = workspace / "src" / package / "scripts" / script
-        self.start(script, [sys.executable, str(program), *arguments])
+        modules = workspace / "devel" / "lib" / "python3" / "dist-packages"
+        path = os.pathsep.join([str(modules), *filter(None, [self._environment.get("PYTHONPATH")])])
+        self.start(script, [sys.executable, str(program), *arguments], PYTHONPATH=path)
 
     def stop(self, *names: str) -> None:
         """Ends these processes, politely at first; all of them where none is named."""
@@ -102,11 +104,16 @@ def world(home: Path) -> Iterator[World]:
 
 
 def generated(text: str, name: str, folder: Path, rules: Optional[Rules] = None) -> Path:
-    """The workspace of a scenario's text, as `pursue-gen ws` writes it."""
+    """The workspace of a scenario's text, as `pursue-gen ws` writes it, built with catkin_make."""
     scenario = parse(text, f"{name}.pur", name)
     rules = rules or Rules()
     won = solve_scenario(scenario, rules)
-    return write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
+    options = Options(reaction=rules.reaction)
+    workspace = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
+    done = subprocess.run(["catkin_make", "-C", str(workspace)], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"catkin_make fails: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return workspace
 
 
 def cpu_seconds(process: "subprocess.Popen[bytes]") -> float:
