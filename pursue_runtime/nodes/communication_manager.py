@@ -48,9 +48,9 @@ class CommunicationManager:
         self.ending = Ending()
         self.orders = rospy.Publisher(str(rospy.get_param("~topicName", LOCAL_MISSION)), String, queue_size=2)
         self.statuses = rospy.Subscriber(MISSION_STATUS, String, self.on_status, queue_size=100, tcp_nodelay=True)
-        self.ears = [rospy.Subscriber(topic, String, self.on_message, topic, queue_size=1000) for topic in topics]
+        self.forwarded = [rospy.Subscriber(topic, String, self.on_message, topic, queue_size=1000) for topic in topics]
         self.background.start()
-        self.tell(host, exposed, context is not None)
+        self.log_address(host, exposed, context is not None)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda _: None, queue_size=100)
         Diagnostics(self.report, Links(pulses, lost=self.master_lost))
 
@@ -65,33 +65,33 @@ class CommunicationManager:
         sockets = bind(host, int(number("~pubsubport", 13001, 0)), "~pubsubport")
         return Forwarder(sockets, self.record), topics
 
-    def tell(self, host: str, exposed: bool, safe: bool) -> None:
-        """What the log says at the start."""
+    def log_address(self, host: str, exposed: bool, safe: bool) -> None:
+        """Log where missions are taken, and warn where that is not protected."""
         scheme = "https" if safe else "http"
         rospy.loginfo("%s takes missions at %s, port %d (%s)", self.manager.robot, host, self.server.port, scheme)
         if exposed and not safe:
             rospy.logwarn("other machines reach this port without TLS: what is sent is signed, but anyone can read it")
         if self.forwarder is not None:
-            names = ", ".join(ear.resolved_name for ear in self.ears)
+            names = ", ".join(subscriber.resolved_name for subscriber in self.forwarded)
             rospy.loginfo("%s: forwarded at %s, port %d", names, host, self.forwarder.port)
         if not self.manager.trusts:
             rospy.logwarn("%s", self.manager.condition()[1])
 
     def publish(self, text: str) -> None:
-        """For the reader."""
+        """Publish an order for the reader."""
         self.orders.publish(text)
 
     def reader_is_there(self) -> bool:
-        """True while the reader hears us and we hear it. A connection without a socket is one that broke."""
+        """True while the reader and this node are connected both ways. A connection without a socket is broken."""
         connections = list(self.statuses.impl.connections)
         return self.orders.get_num_connections() > 0 and any(each.socket is not None for each in connections)
 
     def on_status(self, message: String) -> None:
-        """The reader speaks."""
+        """Handle a status of the reader."""
         self.background.call(self.server.hear, message.data)
 
     def on_message(self, message: String, topic: str) -> None:
-        """A message to forward."""
+        """Forward a message."""
         latched = message._connection_header.get("latching") == "1"
         if self.forwarder is not None:
             self.background.call(self.forwarder.send, topic, message.data, latched)
@@ -107,7 +107,7 @@ class CommunicationManager:
         return Report(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 
     def master_lost(self, why: str) -> None:
-        """Another master would never hear of this node: it ends, and is started again."""
+        """End the node, which is then started again: another master would not know it."""
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 

@@ -27,7 +27,7 @@ from pursue_runtime.words import PLAN, format_word
 
 
 class Controller:
-    """Waits for states; announces a command when it is due; tells the robot once the observer has taken it."""
+    """Plays a part of the strategy: publishes commands when they are due, and orders robots what the observer took."""
 
     def __init__(self, package: Package) -> None:
         own = own_source(package, "strategy.yaml", rospy.get_param("~config", ""))
@@ -39,7 +39,7 @@ class Controller:
         self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)
         self.observer = ""
         self.exegg = Exeggutor()
-        self.alarm = Alarm(self.ring)
+        self.alarm = Alarm(self.on_alarm)
         try:
             self.follower.begin()
         except DataError as problem:
@@ -61,7 +61,7 @@ class Controller:
         self.exegg.take_up(part.robots if part else [], part.poses if part else {})
 
     def update_state(self, state: SystemState, publisher: str) -> None:
-        """A state: the robots are told what was taken, and the next command is planned."""
+        """Handle a state: order the robots what was taken, and plan the next command."""
         with self.lock:
             played, verdict = self.follower.part, self.follower.follow(state)
             if verdict != OLD:
@@ -76,11 +76,11 @@ class Controller:
                 self.play(state)
 
     def play(self, state: SystemState) -> None:
-        """A state of the mission whose part we have."""
+        """Handle a state of the mission whose part this controller has."""
         player = self.follower.player
         if player is not None:
             orders = player.see(state, rospy.get_time())
-            if player.news:  # else what is waited for is waited for as before
+            if player.news:  # else the alarm stays as it is
                 self.wake()
             self.learned()
             self.exegg.follow(state)
@@ -96,15 +96,15 @@ class Controller:
             self.ending.end(1)
 
     def wake(self) -> None:
-        """What is due already need not wait for the alarm."""
+        """Set the alarm for the next command; publish at once what is due already."""
         moment, patience = self.follower.player.wake() if self.follower.player else (None, None)
         if moment is not None and moment <= rospy.get_time():
-            self.ring()
+            self.on_alarm()
         else:
             self.alarm.set(moment, patience)
 
     def learn(self, message: String) -> None:
-        """A new plan: it counts from the state on that names it, for everybody at once."""
+        """Handle a new plan: it is in force from the state on that names it, for all nodes at once."""
         try:
             plan = parse_plan(message.data)
         except DataError as problem:
@@ -115,19 +115,19 @@ class Controller:
             self.learned()
 
     def learned(self) -> None:
-        """Learns the newest plan, if it is of the mission that is played, and says so."""
+        """Take the newest plan, if it is of the mission that is played, and report that to the observer."""
         try:
             word = self.follower.learn(rospy.get_time())
         except DataError as problem:
             rospy.logerr("cannot use the new plan: %s", problem)
             return
         if word:
-            rospy.loginfo("has plan %s", word.seq)
+            rospy.loginfo("plan %s received", word.seq)
             self.exegg.announce(format_word(word))
             self.wake()
 
-    def ring(self) -> None:
-        """The alarm: a command is due, or was not answered."""
+    def on_alarm(self) -> None:
+        """Publish a command that is due, or that was not answered."""
         with self.lock:
             player = self.follower.player
             if player is None:
@@ -138,12 +138,12 @@ class Controller:
             self.alarm.set(*player.wake())
 
     def master_lost(self, why: str) -> None:
-        """Without a master nobody can start or join: no further orders."""
+        """End the node: without a master no node can join, so robots get no further orders."""
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
     def report(self) -> Report:
-        """For /diagnostics. It is ready when it has heard the observer, and the observer can hear it."""
+        """Return the report for /diagnostics: ready when the observer and this node are connected both ways."""
         with self.lock:
             state, player, part, trouble = self.follower.report()
             planned = player.planned if player else None
@@ -155,13 +155,13 @@ class Controller:
         if state is None:
             return Report(False, WARN, "no state from the observer yet", values)
         if self.observer not in self.exegg.observers():
-            return Report(False, WARN, "the observer does not hear us", values)
+            return Report(False, WARN, "the observer has not connected yet", values)
         if player is None:
             return Report(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
         return Report(True, ERROR if state.status in (LOST, STOPPED) else OK, state.status, values)
 
     def run(self) -> int:
-        """Runs until the mission ends; returns the exit status."""
+        """Run until the mission ends; return the exit status."""
         return self.ending.wait(linger=0.2)
 
 

@@ -1,4 +1,4 @@
-"""A controller's executor, the thesis's exeggutor: it tells robots what to do, and the observer what becomes of it."""
+"""A controller's executor (the thesis's exeggutor): orders robots, and reports their ends to the observer."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ class Exeggutor:
         self._poses: Dict[str, List[float]] = {}
         self._ways: Dict[str, Way] = {}
         self._status = RUNNING
-        self._transition = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._robots: Dict[str, Robot] = {}
         self._links: Dict[str, RobotLink] = {}
-        self._alarm = Alarm(self._ring)
+        self._alarm = Alarm(self._on_alarm)
         rospy.on_shutdown(self._call_back)
 
     def take_up(self, robots: Iterable[str], poses: Mapping[str, Sequence[float]]) -> None:
-        """Has these robots from now on, and these places; what they were told before is over. Raises DataError, and has
-        none, where a robot's settings are wrong."""
+        """Take these robots and places; orders given before are over. Raises DataError, with no robots, where the
+        settings of one are wrong."""
         with self._lock:
             self._call_back()
             for link in self._links.values():
@@ -65,16 +65,16 @@ class Exeggutor:
     # For the controller -----------------------------------------------------------------------------------------------
 
     def announce(self, word: str) -> None:
-        """Asks the observer for an event, or reports one."""
+        """Publish a command or a report on pursue/events."""
         with contextlib.suppress(rospy.ROSException):  # the node is going down
-            self._transition.publish(word)
+            self._events.publish(word)
 
     def observers(self) -> List[str]:
-        """The nodes that hear what is announced."""
-        return listeners(self._transition)
+        """The nodes that are subscribed to what is published here."""
+        return listeners(self._events)
 
     def follow(self, state: SystemState) -> None:
-        """A state: orders that are over are dropped, reports that it shows are not repeated."""
+        """Handle a state: drop orders that are over, and reports that the state shows."""
         with self._lock:
             before, self._status = self._status, state.status
             for name, robot in self._robots.items():
@@ -86,7 +86,7 @@ class Exeggutor:
             self._act()
 
     def exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
-        """The agent begins `trigger`, from `origin` to `target`: its robot is told."""
+        """The agent begins `trigger`, from `origin` to `target`: order its robot to do so."""
         if agent not in self._robots:
             return  # an objective has no robot
         if target.startswith("going_") and target != origin:
@@ -140,8 +140,8 @@ class Exeggutor:
                 patience.append(LOOKS)
         self._alarm.set(min(moments, default=None), max(0.0, min(patience)) if patience else None)
 
-    def _ring(self) -> None:
-        """The alarm."""
+    def _on_alarm(self) -> None:
+        """Look where robots are, and do what is due."""
         with self._lock:
             robots, links = dict(self._robots), dict(self._links)
         for name, robot in robots.items():

@@ -1,7 +1,7 @@
 """Connections that come back after a cut, and the master: what rospy leaves to its nodes.
 
-A TCP connection that was cut for t seconds may need t more before it speaks again, and rospy gives it up for good after
-150 s. So every node listens for pulses: topics on which each publisher speaks about once a second. Who was silent for a
+A TCP connection that was cut for t seconds may need t more before it delivers again, and rospy gives it up for good
+after 150 s. So every node watches topics on which each publisher sends about once a second. A publisher that was silent for a
 while gets a second connection, on every topic, as soon as it answers calls again. The old one is kept for a time, and
 only listens: the publisher sends there what it had sent before, and nothing else. So no message is lost or comes twice.
 
@@ -61,7 +61,7 @@ def _call(uri: str, method: str, *arguments: object) -> Any:
 class Links:
     """Watches the connections of this node and its master, in two threads that mostly sleep.
 
-    `pulses`: subscriptions on which each publisher speaks about once a second (/diagnostics, the observer's state).
+    `pulses`: subscriptions on which each publisher sends about once a second (/diagnostics, the observer's state).
     `lost(reason)` is called once, in a thread of the watch, when the master is given up.
     """
 
@@ -87,7 +87,7 @@ class Links:
         level, message = report.level, report.message
         if silent:
             level = worse(level, STALE if cut_off else WARN)
-            message += f"; nothing is heard of {', '.join(silent)}"
+            message += f"; no messages from {', '.join(silent)}"
         if trouble:
             level = worse(level, WARN if self._master.found == UNREACHABLE else ERROR)
             message += f"; {trouble}"
@@ -163,7 +163,7 @@ class Links:
     # The master -------------------------------------------------------------------------------------------------------
 
     def _watch_master(self) -> None:
-        told = False
+        reported = False
         while not rospy.is_shutdown():
             found, publishers = self._ask_master()
             with self._lock:
@@ -171,9 +171,9 @@ class Links:
                 lost = self._master.lost(time.monotonic())
             if news and not rospy.is_shutdown():
                 (rospy.logerr if TROUBLES[found] else rospy.logwarn)("%s", TROUBLES[found] or "the ROS master is back")
-            if lost and not told and self._lost is not None:
+            if lost and not reported and self._lost is not None:
                 self._lost(TROUBLES[found])
-            told = told or lost
+            reported = reported or lost
             if found == KNOWN:
                 for topic, names in publishers.items():
                     for name in names:
@@ -197,7 +197,7 @@ class Links:
 
     @staticmethod
     def _complete(topic: str, name: str) -> None:
-        """Connects to this publisher if rospy has given it up, or was never told of it."""
+        """Connects to this publisher if rospy has given it up, or has not learned of it."""
         for impl in _subscriptions():
             if impl.resolved_name == topic and all(name != other.callerid_pub for other in _live(impl)):
                 uri = _call(rosgraph.get_master_uri(), "lookupNode", name)
@@ -208,7 +208,7 @@ class Links:
 
 def log_without_master() -> None:
     """rospy asks the master at each line that it logs for a parameter, as long as nobody has set that: with the master
-    cut off, the first log line would stop the node. Set to its default and asked for once, it is known for good."""
+    cut off, the first log line would stop the node. Set to its default and read once, it is cached."""
     parameter = "/rosout_disable_topics_generation"
     with contextlib.suppress(OSError):  # the master has gone this moment
         if not rospy.has_param(parameter):
@@ -217,7 +217,7 @@ def log_without_master() -> None:
 
 
 def connect(topic: str, uri: str) -> None:
-    """Has rospy connect this topic to the publisher at the address, as if the master had told it."""
+    """Has rospy connect this topic to the publisher at the address, as if the master had announced it."""
     _call(rospy.get_node_uri(), "publisherUpdate", topic, [uri])
 
 

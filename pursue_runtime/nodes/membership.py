@@ -17,7 +17,7 @@ from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.words import STATE
 
 PATIENCE = 1.0
-"""Seconds of real time for which a node that starts waits for an observer that says which mission is played."""
+"""Seconds of real time for which a node that starts waits for an observer whose states name the mission."""
 
 
 class Membership:

@@ -1,7 +1,7 @@
-"""Plays a mission on ROS and judges it from outside: by what is said on the topics, and by who says it.
+"""Plays a mission on ROS and judges it from outside: by the messages on its topics, and by their publishers.
 
 What is expected stands in expected.json beside the script of the test. The mission is started from here, when every
-node says that it is ready and the observer is heard, so that nothing of it is missed.
+node reports that it is ready and the observer is connected, so that no message is missed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CONNECTED = 60.0  # seconds of the wall clock for all nodes to come up
 
 
 class Record:
-    """Everything that was said, in the order of its receipt."""
+    """All messages of the mission, in the order of their receipt."""
 
     def __init__(self, robots: Sequence[str]) -> None:
         self.changed = threading.Condition()
@@ -46,7 +46,7 @@ class Record:
                 self.readers.append(rospy.Subscriber(name, kind, self.on_command, callback_args=robot, queue_size=1000))
 
     def on_diagnostics(self, message: DiagnosticArray) -> None:
-        """A node says how it is."""
+        """Handle a report of a node."""
         with self.changed:
             for status in message.status:
                 if any(value.key == "ready" and value.value.lower() == "true" for value in status.values):
@@ -54,17 +54,17 @@ class Record:
             self.changed.notify_all()
 
     def on_event(self, message: String) -> None:
-        """A word on pursue/events."""
+        """Handle a word on pursue/events."""
         with self.changed:
             self.events.append((sender_of(message), message.data.strip()))
 
     def on_command(self, message: Any, robot: str) -> None:
-        """A goal or an action for a robot."""
+        """Handle a goal or an action for a robot."""
         with self.changed:
             self.commands.append((sender_of(message), robot))
 
     def on_state(self, message: SystemState) -> None:
-        """A state of the mission."""
+        """Handle a state of the mission."""
         with self.changed:
             self.states[message.seq] = values_of(message)
             self.status = message.status
@@ -106,11 +106,11 @@ def takes_part(
     edges: Sequence[Mapping[str, Any]], before: Mapping[str, str], after: Mapping[str, str], name: str, word: object
 ) -> bool:
     """True where the automaton receives the word as the model says: it moves if it can, else it stays."""
-    heard = [e for e in edges if e["sync"] == "receive" and e["word"] == word and e["from"] == before[name]]
-    open_ = [e for e in heard if enabled(e, before)]
-    if not open_:
+    receiving = [e for e in edges if e["sync"] == "receive" and e["word"] == word and e["from"] == before[name]]
+    enabled_ones = [e for e in receiving if enabled(e, before)]
+    if not enabled_ones:
         return before[name] == after[name]
-    return any(e["to"] == after[name] for e in open_)
+    return any(e["to"] == after[name] for e in enabled_ones)
 
 
 def explained(
@@ -134,7 +134,7 @@ class MissionTest(unittest.TestCase):
     folder = ""
     expected: Dict[str, Any]
     record: Record
-    voice: rospy.Publisher
+    events: rospy.Publisher
 
     @classmethod
     def setUpClass(cls) -> None:
@@ -142,12 +142,12 @@ class MissionTest(unittest.TestCase):
             cls.expected = json.load(data)
         rospy.init_node("mission_test")
         cls.record = Record(cls.expected["robots"])
-        cls.voice = rospy.Publisher("pursue/events", String, queue_size=10)
+        cls.events = rospy.Publisher("pursue/events", String, queue_size=10)
         nodes = set(cls.expected["nodes"])
         if not cls.record.wait(lambda: nodes <= cls.record.ready, CONNECTED):
             raise AssertionError(f"not ready after {CONNECTED} s: {sorted(nodes - cls.record.ready)}")
         if not cls.record.wait(lambda: cls.record.states, CONNECTED):
-            raise AssertionError(f"no state of the observer was heard within {CONNECTED} s")
+            raise AssertionError(f"no state of the observer was received within {CONNECTED} s")
         cls.start()
         if cls.expected["reach"]:
             cls.record.wait(cls.record.ended, rospy.get_param("~patience"))
@@ -156,19 +156,19 @@ class MissionTest(unittest.TestCase):
 
     @classmethod
     def start(cls) -> None:
-        """Says `_start_` until a state answers: a word that is said before the observer hears us is lost."""
+        """Publish `_start_` until a state answers it: what is published before the observer has connected is lost."""
         for _ in range(int(CONNECTED)):
-            cls.voice.publish("_start_")
+            cls.events.publish("_start_")
             if cls.record.wait(lambda: cls.record.status != "waiting", 1.0):
                 break
 
     @classmethod
     def play_on(cls, seconds: float) -> None:
-        """Nothing ends a mission that has only to stay safe: after so many seconds of ROS time we do."""
+        """End a mission that has only to stay safe, after so many seconds of ROS time."""
         end = rospy.get_time() + seconds
         while rospy.get_time() < end and not cls.record.ended():
             rospy.sleep(0.5)
-        cls.voice.publish("Finish!")
+        cls.events.publish("Finish!")
         cls.record.wait(cls.record.ended, 10.0)
 
     def test_mission_ends_well(self) -> None:
@@ -184,14 +184,14 @@ class MissionTest(unittest.TestCase):
         allowed = self.expected["commands"]
         for node, word in self.record.events:
             if node in allowed:
-                self.assertIn(event_of(word), allowed[node], f"{node} said {word}")
+                self.assertIn(event_of(word), allowed[node], f"{node} published {word}")
         for node, robot in self.record.commands:
             self.assertEqual(node, self.expected["robots"][robot], f"{robot} was commanded by {node}")
 
     def test_no_controller_publishes_an_end(self) -> None:
         ends = set(self.expected["ends"])
-        said = [(node, word) for node, word in self.record.events if node in self.expected["commands"]]
-        self.assertEqual([(node, word) for node, word in said if event_of(word) in ends], [])
+        published = [(node, word) for node, word in self.record.events if node in self.expected["commands"]]
+        self.assertEqual([(node, word) for node, word in published if event_of(word) in ends], [])
 
     def test_every_step_is_a_step_of_the_model(self) -> None:
         """So every rule is kept: an event that a rule names comes only in its turn."""

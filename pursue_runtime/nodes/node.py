@@ -39,7 +39,7 @@ class Report(NamedTuple):
 class Diagnostics:
     """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
 
-    With `links` it tells also what is wrong with the connections and the master.
+    With `links` it includes what is wrong with the connections and the master.
     """
 
     def __init__(self, report: Callable[[], Report], links: Optional[Links] = None) -> None:
@@ -74,13 +74,13 @@ class Diagnostics:
 
 
 class Alarm:
-    """Calls `ring`, in a thread of its own, when the moment comes. It sleeps until then: nothing is polled.
+    """Calls `action`, in a thread of its own, at a set time. It sleeps until then: nothing is polled.
 
     Setting it again replaces what was set. In simulated time it wakes on /clock.
     """
 
-    def __init__(self, ring: Callable[[], None]) -> None:
-        self._ring = ring
+    def __init__(self, action: Callable[[], None]) -> None:
+        self._action = action
         self._changed = threading.Condition()
         self._moment: Optional[float] = None
         self._deadline: Optional[float] = None
@@ -91,9 +91,9 @@ class Alarm:
         threading.Thread(target=self._run, name="alarm", daemon=True).start()
 
     def set(self, moment: Optional[float] = None, patience: Optional[float] = None) -> None:
-        """Ring at this moment of ROS time (seconds), and in any case after `patience` seconds of real time.
+        """Call it at this ROS time (seconds), and in any case after `patience` seconds of real time.
 
-        Neither: do not ring.
+        Neither: do not call it.
         """
         with self._changed:
             self._moment = moment
@@ -114,10 +114,10 @@ class Alarm:
                     self._changed.wait(wait)
                     wait = self._wait()
                 self._moment = self._deadline = None
-            self._ring()
+            self._action()
 
     def _wait(self) -> Optional[float]:
-        """Seconds of real time until it rings as things stand; None: until something changes."""
+        """Seconds of real time until the call as things stand; None: until something changes."""
         waits: List[float] = []
         if self._moment is not None:
             if self._simulated is None:
@@ -136,7 +136,7 @@ INTERRUPTED, RENEWED = -1, -2
 def of_another_master(arguments: Sequence[str], run_id: object) -> bool:
     """True where roslaunch has started this node for another roscore than the one that runs now (its `/run_id`).
 
-    roslaunch keeps the logs of a launch in a folder of that name, and tells its nodes so: `__log:=…/<run_id>/…`.
+    roslaunch keeps the logs of a launch in a folder of that name, and passes that to its nodes: `__log:=…/<run_id>/…`.
     """
     logs = [word for word in arguments if word.startswith("__log:=")]
     return bool(logs and run_id) and not any(str(run_id) in word.split("/") for word in logs)
@@ -157,7 +157,7 @@ def check_launch() -> None:
 
 
 class Ending:
-    """Lets the main thread sleep until somebody ends the node, or ROS does. None begins with settings that are lost."""
+    """The end of a node: the main thread waits for it. No node begins with settings that are lost."""
 
     def __init__(self) -> None:
         check_launch()
@@ -179,7 +179,7 @@ class Ending:
         self._ends.put(status)
 
     def renew(self) -> None:
-        """Ends the node, which is to begin anew: `renewed` is then True, and what it does last is `begin_anew`."""
+        """Ends the node, which is to begin anew: `renewed` is then True, and what it does last is `restart_process`."""
         self._ends.put(RENEWED)
 
     def wait(self, linger: float = 0.0) -> int:
@@ -199,7 +199,7 @@ ANEW = "PURSUE_ANEW"
 """In the environment of a node that has begun anew."""
 
 
-def begin_anew() -> NoReturn:
+def restart_process() -> NoReturn:
     """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended."""
     for sign in (signal.SIGINT, signal.SIGTERM):
         signal.signal(sign, signal.SIG_DFL)
@@ -207,8 +207,8 @@ def begin_anew() -> NoReturn:
     os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes"})
 
 
-def give_way() -> None:
-    """Whoever decides about robots goes first; once for each process."""
+def lower_priority() -> None:
+    """Lower the priority of this process, once: nodes that decide about robots come first."""
     if ANEW not in os.environ:
         os.nice(5)
 

@@ -1,4 +1,4 @@
-"""The observer: hears events, keeps the state of the system, publishes it, and so says which mission is
+"""The observer: receives events, keeps the state of the mission, and publishes it; the state names the mission that is
 played: with ~received the one that came last from the desk, else the workspace's own.
 
 With ~again it ends after a mission, is started again, and waits for the next one.
@@ -25,7 +25,7 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.missions import Missions, Source, own_source, ros_home
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, begin_anew, listeners
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, listeners, restart_process
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
 from pursue_runtime.observer.mission import Mission
@@ -58,7 +58,7 @@ class Observer:
         self.package = package
         self.lock = threading.RLock()
         self.ending = Ending()
-        self.remarks: queue.SimpleQueue[Tuple[str, str]] = queue.SimpleQueue()
+        self.log_lines: queue.SimpleQueue[Tuple[str, str]] = queue.SimpleQueue()
         threading.Thread(target=self.write_log, name="log", daemon=True).start()
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if rospy.get_param("~received", False) else ""
@@ -72,20 +72,20 @@ class Observer:
         self.planner = self._planner()
         self.silence = float(rospy.get_param("~silence", 20.0))
         self.heartbeat = float(rospy.get_param("~heartbeat", 1.0))
-        self.heard = dict.fromkeys(self.controllers, time.monotonic())
-        self.spoke = time.monotonic()
+        self.last_report = dict.fromkeys(self.controllers, time.monotonic())
+        self.published_at = time.monotonic()
         self.proposed = 0
         self.over = False
         self.states = rospy.Publisher(STATE, SystemStateMessage, queue_size=1000, latch=True, tcp_nodelay=True)
         self.texts = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
-        self.alarm = Alarm(self.ring)
+        self.alarm = Alarm(self.on_alarm)
         self.await_clock()
         self.publish([self.mission.state(self.now())])
-        self.ears = rospy.Subscriber(EVENTS, String, self.hear, tcp_nodelay=True)
+        self.words = rospy.Subscriber(EVENTS, String, self.on_word, tcp_nodelay=True)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
-        threading.Thread(target=self.beat, name="heart", daemon=True).start()
+        threading.Thread(target=self.keep_publishing, name="heartbeat", daemon=True).start()
         Diagnostics(self.report, Links(pulses, lost=partial(self.call, "stop")))
 
     def _source(self) -> Source:
@@ -99,14 +99,14 @@ class Observer:
             except DataError as problem:
                 why = str(problem)
             if source is None:
-                self.remark("err", f"mission {going_on or 'own'} was under way, and cannot go on: {why}")
+                self.log_soon("err", f"mission {going_on or 'own'} was under way, and cannot go on: {why}")
         return source or self.missions.current()
 
     def _mission(self) -> Mission:
         return Mission(
             Model(self.source.read("model.yaml")),
             read_cover(self.source.read("cover.yaml")),
-            log=self.remark,
+            log=self.log_soon,
             unit=float(rospy.get_param("~time_unit", 1.0)),
             tolerance=float(rospy.get_param("~tolerance", 0.1)),
             on_uncovered=rospy.get_param("~on_uncovered", "plan"),
@@ -136,122 +136,125 @@ class Observer:
         digest = hashlib.sha256(model.encode()).hexdigest()
         header: Dict[str, object] = {"scenario": self.mission.model.scenario, "model": digest, "settings": settings}
         header.update({"mission": self.source.mission, "launch": self._journal_name()})
-        return Journal(self.mission, self._journal_path(), header, self.remark)
+        return Journal(self.mission, self._journal_path(), header, self.log_soon)
 
     def now(self) -> float:
         """ROS time in seconds, but nothing comes before what is written down."""
         return max(float(rospy.get_time()), self.journal.last)
 
     def await_clock(self) -> None:
-        """Where a mission goes on, simulated time is 0 until the clock was heard."""
+        """Wait for simulated time where a mission goes on: it is 0 until /clock was received."""
         deadline = time.monotonic() + CLOCK
         while rospy.get_time() < self.journal.last and time.monotonic() < deadline and not self.ending.called:
             time.sleep(0.02)
 
-    # What is heard: each takes the lock, calls the mission, and publishes what follows -------------------------------
+    # Callbacks: each takes the lock, calls the mission, and publishes what follows ------------------------------------
 
-    def hear(self, message: String) -> None:
-        """A word on pursue/events. A controller that does not hear our states speaks of another mission, or of an
-        earlier turn of this one: what is due there may be wrong here. It says it again as soon as it hears us."""
-        speaker = message._connection_header.get("callerid", "")
-        if speaker.strip("/") in self.heard and speaker not in listeners(self.states):
-            self.remark("warn", f"{speaker} does not hear the states; what it says does not count: {message.data[:80]}")
+    def on_word(self, message: String) -> None:
+        """Handle a word on pursue/events.
+
+        A controller that is not subscribed to the states may mean another mission, or an earlier state: its word is
+        dropped, and comes again once it receives the states.
+        """
+        publisher = message._connection_header.get("callerid", "")
+        if publisher.strip("/") in self.last_report and publisher not in listeners(self.states):
+            self.log_soon("warn", f"{publisher} does not receive the states; its word is dropped: {message.data[:80]}")
             return
         self.call("hear", message.data)
 
-    def ring(self) -> None:
-        """The alarm: a deadline, or a step that an objective takes by itself."""
+    def on_alarm(self) -> None:
+        """Handle a deadline, or a step that an objective takes by itself."""
         self.call("tick")
 
     def answer(self, answer: Answer) -> None:
-        """The planner is done."""
+        """Handle the planner's answer."""
         number, plan, why = answer
         self.call(*(("unplanned", number, why) if plan is None else ("planned", number, plan)))
 
     def on_diagnostics(self, message: DiagnosticArray) -> None:
-        """A node is there; a controller that does not have this mission is as good as silent."""
+        """Handle reports of nodes; a controller that does not have this mission counts as silent."""
         for status in message.status:
-            node, said = status.hardware_id, {value.key: value.value for value in status.values}
-            if node in self.heard and said.get("mission", self.mission.name) == self.mission.name:
-                self.heard[node] = time.monotonic()
+            node, values = status.hardware_id, {value.key: value.value for value in status.values}
+            if node in self.last_report and values.get("mission", self.mission.name) == self.mission.name:
+                self.last_report[node] = time.monotonic()
                 if node in self.mission.away:
                     self.call("back", node)
 
-    def beat(self) -> None:
-        """Says the state again where nothing happens, so that others know that they hear us; looks who is silent."""
+    def keep_publishing(self) -> None:
+        """Publish the state again while nothing happens, as a heartbeat, and find controllers that are silent."""
         while not rospy.is_shutdown():
             time.sleep(min(1.0, self.heartbeat))
             now = time.monotonic()
-            self.look_for_another()
-            for node, heard in list(self.heard.items()):
-                if now > heard + self.silence and node not in self.mission.away and self.mission.status in LIVE:
+            self.check_for_another()
+            for node, reported in list(self.last_report.items()):
+                if now > reported + self.silence and node not in self.mission.away and self.mission.status in LIVE:
                     self.call("silent", node)
             with self.lock:
-                if now >= self.spoke + self.heartbeat and self.mission.status not in ENDED:
+                if now >= self.published_at + self.heartbeat and self.mission.status not in ENDED:
                     if self.mission.proposal is not None:
-                        self.proposed = 0  # somebody has not said that it has the plan: it goes out again
+                        self.proposed = 0  # a controller has not reported that it has the plan: publish it again
                     self.publish([self.mission.state(self.now())])
 
-    def look_for_another(self) -> None:
+    def check_for_another(self) -> None:
         """Begins anew with the mission that is current now, unless one is under way."""
         if self.mission.status != WAITING or not self.missions.changed():
             return
         try:
             current = self.missions.current()
         except DataError as problem:
-            self.remark("err", f"goes on with mission {self.source.mission or 'own'}: {problem}")
+            self.log_soon("err", f"goes on with mission {self.source.mission or 'own'}: {problem}")
             return
         with self.lock:
             if self.mission.status == WAITING and current != self.source:
-                self.over = True  # nothing that is heard from here on begins a mission
+                self.over = True  # no word that is received from here on begins a mission
                 self.ending.renew()
 
     def call(self, name: str, *args: Any) -> None:
-        """Calls the mission, by way of the journal."""
+        """Call the mission by way of the journal, and publish what follows."""
         with self.lock:
             if self.over and self.mission.status == WAITING:
                 return
             self.publish(self.journal.call(name, *args, now=self.now()))
 
-    # What is said -----------------------------------------------------------------------------------------------------
+    # Publishing -------------------------------------------------------------------------------------------------------
 
     def publish(self, states: List[SystemState]) -> None:
         """Publishes the states, looks ahead, and ends the node after the last one."""
         for state in states:
-            self.say(self.states, message_of(state))
-            self.say(self.texts, format_state(state))
-            self.spoke = time.monotonic()
+            self.send(self.states, message_of(state))
+            self.send(self.texts, format_state(state))
+            self.published_at = time.monotonic()
         proposal = self.mission.proposal or self.mission.in_force  # who comes later needs it as well
         if proposal is not None and proposal["plan"] != self.proposed:
             self.proposed = proposal["plan"]
-            self.say(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
+            self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
         self.planner.want(self.mission.wanted)
         self.alarm.set(self.mission.next_moment(self.now()))
         if self.mission.status in ENDED and not self.over:
             self.over = True
             if self.mission.status == WON:
-                self.say(self.events, FINISH)
+                self.send(self.events, FINISH)
             self.ending.end(0 if self.mission.status == WON else 1)
 
-    def remark(self, level: str, text: str) -> None:
-        """Logs a sentence soon."""
-        self.remarks.put((level, text))
+    def log_soon(self, level: str, text: str) -> None:
+        """Log a sentence soon, in a thread of its own."""
+        self.log_lines.put((level, text))
 
     def write_log(self) -> None:
-        """Logs what was remarked, a moment later: a line takes as long as a reaction, and the next word may be near."""
+        """Log lines a little later: a line takes as long as a reaction, and the next word may be near."""
         while True:
-            remark = self.remarks.get()
+            line = self.log_lines.get()
             time.sleep(0.01)
-            log(*remark)
+            log(*line)
 
     @staticmethod
-    def say(publisher: rospy.Publisher, what: object) -> None:
+    def send(publisher: rospy.Publisher, what: object) -> None:
         """Publishes it, unless the node is going down."""
         with contextlib.suppress(rospy.ROSException):
             publisher.publish(what)
 
     def report(self) -> Report:
-        """For /diagnostics. It is ready as soon as somebody's words can reach it."""
+        """Return the report for /diagnostics: ready as soon as a node is connected that publishes words."""
         with self.lock:
             mission = self.mission
             late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.away))
@@ -261,7 +264,7 @@ class Observer:
             message = mission.status + (f": {mission.reason}" if mission.reason else "")
             warns = mission.late or mission.lost or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
-        return Report(self.ears.get_num_connections() > 0, level, message, values)
+        return Report(self.words.get_num_connections() > 0, level, message, values)
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""
@@ -269,9 +272,9 @@ class Observer:
         rospy.loginfo("the observer of %s, mission %s: %s", self.mission.model.scenario, name, self.mission.status)
         status = self.ending.wait(linger=float(rospy.get_param("~linger", 1.0)))
         if self.mission.status in ENDED and (self.again or not self.launch):
-            self.journal.told()  # a roscore may see another mission; a launch has one, unless told otherwise
+            self.journal.told()  # a roscore may see another mission; a launch has one, unless ~again is set
         if self.ending.renewed:
-            begin_anew()
+            restart_process()
         return status
 
 

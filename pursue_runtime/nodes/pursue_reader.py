@@ -54,48 +54,48 @@ class Node:
         nodes, installed = str(rospy.get_param("~nodes", ALL)), mission_packages()
         robot = Robot(robot_name(), scenario, packages_here(nodes, installed), limit)
         self.reader = Reader(robot, store, keys, time.monotonic(), log, patience)
-        self.said = ""
+        self.published = ""
         self.statuses = rospy.Publisher("mission_status", String, queue_size=10, latch=True)
-        self.alarm = Alarm(self.ring)
+        self.alarm = Alarm(self.on_alarm)
         self.publish()
-        self.ears = rospy.Subscriber("local_mission", String, self.hear, queue_size=1, buff_size=1 << 20)
+        self.orders = rospy.Subscriber("local_mission", String, self.on_order, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
-        states = subscribe_states(self.see, "/" + topic.lstrip("/"))
+        states = subscribe_states(self.on_state, "/" + topic.lstrip("/"))
         Diagnostics(self.report, Links(states, lost=self.master_lost))
         trouble = self.reader.trouble()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):
             log("warn", f"~nodes: there is no package for {node} here, so it plays no part in missions")
 
-    def hear(self, message: String) -> None:
-        """A message on local_mission."""
+    def on_order(self, message: String) -> None:
+        """Handle an order on local_mission."""
         with self.lock:
             self.reader.handle(message.data, time.monotonic())
             self.publish()
 
-    def see(self, state: SystemState, _publisher: str) -> None:
-        """A state of the mission."""
+    def on_state(self, state: SystemState, _publisher: str) -> None:
+        """Handle a state of the mission."""
         with self.lock:
             if self.reader.see(state, time.monotonic()):
                 self.publish()
 
-    def ring(self) -> None:
-        """The alarm: nothing was heard of an observer for long enough."""
+    def on_alarm(self) -> None:
+        """Handle the time at which an observer counts as gone."""
         with self.lock:
             self.reader.tick(time.monotonic())
             self.publish()
 
     def publish(self) -> None:
-        """Says how it stands, where that is news."""
+        """Publish the status if it has changed."""
         text = json.dumps(self.reader.status())
-        if text != self.said:
-            self.said = text
+        if text != self.published:
+            self.published = text
             with contextlib.suppress(rospy.ROSException):  # the node is going down
                 self.statuses.publish(text)
         self.alarm.set(None, self.reader.wake(time.monotonic()))
 
     def master_lost(self, why: str) -> None:
-        """Another master would never hear of this node: it ends, and is started again."""
+        """End the node, which is then started again: another master would not know it."""
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
@@ -107,7 +107,8 @@ class Node:
             values["refused"] = sum(self.reader.refusals.counts.values())
         for name in ("current", "next", "prepared"):
             values[name] = "" if status[name] is None else mission_id(status[name])
-        return Report(self.ears.get_num_connections() > 0, WARN if trouble else OK, trouble or "takes missions", values)
+        ready = self.orders.get_num_connections() > 0
+        return Report(ready, WARN if trouble else OK, trouble or "takes missions", values)
 
 
 def robot_name() -> str:

@@ -1,4 +1,4 @@
-"""Records a mission in a bag, for `pursue-gen replay` and ROS's own tools: complete from its first word on,
+"""Records a mission in a bag, for `pursue-gen replay` and ROS's own tools: complete from its first message on,
 because the UI does not start it before every publisher is connected here, and closed when the mission has ended.
 
 Parameters: ~file (a path, relative to ROS_HOME; "" or true: pursue/<scenario>/mission.bag there; no file is ever
@@ -26,7 +26,7 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, begin_anew, give_way
+from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, lower_priority, restart_process
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import OptionError, expected, names
@@ -63,9 +63,9 @@ class Recorder:
         self.membership = Membership(package, self.ending)
         model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
         self.nodes = ["UI", *expected(rospy.get_param("~", {}), settings.get("nodes", ()))]
-        asked = str(rospy.get_param("~file", ""))
-        asked = "" if asked.lower() == "true" else asked
-        self.path = reserve(asked, os.path.join(rospkg.get_ros_home(), "pursue", package.scenario))
+        file = str(rospy.get_param("~file", ""))
+        file = "" if file.lower() == "true" else file
+        self.path = reserve(file, os.path.join(rospkg.get_ros_home(), "pursue", package.scenario))
         self.lock = threading.Lock()
         self.status = ""
         self.count = 0
@@ -76,11 +76,11 @@ class Recorder:
         self.note_game()
         more = names(rospy.get_param("~topics", []), "~topics")
         wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
-        self.ears: List[rospy.Subscriber] = [
-            rospy.Subscriber(topic, rospy.AnyMsg, self.hear, rospy.resolve_name(topic), tcp_nodelay=True)
+        self.subscribers: List[rospy.Subscriber] = [
+            rospy.Subscriber(topic, rospy.AnyMsg, self.on_message, rospy.resolve_name(topic), tcp_nodelay=True)
             for topic in dict.fromkeys(wanted)
         ]
-        pulses = [ear for ear in self.ears if ear.resolved_name == "/diagnostics"]
+        pulses = [each for each in self.subscribers if each.resolved_name == "/diagnostics"]
         Diagnostics(self.report, Links(*pulses, lost=lambda _: self.ending.end(1)))
 
     def note_game(self) -> None:
@@ -88,13 +88,13 @@ class Recorder:
         game = self.membership.source.read("game.yaml")
         self.bag.write(rospy.resolve_name(GAME), String(json.dumps(game)), stamp())
 
-    def hear(self, message: rospy.AnyMsg, topic: str) -> None:
-        """A message on one of the topics."""
+    def on_message(self, message: rospy.AnyMsg, topic: str) -> None:
+        """Record a message."""
         state = read_state(message) if topic == self.states else None
         ours = state is not None and self.membership.takes(state)
         with self.lock:
             if not self.open or (topic in (self.states, self.texts) and not ours and not self.status):
-                return  # the last words of a mission before ours
+                return  # the last messages of a mission before this one
             self.bag.note(topic, message, message._connection_header, stamp())
             self.count += 1
         if state is not None and ours:
@@ -118,12 +118,12 @@ class Recorder:
             known = dict(self.master.getSystemState()[0])
         except (OSError, rosgraph.MasterException) as problem:
             return f"the master does not answer: {problem}"
-        ours = [ear.resolved_name for ear in self.ears]
+        ours = [each.resolved_name for each in self.subscribers]
         publishers = {topic: set(known.get(topic, [])) - {rospy.get_name()} for topic in ours}
-        heard = {ear.resolved_name: ear.get_num_connections() for ear in self.ears}
+        connected = {each.resolved_name: each.get_num_connections() for each in self.subscribers}
         own = "/diagnostics"  # we publish there ourselves, and rospy connects us to us
-        heard[own] = heard.get(own, 0) - (rospy.get_name() in known.get(own, []))
-        return missing(self.nodes, publishers, heard)
+        connected[own] = connected.get(own, 0) - (rospy.get_name() in known.get(own, []))
+        return missing(self.nodes, publishers, connected)
 
     def run(self) -> int:
         """Runs until the mission ends and its last words are in the bag; returns the exit status."""
@@ -136,7 +136,7 @@ class Recorder:
                 self.bag.close()
             if self.ending.renewed:
                 os.remove(self.path + ".active")  # nothing has happened yet
-                begin_anew()
+                restart_process()
             os.rename(self.path + ".active", self.path)
             rospy.loginfo("recorded %d messages in %s", self.count, self.path)
         return status
@@ -164,7 +164,7 @@ def stamp() -> rospy.Time:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    give_way()
+    lower_priority()
     rospy.init_node("recorder")
     try:
         return Recorder(package).run()

@@ -14,12 +14,12 @@ from std_msgs.msg import String
 from pursue_runtime.controller.robot import Goal, Settings
 from pursue_runtime.data import DataError
 
-TellOne = Callable[[Any], None]
+PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
 
 
 class Order(NamedTuple):
-    """What a robot was told: it stands as long as the state shows it at `location`."""
+    """An order for a robot: it stands as long as the state shows it at `location`."""
 
     location: str
     message: Any
@@ -39,7 +39,7 @@ def needed(package: str, module: str, why: str) -> Any:
 class RobotLink(rospy.SubscribeListener):
     """One robot's topics. `answer` gets id, stamp and status of each result, `place` gets x and y.
 
-    A robot that connects later is told then what it is still to do: a controller that was started again learns from
+    A robot that connects later gets then the order that still stands: a controller that was started again learns from
     the first state what its robot should be doing, some milliseconds before the robot is connected.
     """
 
@@ -56,7 +56,7 @@ class RobotLink(rospy.SubscribeListener):
         self._lock = threading.Lock()
         self._standing: Dict[str, Order] = {}
         self._open = True
-        self._late: List[Tuple[str, TellOne]] = []
+        self._late: List[Tuple[str, PublishToOne]] = []
         self._ears: Any = None
         self._cancel: Any = None
         self._results: Any = None
@@ -101,7 +101,7 @@ class RobotLink(rospy.SubscribeListener):
         rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.way.poi, position.x, position.y)
 
     def do(self, trigger: str, location: str = "") -> None:
-        """Sends an action: one that goes on at this location, or one that is done at once ("") and never said again."""
+        """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""
         self._send(self._act, Order(location, String(trigger)))
         rospy.loginfo("%s does %s", self._robot, trigger)
 
@@ -113,13 +113,13 @@ class RobotLink(rospy.SubscribeListener):
                     self._late.append((publisher.resolved_name, publisher.publish))
                     return
             if publisher.get_num_connections() == 0:
-                rospy.logwarn("nobody listens to %s yet", publisher.resolved_name)
+                rospy.logwarn("no subscriber on %s yet", publisher.resolved_name)
             with contextlib.suppress(rospy.ROSException):  # the node is going down
                 publisher.publish(order.message)
 
     def keep(self, location: str, is_open: bool, after: str) -> None:
         """Drops the orders that are over: only what fits the location, and a goal that the robot is `after`, may still
-        be told, and only while the mission `is_open` for orders."""
+        be sent, and only while the mission `is_open` for orders."""
         with self._lock:
             goal = self._standing.get(self._move.resolved_name)
             for topic, order in list(self._standing.items()):
@@ -127,11 +127,11 @@ class RobotLink(rospy.SubscribeListener):
                     del self._standing[topic]
             self._open = is_open
             late, self._late = (self._late, []) if is_open else ([], self._late)
-            told = [(tell, self._standing[topic]) for topic, tell in late if topic in self._standing]
-        for tell, order in told:
-            tell(order.message)
+            due = [(publish, self._standing[topic]) for topic, publish in late if topic in self._standing]
+        for publish, order in due:
+            publish(order.message)
 
-    def peer_subscribe(self, topic_name: str, topic_publish: TellOne, peer_publish: TellOne) -> None:
+    def peer_subscribe(self, topic_name: str, topic_publish: PublishToOne, peer_publish: PublishToOne) -> None:
         """A robot has connected (rospy calls this)."""
         with self._lock:
             order = self._standing.get(topic_name) if self._open else None
@@ -160,7 +160,7 @@ class RobotLink(rospy.SubscribeListener):
 
     def watch(self, wanted: bool) -> None:
         """Looks where the robot is from now on, or does not any more. A robot that stands costs nothing; and what is
-        heard first was not on its way for long: amcl_pose is latched."""
+        received first is recent: amcl_pose is latched."""
         if wanted == self.watched:
             return
         self.watched = wanted

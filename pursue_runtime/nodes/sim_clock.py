@@ -46,8 +46,8 @@ def run(pace: Pace, scenario: str) -> int:
 
 
 def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[Memory]) -> None:
-    """Publishes /clock. While time stands still it is published on: nobody who comes late, or who missed a message,
-    waits for it."""
+    """Publishes /clock. While time stands still it is published on: a node that comes late, or that missed a message,
+    does not wait for it."""
     moment = time.monotonic()
     while not rospy.is_shutdown():
         simulated = clock.tick(time.monotonic())
@@ -81,7 +81,7 @@ def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     rospy.init_node("sim_clock")
     if not rospy.get_param("/use_sim_time", False):
-        rospy.logwarn("/use_sim_time is not true: nobody follows this clock")
+        rospy.logwarn("/use_sim_time is not true: no node follows this clock")
     try:
         time_unit = float(rospy.get_param("~time_unit", 1.0))
         step = float(rospy.get_param("~step", 0.02 * time_unit))

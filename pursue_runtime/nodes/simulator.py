@@ -1,4 +1,4 @@
-"""The simulated robots, people and other agents: tells when what they do has ended.
+"""The simulated robots, people and other agents: reports the ends of what they do.
 
 Parameters: ~reports (whose ends; default: those that ui.yaml names, or everybody's), ~delays (random, early, middle,
 late), ~seed, ~config, ~received, ~again (see ui_mission).
@@ -18,7 +18,17 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, begin_anew, give_way, listeners
+from pursue_runtime.nodes.node import (
+    OK,
+    WARN,
+    Alarm,
+    Diagnostics,
+    Ending,
+    Report,
+    listeners,
+    lower_priority,
+    restart_process,
+)
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.simulator.simulator import ACTING, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
@@ -41,13 +51,13 @@ class SimulatorNode:
         self.lock = threading.RLock()
         self.observer = ""
         self.status = WAITING
-        self.told = 0
+        self.reported = 0
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.act)
-        self.ears: List[rospy.Subscriber] = []
+        self.subscribers: List[rospy.Subscriber] = []
         for robot in self.robots:
             for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
-                self.ears.append(
+                self.subscribers.append(
                     rospy.Subscriber(topic, kind, self.on_goal, callback_args=robot, queue_size=10, tcp_nodelay=True)
                 )
         states = subscribe_states(self.on_state)
@@ -55,7 +65,7 @@ class SimulatorNode:
         Diagnostics(self.report, Links(states, pulses, lost=self.master_lost))
 
     def on_state(self, state: SystemState, publisher: str) -> None:
-        """A state: who has begun what."""
+        """Handle a state: activities begin."""
         with self.lock:
             if not self.membership.takes(state):
                 return
@@ -73,46 +83,46 @@ class SimulatorNode:
             self.act()
 
     def act(self) -> None:
-        """Tells the ends whose moment has come, and sleeps until the next."""
+        """Report the ends that are due, and sleep until the next."""
         with self.lock:
             for word in self.simulator.due(rospy.get_time(), time.monotonic()):
                 rospy.loginfo("reports %s", word)
                 self.events.publish(word)
-                self.told += 1
+                self.reported += 1
             moment, real = self.simulator.next_moments()
             self.alarm.set(moment, None if real is None else max(0.0, real - time.monotonic()))
 
     def master_lost(self, why: str) -> None:
-        """Without a master nobody can start or join."""
+        """End the node: without a master no node can start or join."""
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
     def report(self) -> Report:
-        """For /diagnostics. It is ready when it has heard the observer, the observer hears it, and each of its robots
-        has somebody who commands it."""
+        """Return the report for /diagnostics: ready when the observer and this node are connected both ways, and each
+        robot has a controller."""
         with self.lock:
-            observer, status, told = self.observer, self.status, self.told
-        deaf = sorted({ear.resolved_name for ear in self.ears if ear.get_num_connections() == 0})
-        values = {"mission": self.membership.source.mission, "reported": told, "uncommanded": " ".join(deaf)}
+            observer, status, reported = self.observer, self.status, self.reported
+        unconnected = sorted({each.resolved_name for each in self.subscribers if each.get_num_connections() == 0})
+        values = {"mission": self.membership.source.mission, "reported": reported, "uncommanded": " ".join(unconnected)}
         if self.membership.trouble:
             return Report(False, WARN, self.membership.trouble, values)
         if not observer or observer not in listeners(self.events):
             return Report(False, WARN, "not connected to the observer yet", values)
-        if deaf:
-            return Report(False, WARN, f"nobody publishes on {deaf[0]} yet", values)
+        if unconnected:
+            return Report(False, WARN, f"no publisher on {unconnected[0]} yet", values)
         return Report(True, OK, status, values)
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""
         status = self.ending.wait(linger=0.2)
         if self.ending.renewed:
-            begin_anew()
+            restart_process()
         return status
 
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    give_way()
+    lower_priority()
     rospy.init_node("simulator")
     try:
         return SimulatorNode(package).run()

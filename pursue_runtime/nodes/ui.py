@@ -1,5 +1,5 @@
 """The terminal: starts the mission when every node is ready, plays or asks for what the agents do that
-nobody controls, tells people what the strategy wants of them, shows what happens, and says how it ends.
+nobody controls, instructs people as the strategy says, shows what happens, and how the mission ends.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     Report,
-    begin_anew,
-    give_way,
     listeners,
+    lower_priority,
+    restart_process,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import WAITING, SystemState
@@ -44,14 +44,14 @@ from pursue_runtime.ui.trace import TraceError, read_trace
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
-RETRY = 1.0  # real seconds until `_start_` is said again
+RETRY = 1.0  # real seconds until `_start_` is published again
 TRIES = 10
 REDRAW = 1.0  # real seconds between two progress lines
-VANISHED = 2.0  # real seconds after `Finish!` without a word of the observer
+VANISHED = 2.0  # real seconds after `Finish!` without a message of the observer
 
 
 class UI:
-    """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for what is heard."""
+    """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for messages."""
 
     def __init__(
         self, options: Options, membership: Membership, ending: Ending, player: Player, model: Model
@@ -71,9 +71,9 @@ class UI:
         self.verdict: Optional[Tuple[int, str]] = None
         self.board: Optional[Board] = None
         self.gives_up = time.monotonic() + options.wait
-        self.finish_heard: Optional[float] = None
+        self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
-        self.alarm = Alarm(self.ring)
+        self.alarm = Alarm(self.on_alarm)
         self.alarm.set(patience=options.wait)
         self.states = subscribe_states(self.on_state)
         rospy.Subscriber(PLAN, String, self.on_plan, queue_size=10, tcp_nodelay=True)
@@ -81,10 +81,10 @@ class UI:
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
         Diagnostics(self.report, Links(self.states, pulses, lost=self.master_lost))
 
-    # What is heard ----------------------------------------------------------------------------------------------------
+    # Callbacks --------------------------------------------------------------------------------------------------------
 
     def on_diagnostics(self, message: DiagnosticArray) -> None:
-        """A node says how it is; when the last one is ready, the mission can start."""
+        """Handle reports of nodes; when the last one is ready, the mission can start."""
         with self.lock:
             for status in message.status:
                 values = {value.key: value.value for value in status.values}
@@ -131,10 +131,10 @@ class UI:
                 self.act()
 
     def on_word(self, message: String) -> None:
-        """`Finish!`: the observer's last word. Its state says how it ended; should that be lost with it, we end too."""
+        """Handle `Finish!`, the observer's last word: should its last state be lost, the UI ends all the same."""
         if message.data.strip() == FINISH and message._connection_header.get("callerid", "") == self.observer:
             with self.lock:
-                self.finish_heard = time.monotonic()
+                self.finish_received = time.monotonic()
                 self.act()
 
     def on_line(self, text: str) -> None:
@@ -146,14 +146,14 @@ class UI:
                 self.offer(again=True)
             else:
                 self.find_offers()
-                word, remark = answer(text, self.offers, self.words, self.given)
-                if remark:
-                    self.terminal.line(f"          {remark}")
+                word, answer_text = answer(text, self.offers, self.words, self.given)
+                if answer_text:
+                    self.terminal.line(f"          {answer_text}")
                 if word:
                     self.events.publish(word)
 
     def obey(self, request: Request) -> str:
-        """Somebody at the page asks for something; what to tell them."""
+        """Handle a request of the page; return what to show there, "" for nothing."""
         self.find_offers()
         reports = {task.word for task in self.given}
         now = {offer.word for offer in self.offers if offer.opens <= SURE}
@@ -170,7 +170,7 @@ class UI:
     # What is done -----------------------------------------------------------------------------------------------------
 
     def gathered(self) -> None:
-        """Everybody is ready."""
+        """All nodes are ready."""
         self.phase = READY
         self.alarm.set()
         self.show()
@@ -178,11 +178,11 @@ class UI:
             self.start()
         elif self.board is not None:
             here = ", or press Enter" if self.reads() else ""
-            self.terminal.line(f"Everybody is ready. Start the mission on the page{here}.", TOLD)
+            self.terminal.line(f"All nodes are ready. Start the mission on the page{here}.", TOLD)
         elif self.reads():
-            self.terminal.line("Everybody is ready. Press Enter to start the mission.", TOLD)
+            self.terminal.line("All nodes are ready. Press Enter to start the mission.", TOLD)
         else:
-            self.terminal.line("Everybody is ready; the mission starts when somebody publishes _start_.", TOLD)
+            self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", TOLD)
 
     def start(self) -> None:
         """Says `_start_`, again if no state answers it."""
@@ -195,13 +195,13 @@ class UI:
         self.alarm.set(patience=RETRY)
         self.show()
 
-    def ring(self) -> None:
+    def on_alarm(self) -> None:
         """The alarm."""
         with self.lock:
             if self.phase == GATHERING:
                 missing = ", ".join(self.readiness.missing()) or "the connection to the observer"
                 after = f"Not ready after {self.options.wait:g} s: {missing}."
-                if self.membership.again:  # somebody may be switched on later
+                if self.membership.again:  # a machine may be switched on later
                     self.terminal.line(f"{after} Waiting on.", PLAIN)
                 else:
                     self.conclude(1, f"{after} The mission was not started.")
@@ -215,23 +215,24 @@ class UI:
         if self.phase != RUNNING or self.concluded:
             return
         now, real = rospy.get_time(), time.monotonic()
-        if self.finish_heard is not None and real >= self.finish_heard + VANISHED:
-            self.finish_heard = None
+        if self.finish_received is not None and real >= self.finish_received + VANISHED:
+            self.finish_received = None
             if self.states.get_num_connections() == 0:
                 after = f"after {self.mission.elapsed(now):.1f} time units"
-                self.conclude(0, f"The observer said {FINISH} and is gone, {after}.")
+                self.conclude(0, f"The observer published {FINISH} and is gone, {after}.")
                 return
         for word in self.mission.due(now, real):
             self.events.publish(word)
         moment, deadline = self.mission.next_moments(now)
-        deadlines = [at for at in (deadline, self.finish_heard and self.finish_heard + VANISHED) if at is not None]
+        vanished = self.finish_received and self.finish_received + VANISHED
+        deadlines = [at for at in (deadline, vanished) if at is not None]
         if self.terminal.is_terminal and self.options.mode != "ask":
             self.terminal.progress(self.mission.progress(now))
             deadlines.append(real + REDRAW)
         self.alarm.set(moment, max(0.0, min(deadlines) - real) if deadlines else None)
 
     def offer(self, again: bool = False) -> None:
-        """In mode ask: shows what can be said, if that has changed."""
+        """Show in mode ask what can be typed, if that has changed."""
         before, given = [offer.word for offer in self.offers], self.given
         self.find_offers()
         if self.given and self.given != given and self.reads():
@@ -254,7 +255,7 @@ class UI:
             self.offers = [*(offer for offer in offers if offer.word not in ends), *reports]
 
     def conclude(self, status: int, sentence: str) -> None:
-        """The end; only the first one is told."""
+        """End with this status and sentence; only the first call counts."""
         if self.verdict is not None:
             return
         self.verdict = (status, sentence)
@@ -265,7 +266,7 @@ class UI:
         self.ending.end(status)
 
     def show(self) -> None:
-        """Tells the page how it is."""
+        """Send the present view to the page."""
         if self.board is not None:
             self.board.show()
 
@@ -279,15 +280,15 @@ class UI:
         return Facts(self.phase, missing, state, at, now, self.verdict)
 
     def connected(self) -> bool:
-        """True when the observer and we hear each other."""
+        """True when the observer and this node are connected both ways."""
         return bool(self.observer) and self.observer in listeners(self.events)
 
     def reads(self) -> bool:
-        """True when somebody may type here."""
+        """True when a person may type here."""
         return sys.stdin is not None and not sys.stdin.closed and (self.options.mode == "ask" or on_terminal())
 
     def master_lost(self, why: str) -> None:
-        """Without a master nobody can start or join."""
+        """End the node: without a master no node can start or join."""
         with self.lock:
             self.conclude(1, f"The mission cannot go on: {why}.")
 
@@ -315,8 +316,8 @@ class UI:
             self.board.web.close()
         if self.ending.renewed:
             self.terminal.close()
-            begin_anew()
-        if self.verdict is None:  # interrupted: nobody knows how the mission would have ended
+            restart_process()
+        if self.verdict is None:  # interrupted: the mission has no verdict
             self.terminal.close()
             return 1
         return status
@@ -333,7 +334,7 @@ def on_terminal() -> bool:
 
 
 def make_player(options: Options, model: Model) -> Player:
-    """Who plays the agents that nobody controls. Raises TraceError."""
+    """Return the player of the agents that nobody controls. Raises TraceError."""
     if options.mode == "random":
         return AtRandom(model, options.seed, options.pace)
     if options.mode == "trace":
@@ -356,7 +357,7 @@ def main(package: Package) -> int:
     arguments = rospy.myargv(sys.argv)[1:]
     if {"-h", "--help"} & set(arguments):
         read_options(arguments, {}, False, ())  # ends here, and needs no roscore
-    give_way()
+    lower_priority()
     rospy.init_node("UI")
     try:
         ending = Ending()

@@ -63,7 +63,7 @@ def read_state(text: str) -> State:
 def ready(said: str, scenario: str) -> bool:
     """True where the UI that was started last is one of this scenario, and has found everybody ready."""
     starts = list(re.finditer(r"^(\w+): waiting for ", said, re.MULTILINE))
-    return bool(starts) and starts[-1].group(1) == scenario and "Everybody is ready" in said[starts[-1].end():]
+    return bool(starts) and starts[-1].group(1) == scenario and "All nodes are ready" in said[starts[-1].end():]
 
 
 class Node(NamedTuple):

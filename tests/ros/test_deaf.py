@@ -47,7 +47,7 @@ def test_words_of_a_controller_that_does_not_hear_the_observer_count_nothing(
             ros.run(f"python3 {SAY} _start_", workspace, **where)
             until(lambda: "status=waiting" not in state(), "the mission runs")
             say("bot1:bot1_c2b")
-            until(lambda: "does not hear the states" in log.read_text(), "the observer has heard the word")
+            until(lambda: "does not receive the states" in log.read_text(), "the observer has heard the word")
             assert not goes(), log.read_text()
             say("listen")
             say("bot1:bot1_c2b")
