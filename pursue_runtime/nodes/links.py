@@ -1,9 +1,10 @@
 """Connections that come back after a cut, and the master: what rospy leaves to its nodes.
 
 A TCP connection that was cut for t seconds may need t more before it delivers again, and rospy gives it up for good
-after 150 s. So every node watches topics on which each publisher sends about once a second. A publisher that was silent for a
-while gets a second connection, on every topic, as soon as it answers calls again. The old one is kept for a time, and
-only listens: the publisher sends there what it had sent before, and nothing else. So no message is lost or comes twice.
+after 150 s. So every node watches topics on which each publisher sends about once a second. A publisher that was silent
+for a while gets a second connection, on every topic, as soon as it answers calls again. The old one is kept for a time,
+and only listens: the publisher sends there what it had sent before, and nothing else. So no message is lost or comes
+twice.
 
 When that is done is decided in `pursue_runtime.links`.
 """
