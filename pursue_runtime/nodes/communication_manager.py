@@ -52,7 +52,7 @@ class CommunicationManager:
         self.background.start()
         self.log_address(host, exposed, context is not None)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda _: None, queue_size=100)
-        Diagnostics(self.report, Links(pulses, lost=self.master_lost))
+        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost))
 
     def make_forwarder(self, host: str) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError."""

@@ -38,8 +38,8 @@ class Controller:
         self.ending = Ending()
         self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)
         self.observer = ""
-        self.exegg = Exeggutor()
-        self.alarm = Alarm(self.on_alarm)
+        self.exegg = Exeggutor(self.ending)
+        self.alarm = Alarm(self.on_alarm, self.ending)
         try:
             self.follower.begin()
         except DataError as problem:
@@ -49,7 +49,7 @@ class Controller:
         self.take_up()
         states = subscribe_states(self.update_state)
         rospy.Subscriber(PLAN, String, self.learn, queue_size=10, tcp_nodelay=True)
-        Diagnostics(self.report, Links(states, lost=self.master_lost))
+        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost))
 
     def take_up(self) -> None:
         """Has the robots of the part that is played. Raises DataError where their settings are wrong."""

@@ -12,7 +12,7 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.controller.robot import Robot, Way, settings_of
-from pursue_runtime.nodes.node import Alarm, listeners
+from pursue_runtime.nodes.node import Alarm, Ending, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.words import EVENTS
@@ -26,7 +26,7 @@ LOOKS = 0.2
 class Exeggutor:
     """Sends the words to the observer, and goals and actions to each robot on topics of its own."""
 
-    def __init__(self) -> None:
+    def __init__(self, ending: Ending) -> None:
         self._lock = threading.RLock()
         self._poses: Dict[str, List[float]] = {}
         self._ways: Dict[str, Way] = {}
@@ -34,7 +34,7 @@ class Exeggutor:
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._robots: Dict[str, Robot] = {}
         self._links: Dict[str, RobotLink] = {}
-        self._alarm = Alarm(self._on_alarm)
+        self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
     def take_up(self, robots: Iterable[str], poses: Mapping[str, Sequence[float]]) -> None:

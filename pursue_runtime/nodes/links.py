@@ -23,7 +23,7 @@ import rospy
 from rospy.impl.registration import get_topic_manager
 
 from pursue_runtime.links import KNOWN, REFUSED, STRANGER, TROUBLES, UNREACHABLE, MasterWatch, Peers
-from pursue_runtime.nodes.node import ERROR, STALE, WARN, Report, worse
+from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, Report, start_thread, worse
 
 PERIOD = 1.0
 """Seconds between two looks at the connections."""
@@ -66,7 +66,9 @@ class Links:
     `lost(reason)` is called once, in a thread of the watch, when the master is given up.
     """
 
-    def __init__(self, *pulses: rospy.Subscriber, lost: Optional[Callable[[str], None]] = None) -> None:
+    def __init__(
+        self, *pulses: rospy.Subscriber, ending: Ending, lost: Optional[Callable[[str], None]] = None
+    ) -> None:
         self._pulses = pulses
         self._lost = lost
         self._lock = threading.Lock()
@@ -77,7 +79,7 @@ class Links:
         self._renewals = 0
         log_without_master()
         for task in (self._watch_links, self._watch_master):
-            threading.Thread(target=task, name=task.__name__.strip("_"), daemon=True).start()
+            start_thread(task.__name__.strip("_"), task, ending)
 
     def amend(self, report: Report) -> Report:
         """The node's report with what is wrong with the master and the connections."""

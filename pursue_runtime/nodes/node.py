@@ -9,6 +9,7 @@ import signal
 import sys
 import threading
 import time
+import traceback
 from typing import TYPE_CHECKING, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence
 
 import rospy
@@ -36,18 +37,32 @@ class Report(NamedTuple):
     values: Dict[str, object]
 
 
+def start_thread(name: str, run: Callable[[], object], ending: Ending) -> None:
+    """Start a thread that the node cannot do without: an exception in it ends the node, with status 1 and a reason."""
+
+    def guarded() -> None:
+        try:
+            run()
+        except Exception as problem:
+            if not rospy.is_shutdown():
+                rospy.logfatal("the node ends: its thread %s failed: %r\n%s", name, problem, traceback.format_exc())
+                ending.end(FAILED)
+
+    threading.Thread(target=guarded, name=name, daemon=True).start()
+
+
 class Diagnostics:
     """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
 
     With `links` it includes what is wrong with the connections and the master.
     """
 
-    def __init__(self, report: Callable[[], Report], links: Optional[Links] = None) -> None:
+    def __init__(self, report: Callable[[], Report], ending: Ending, links: Optional[Links] = None) -> None:
         self._name = rospy.get_name().lstrip("/")
         self._report = report
         self._links = links
         self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
-        threading.Thread(target=self._run, name="diagnostics", daemon=True).start()
+        start_thread("diagnostics", self._run, ending)
 
     def _run(self) -> None:
         while not rospy.is_shutdown():
@@ -79,7 +94,7 @@ class Alarm:
     Setting it again replaces what was set. In simulated time it wakes on /clock.
     """
 
-    def __init__(self, action: Callable[[], None]) -> None:
+    def __init__(self, action: Callable[[], None], ending: Ending) -> None:
         self._action = action
         self._changed = threading.Condition()
         self._moment: Optional[float] = None
@@ -88,7 +103,7 @@ class Alarm:
         if not rospy.rostime.is_wallclock():
             self._simulated = rospy.get_time()
             rospy.Subscriber("/clock", Clock, self._tick, queue_size=10, tcp_nodelay=True)
-        threading.Thread(target=self._run, name="alarm", daemon=True).start()
+        start_thread("alarm", self._run, ending)
 
     def set(self, moment: Optional[float] = None, patience: Optional[float] = None) -> None:
         """Call it at this ROS time (seconds), and in any case after `patience` seconds of real time.
@@ -128,6 +143,9 @@ class Alarm:
             waits.append(self._deadline - time.monotonic())
         return min(waits) if waits else None
 
+
+FAILED = 1
+"""The exit status of a node that cannot go on."""
 
 INTERRUPTED, RENEWED = -1, -2
 """What takes the place of an exit status where a signal ends the node, and where it begins anew."""

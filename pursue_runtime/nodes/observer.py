@@ -25,7 +25,18 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.missions import Missions, Source, own_source, ros_home
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, listeners, restart_process
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Alarm,
+    Diagnostics,
+    Ending,
+    Report,
+    listeners,
+    restart_process,
+    start_thread,
+)
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
 from pursue_runtime.observer.mission import Mission
@@ -59,7 +70,7 @@ class Observer:
         self.lock = threading.RLock()
         self.ending = Ending()
         self.log_lines: queue.SimpleQueue[Tuple[str, str]] = queue.SimpleQueue()
-        threading.Thread(target=self.write_log, name="log", daemon=True).start()
+        start_thread("log", self.write_log, self.ending)
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if rospy.get_param("~received", False) else ""
         self.missions = Missions(own, package.name, home)
@@ -80,13 +91,14 @@ class Observer:
         self.texts = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
-        self.alarm = Alarm(self.on_alarm)
+        self.alarm = Alarm(self.on_alarm, self.ending)
         self.await_clock()
         self.publish([self.mission.state(self.now())])
         self.words = rospy.Subscriber(EVENTS, String, self.on_word, tcp_nodelay=True)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
-        threading.Thread(target=self.keep_publishing, name="heartbeat", daemon=True).start()
-        Diagnostics(self.report, Links(pulses, lost=partial(self.call, "stop")))
+        start_thread("heartbeat", self.keep_publishing, self.ending)
+        links = Links(pulses, ending=self.ending, lost=partial(self.call, "stop"))
+        Diagnostics(self.report, self.ending, links)
 
     def _source(self) -> Source:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has

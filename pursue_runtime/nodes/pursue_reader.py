@@ -56,12 +56,12 @@ class Node:
         self.reader = Reader(robot, store, keys, time.monotonic(), log, patience)
         self.published = ""
         self.statuses = rospy.Publisher("mission_status", String, queue_size=10, latch=True)
-        self.alarm = Alarm(self.on_alarm)
+        self.alarm = Alarm(self.on_alarm, ending)
         self.publish()
         self.orders = rospy.Subscriber("local_mission", String, self.on_order, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, "/" + topic.lstrip("/"))
-        Diagnostics(self.report, Links(states, lost=self.master_lost))
+        Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost))
         trouble = self.reader.trouble()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):

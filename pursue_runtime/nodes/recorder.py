@@ -81,7 +81,8 @@ class Recorder:
             for topic in dict.fromkeys(wanted)
         ]
         pulses = [each for each in self.subscribers if each.resolved_name == "/diagnostics"]
-        Diagnostics(self.report, Links(*pulses, lost=lambda _: self.ending.end(1)))
+        links = Links(*pulses, ending=self.ending, lost=lambda _: self.ending.end(1))
+        Diagnostics(self.report, self.ending, links)
 
     def note_game(self) -> None:
         """The bag begins with what is needed to check it."""

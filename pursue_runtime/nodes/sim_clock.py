@@ -9,7 +9,6 @@ file under ROS_HOME, one for each roscore.
 from __future__ import annotations
 
 import os
-import threading
 import time
 from typing import Optional
 
@@ -19,7 +18,7 @@ from rosgraph_msgs.msg import Clock
 
 from pursue_runtime.data import Package
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, start_thread
 from pursue_runtime.simulator.clock import START, Memory, Pace, SimClock
 from pursue_runtime.words import EVENTS, STATE
 
@@ -39,9 +38,9 @@ def run(pace: Pace, scenario: str) -> int:
         )
         for topic in (EVENTS, STATE)
     ]
-    links = Links(states, lost=lambda _: ending.end(1))
-    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), links)
-    threading.Thread(target=tick, args=(clock, pace, publisher, memory), name="clock", daemon=True).start()
+    links = Links(states, ending=ending, lost=lambda _: ending.end(1))
+    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links)
+    start_thread("clock", lambda: tick(clock, pace, publisher, memory), ending)
     return ending.wait()
 
 

@@ -53,7 +53,7 @@ class SimulatorNode:
         self.status = WAITING
         self.reported = 0
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
-        self.alarm = Alarm(self.act)
+        self.alarm = Alarm(self.act, self.ending)
         self.subscribers: List[rospy.Subscriber] = []
         for robot in self.robots:
             for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
@@ -62,7 +62,8 @@ class SimulatorNode:
                 )
         states = subscribe_states(self.on_state)
         pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
-        Diagnostics(self.report, Links(states, pulses, lost=self.master_lost))
+        links = Links(states, pulses, ending=self.ending, lost=self.master_lost)
+        Diagnostics(self.report, self.ending, links)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: activities begin."""

@@ -30,6 +30,7 @@ from pursue_runtime.nodes.node import (
     listeners,
     lower_priority,
     restart_process,
+    start_thread,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import WAITING, SystemState
@@ -73,13 +74,13 @@ class UI:
         self.gives_up = time.monotonic() + options.wait
         self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
-        self.alarm = Alarm(self.on_alarm)
+        self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
         self.states = subscribe_states(self.on_state)
         rospy.Subscriber(PLAN, String, self.on_plan, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber(EVENTS, String, self.on_word, queue_size=1000, tcp_nodelay=True)
         pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
-        Diagnostics(self.report, Links(self.states, pulses, lost=self.master_lost))
+        Diagnostics(self.report, ending, Links(self.states, pulses, ending=ending, lost=self.master_lost))
 
     # Callbacks --------------------------------------------------------------------------------------------------------
 
@@ -310,7 +311,7 @@ class UI:
         if self.board is not None:
             self.terminal.line(f"The page is at {self.board.web.url}", TOLD)
         if self.reads():
-            threading.Thread(target=self.read, name="typed", daemon=True).start()
+            start_thread("typed", self.read, self.ending)
         status = self.ending.wait(linger=0.3)
         if self.board is not None:
             self.board.web.close()

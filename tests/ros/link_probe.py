@@ -15,27 +15,29 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Report
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report
 
 
 def main(role: str) -> None:
     rospy.init_node(role)
     pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
-    Diagnostics(lambda: Report(True, OK, "fine", {}), Links(pulses))
+    ending = Ending()
+    Diagnostics(lambda: Report(True, OK, "fine", {}), ending, Links(pulses, ending=ending))
     if role == "listener":
         # In one piece: an old and a new connection may speak at the same time, each in a thread of its own.
         rospy.Subscriber("pursue/events", String, lambda message: os.write(1, f"{message.data}\n".encode()))
-        rospy.spin()
+        ending.wait()
         return
     words = rospy.Publisher("pursue/events", String, queue_size=10000)
     signal.signal(signal.SIGUSR1, lambda *_: [connection.close() for connection in list(words.impl.connections)])
-    while words.get_num_connections() == 0:
+    while words.get_num_connections() == 0 and not ending.called:
         time.sleep(0.1)
     number = 0
-    while not rospy.is_shutdown():
+    while not ending.called:
         number += 1
         words.publish(str(number))
         time.sleep(0.1)
+    ending.wait()
 
 
 if __name__ == "__main__":

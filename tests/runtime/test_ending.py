@@ -56,6 +56,18 @@ def test_signals_that_come_while_it_ends_change_nothing() -> None:
     assert run("ending.end(3); print(ending.wait()); print(deep)") == ["3", "[0]"]
 
 
+def test_a_thread_that_fails_ends_the_node_with_status_1_and_the_reason() -> None:
+    program = """
+from pursue_runtime.nodes.node import start_thread
+rospy.logfatal = lambda text, *words: print(text % words)
+start_thread("alarm", lambda: 1 / 0, ending)
+print("status", ending.wait())
+"""
+    lines = run(program)
+    assert lines[0] == "the node ends: its thread alarm failed: ZeroDivisionError('division by zero')"
+    assert lines[-1] == "status 1"
+
+
 def test_a_node_that_begins_anew_is_the_same_process_with_its_signals_as_they_were() -> None:
     program = """
 from pursue_runtime.nodes import node
