@@ -106,7 +106,7 @@ def nodes(ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab] = None) ->
 def talk(made: Nodes, workspace: Path) -> None:
     """Starts talker and listener, and waits until they are connected."""
     for role in ("listener", "talker"):
-        made.start(role, f"exec /usr/bin/python3 {PROBE} {role}", role)
+        made.start(role, f"source devel/setup.bash; exec /usr/bin/python3 {PROBE} {role}", role)
     until(lambda: len(heard(made)) > 20, made.logs)
 
 
