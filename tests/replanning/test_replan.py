@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
-from pathlib import Path
 from typing import Any, Dict, List
 
 import pytest
@@ -65,8 +63,6 @@ def test_from_every_place_where_somebody_was_early_or_late_there_is_a_plan(name:
 
 @pytest.mark.parametrize("name", THESIS)
 def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
-    sys.path.append(str(Path(__file__).resolve().parent.parent / "runtime"))
-
     for state, clocks in walk(name, 3, 8):
         request = asked(name, state, clocks, ahead=0.0)
         answer = won(request)

@@ -1,4 +1,4 @@
-"""The modules of the generated package communication_manager, a robot's reader to talk to, and desks that send."""
+"""A server of communication_manager for tests: a robot's reader that answers it, and desks that send."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The modules of the generated package pursue_reader, a desk with keys, its missions, and a disk with faults."""
+"""A reader of a robot for tests: a desk with keys, its missions, and a disk with faults."""
 
 from __future__ import annotations
 

@@ -18,7 +18,6 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from reader_stage import DESK, OWN, POSES, STRATEGY
 
 from pursue_gen.transport import sender
 from pursue_gen.transport.client import Answer, Robot, Status, Unreached
@@ -32,6 +31,7 @@ from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store, damage
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.trusted_keys import KeyFolder
+from tests.runtime.reader_stage import DESK, OWN, POSES, STRATEGY
 
 PACKAGES = {"base": ("observer",), "bot1": ("controller_bot1",), "bot2": ("controller_bot2",)}
 BOTS = ("bot1", "bot2")

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from texts import read
 
 from pursue_runtime import zones as runtime_zones
 from pursue_runtime.data import DataError, Package, data_file, read_data
@@ -17,6 +16,7 @@ from pursue_runtime.state import SystemState, format_state, older, parse_state
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import Word, format_word, parse_word
 from pursue_runtime.zones import due, parse_zone
+from tests.runtime.texts import read
 
 MARGIN = 0.02
 CLOCKS = ("Cx", "Cy", "Cz")

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Iterator, List, Tuple
 
 import pytest
-from reader_stage import DESK
 
 from pursue_gen.language import load
 from pursue_gen.solving.inputs import game_of
@@ -28,6 +27,7 @@ from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store, StoreError
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
+from tests.runtime.reader_stage import DESK
 from tests.waiting import PATIENCE
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"

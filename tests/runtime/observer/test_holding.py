@@ -6,9 +6,9 @@ import json
 from typing import Any, Dict, List
 
 import pytest
-from test_observer import CHASE, Journey
 
 from pursue_runtime.state import format_state, parse_state
+from tests.runtime.observer.test_mission import CHASE, Journey
 
 COVER = """
 format: 1

@@ -7,10 +7,10 @@ import stat
 from pathlib import Path
 
 import pytest
-from ui_package import model_data, mover
 
 from pursue_runtime.model import Model
 from pursue_runtime.ui.recording import missing, reserve, topics
+from tests.runtime.models import model_data, mover
 
 MODEL = Model(model_data(mover("bot", "robot", 3), mover("thief", "agent", 3)))
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, List, Optional
 
 import pytest
-from texts import read
 
 from pursue_runtime.controller.player import Player
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
+from tests.runtime.texts import read
 
 STRATEGY = """
 format: 1

@@ -9,12 +9,12 @@ from typing import Any, Dict, List, Tuple
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from texts import read
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.strategy import read_cover
+from tests.runtime.texts import read
 
 CHASE = """
 format: 1

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import model_data, mover, state, worker
 
 from pursue_runtime.model import Model
 from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator, window_at
+from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
 EVERYBODY = ["bot", "thief", "nurse"]

@@ -6,7 +6,7 @@ import random
 from pathlib import Path
 from typing import List
 
-from reader_stage import Robot, message, mission
+from tests.runtime.reader_stage import Robot, message, mission
 
 EARLIER, LATER = mission("earlier"), mission("later")
 

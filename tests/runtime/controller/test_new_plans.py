@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from test_controller import STRATEGY, state
-from texts import read
-
 from pursue_runtime.controller.player import Player
 from pursue_runtime.strategy import Plans, Strategy
+from tests.runtime.controller.test_player import STRATEGY, state
+from tests.runtime.texts import read
 
 LATER = STRATEGY.replace("5 <= Cbot && Cbot <= 6", "8 <= Cbot")
 

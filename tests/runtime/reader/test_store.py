@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
-from reader_stage import OWN, Crash, Disk, Mission, Robot, mission
 
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.bundle import Bundle, mission_file, unpack
 from pursue_runtime.reader import store as mission_store
 from pursue_runtime.reader.store import Store, StoreError, damage, table
+from tests.runtime.reader_stage import OWN, Crash, Disk, Mission, Robot, mission
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")
 

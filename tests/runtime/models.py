@@ -1,4 +1,4 @@
-"""The modules of the generated package UI, rendered and importable: `from ui_package import ui_core`."""
+"""Models and states for tests of the UI and the simulator."""
 
 from __future__ import annotations
 

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any, Callable, Iterator
 
 import pytest
-from ui_package import model_data, mover, state, worker
 
 from pursue_runtime.model import Model
 from pursue_runtime.ui.page import Facts, Page, Plan
+from tests.runtime.models import model_data, mover, state, worker
 
 pytest.importorskip("tornado", reason="tornado is not installed")
-sys.path.append(str(Path(__file__).resolve().parent.parent / "ros"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "ros"))
 from browser import Browser, browser, program
 
 from pursue_runtime.ui import board as ui_board

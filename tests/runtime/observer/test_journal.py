@@ -10,15 +10,15 @@ from typing import Any, List, Tuple
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_observer import CHASE
-from test_observer_holding import COVER, EVERYWHERE, answer
-from texts import read
 
 from pursue_runtime.model import Model
 from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import format_state
 from pursue_runtime.strategy import read_cover
+from tests.runtime.observer.test_holding import COVER, EVERYWHERE, answer
+from tests.runtime.observer.test_mission import CHASE
+from tests.runtime.texts import read
 
 HEADER = {"scenario": "chase", "model": "1", "launch": "x"}
 PLAY = [

@@ -10,7 +10,6 @@ from typing import Any, Dict, List
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from manager_stage import ROBOT, Desk
 
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager import manager as manager_core
@@ -26,6 +25,7 @@ from pursue_runtime.manager.manager import (
     topic_names,
 )
 from pursue_runtime.trusted_keys import KeyFolder
+from tests.runtime.manager_stage import ROBOT, Desk
 
 TICKET = "0" * 31 + "1"
 MISSION = "a" * 64

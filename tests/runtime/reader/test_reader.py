@@ -10,12 +10,23 @@ from pathlib import Path
 from typing import Any, Set
 
 import pytest
-from reader_stage import DESK, OWN, PATIENCE, POSES, STRANGER, STRATEGY, Robot, desk_bundle, message, mission
 
 from pursue_gen.workspace.generate import mission_of
 from pursue_runtime import trusted_keys as pursue_guard
 from pursue_runtime.trusted_keys import KeyFolder, read_keys
 from tests import waiting
+from tests.runtime.reader_stage import (
+    DESK,
+    OWN,
+    PATIENCE,
+    POSES,
+    STRANGER,
+    STRATEGY,
+    Robot,
+    desk_bundle,
+    message,
+    mission,
+)
 from tests.workspace.worlds import files as workspace_files
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")

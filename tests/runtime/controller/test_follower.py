@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Dict, List, Optional, Tuple
 
 import pytest
-from texts import read
 
 from pursue_runtime import missions as pursue_missions
 from pursue_runtime.controller.follower import Follower
@@ -14,6 +13,7 @@ from pursue_runtime.missions import Missions
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import format_word
+from tests.runtime.texts import read
 
 A, B, C = "a" * 12, "b" * 12, "c" * 12
 POSES = {"x": [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]}

@@ -6,12 +6,12 @@ import json
 from typing import Any, Dict, Optional
 
 import pytest
-from ui_package import model_data, mover, state, worker
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.page import KEPT, Facts, Page, Plan, read_plan, read_request
+from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(
     model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent"))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ui_package import model_data, mover, state, worker
 
 from pursue_runtime.model import Model, Position
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.mission import Mission, Opening, Readiness, answer, menu, openings, tasks
 from pursue_runtime.ui.players import AGAIN, AtRandom, Scripted, StandStill, Step
+from tests.runtime.models import model_data, mover, state, worker
 
 DATA = model_data(
     mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent")

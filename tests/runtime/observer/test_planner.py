@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, List, Tuple
 
 import pytest
-from test_again import gone
 
 from pursue_runtime.observer import planner as observer_planner
 from pursue_runtime.observer.planner import Planner
 from pursue_runtime.observer.planning import PlanRequest
+from tests.runtime.test_again import gone
 from tests.waiting import PATIENCE, until
 
 FOUND = {"format": 1, "won": True, "strategies": {}, "people": None, "cover": {}}

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
-from reader_stage import OWN, STRANGER, Crash, Disk, Robot, message, mission
 
 from pursue_runtime.reader import store as mission_store
+from tests.runtime.reader_stage import OWN, STRANGER, Crash, Disk, Robot, message, mission
 
 LIVE, IDLE = ["running", "holding"], ["waiting", "won", "lost", "stopped"]
 MISSIONS = [mission(f"number{number}") for number in range(6)]
