@@ -14,9 +14,9 @@ import os
 from typing import Any, Dict, Mapping, NamedTuple, Optional
 
 from pursue_runtime.data import DataError, Package, data_file, parse_data, read_data
+from pursue_runtime.folders import MISSIONS
 from pursue_runtime.manifest import ID_LENGTH, MISSION, OWN, is_digest
 
-STORE = os.path.join("pursue", "missions")
 STATE, MANIFEST = "state.json", "manifest.json"
 
 
@@ -71,7 +71,7 @@ class Missions:
     def __init__(self, own: Source, package: str, home: str = "") -> None:
         self.own = own
         self._package = package
-        self._store = os.path.join(home, STORE) if home else ""
+        self._store = os.path.join(home, MISSIONS) if home else ""
         self._seen: object = self._mark()
 
     def current(self) -> Source:
@@ -169,8 +169,3 @@ def _facts(path: str) -> Dict[str, Any]:
     if not isinstance(facts, dict) or facts.get("format") != 1:
         raise DataError(f"{path} is not a file of format 1")
     return facts
-
-
-def ros_home(environment: Mapping[str, str]) -> str:
-    """ROS_HOME, ~/.ros where it is not set."""
-    return environment.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")

@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 import os
-from typing import Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 from pursue_runtime.bundle import Keys, read_keys
 
 Stamp = Tuple[Tuple[str, int, int, int], ...]
-
-
-def keys_folder(environ: Mapping[str, str]) -> str:
-    """Where the trusted keys are, unless told otherwise: under ROS_HOME."""
-    home = environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
-    return os.path.join(home, "pursue", "keys")
 
 
 class KeyFolder:

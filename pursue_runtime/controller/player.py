@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import List, NamedTuple, Optional, Tuple
 
+from pursue_runtime.locations import action_of, is_under_way
+from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older
 from pursue_runtime.strategy import Command, Plans, Strategy
 from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
-
-FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0
-"""Seconds of real time that a word has to be answered before it is sent again: at first, and at most."""
 
 
 class Order(NamedTuple):
@@ -100,7 +99,7 @@ class Player:
             return None
         command = self.planned[1]
         self.planned = None
-        self._patience = min(FIRST_PATIENCE * 2**self._unanswered, LAST_PATIENCE)
+        self._patience = resend_timeout(self._unanswered + 1)
         self.counts["sent_again" if self._unanswered else "sent"] += 1
         self._unanswered += 1
         return Word(command.agent, command.event, state.seq)
@@ -117,7 +116,7 @@ class Player:
             target = state.locations.get(agent, "")
             origin = before.locations.get(agent, "") if before else ""
             own = state.agent == agent
-            begins = origin != target and target.startswith(("going_", "doing_"))
+            begins = origin != target and is_under_way(target)
             if own and before is not None and not self._holds(before, state):
                 self.counts["not_ours"] += 1  # somebody reports it, or did it by hand: the robot gets no order from us
             elif begins or (own and origin == target and self._instant(state, target)):
@@ -138,8 +137,3 @@ class Player:
             return True
         commands = strategy.commands(before)
         return any((command.agent, command.event) == (state.agent, state.event) for command in commands)
-
-
-def action_of(location: str) -> str:
-    """The event of a location `doing_<event>_in_<poi>`; the location itself for others."""
-    return location[len("doing_") :].rsplit("_in_", 1)[0] if location.startswith("doing_") else location

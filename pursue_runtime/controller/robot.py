@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Deque, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.resend import resend_timeout
 from pursue_runtime.words import FAILED, Word, format_word
 
 GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
@@ -18,9 +19,6 @@ GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), 
 SUCCEEDED = 3
 FAILURES = {2: "preempted", 4: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
 """The statuses with which a goal may end, as actionlib_msgs/GoalStatus numbers them."""
-
-FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0
-"""Seconds of real time that a report has to show in the state before it is repeated: at first, and at most."""
 
 
 class Settings(NamedTuple):
@@ -244,7 +242,7 @@ class Robot:
 
     @staticmethod
     def _repeat(trip: Trip) -> float:
-        return trip.reported + min(FIRST_PATIENCE * 2.0 ** (trip.reports - 1), LAST_PATIENCE)
+        return trip.reported + resend_timeout(trip.reports)
 
     def _arrival(self, near_since: float) -> float:
         return near_since + self.settings.end_settle

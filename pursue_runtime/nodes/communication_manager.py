@@ -19,13 +19,14 @@ from std_msgs.msg import String
 
 from pursue_runtime.bundle import LIMIT
 from pursue_runtime.data import Package
+from pursue_runtime.folders import keys_folder
 from pursue_runtime.manager.background import Background, ServerError, Service, bind
 from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, Record, is_loopback, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report
-from pursue_runtime.trusted_keys import KeyFolder, keys_folder
+from pursue_runtime.trusted_keys import KeyFolder
 
 
 class CommunicationManager:

@@ -15,8 +15,9 @@ from std_msgs.msg import String
 
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.folders import ros_home
 from pursue_runtime.hearing import OLD, OURS
-from pursue_runtime.missions import Missions, own_source, ros_home
+from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report

@@ -12,6 +12,7 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.controller.robot import Robot, Way, settings_of
+from pursue_runtime.locations import is_action, is_movement, movement
 from pursue_runtime.nodes.node import Alarm, Ending, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
@@ -46,7 +47,7 @@ class Exeggutor:
                 link.keep("", False, "")
             self._robots, self._status = {}, RUNNING
             self._poses = {poi: [float(number) for number in pose] for poi, pose in poses.items()}
-            ways = [(f"going_{x}_to_{y}", y) for x in self._poses for y in self._poses]
+            ways = [(movement(x, y), y) for x in self._poses for y in self._poses]
             self._ways = {location: Way(location, y, *self._poses[y][:2]) for location, y in ways}
             given = rospy.get_param("~", {})
             settings = {robot: settings_of(robot, given) for robot in robots}
@@ -89,7 +90,7 @@ class Exeggutor:
         """The agent begins `trigger`, from `origin` to `target`: order its robot to do so."""
         if agent not in self._robots:
             return  # an objective has no robot
-        if target.startswith("going_") and target != origin:
+        if is_movement(target) and target != origin:
             way = self._ways.get(target)
             if way is None:
                 rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
@@ -99,7 +100,7 @@ class Exeggutor:
                 self._act()
         elif target == origin:
             self._links[agent].do(trigger)
-        elif target.startswith("doing_"):
+        elif is_action(target):
             self._links[agent].do(trigger, target)
 
     # From the robots --------------------------------------------------------------------------------------------------

@@ -10,8 +10,9 @@ import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.folders import ros_home
 from pursue_runtime.hearing import OLD, OTHER, OURS, Hearing
-from pursue_runtime.missions import Missions, Source, own_source, ros_home
+from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.words import STATE

@@ -22,7 +22,8 @@ from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
-from pursue_runtime.missions import Missions, Source, own_source, ros_home
+from pursue_runtime.folders import ros_home, scenario_folder
+from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import (
@@ -38,7 +39,7 @@ from pursue_runtime.nodes.node import (
     start_thread,
 )
 from pursue_runtime.nodes.state_message import message_of
-from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
+from pursue_runtime.observer.journal import Journal, unfinished
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Answer, Planner
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
@@ -139,7 +140,7 @@ class Observer:
 
     def _journal_path(self) -> str:
         path = setting("~journal", "on")
-        on = os.path.join(journals_folder(os.environ, self.package.scenario), f"journal-{self._journal_name()}.jsonl")
+        on = os.path.join(scenario_folder(os.environ, self.package.scenario), f"journal-{self._journal_name()}.jsonl")
         return {"on": on, "off": ""}.get(path, path)
 
     def _journal(self) -> Journal:

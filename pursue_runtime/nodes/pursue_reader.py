@@ -22,14 +22,15 @@ from std_msgs.msg import String
 
 from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
+from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import PATIENCE, Reader, Robot
-from pursue_runtime.reader.store import KEEP, Store, StoreError, missions_folder
+from pursue_runtime.reader.store import KEEP, Store, StoreError
 from pursue_runtime.state import SystemState
-from pursue_runtime.trusted_keys import KeyFolder, keys_folder
+from pursue_runtime.trusted_keys import KeyFolder
 from pursue_runtime.words import STATE
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}

@@ -17,12 +17,12 @@ from typing import Any, Dict, List, Optional
 import genpy
 import rosbag
 import rosgraph
-import rospkg
 import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -65,7 +65,7 @@ class Recorder:
         self.nodes = ["UI", *expected(rospy.get_param("~", {}), settings.get("nodes", ()))]
         file = str(rospy.get_param("~file", ""))
         file = "" if file.lower() == "true" else file
-        self.path = reserve(file, os.path.join(rospkg.get_ros_home(), "pursue", package.scenario))
+        self.path = reserve(file, scenario_folder(os.environ, package.scenario))
         self.lock = threading.Lock()
         self.status = ""
         self.count = 0

@@ -13,6 +13,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.controller.robot import Goal, Settings
 from pursue_runtime.data import DataError
+from pursue_runtime.locations import is_under_way
 
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
@@ -107,7 +108,7 @@ class RobotLink(rospy.SubscribeListener):
 
     def _send(self, publisher: rospy.Publisher, order: Order) -> None:
         with self._lock:
-            if order.location.startswith(("going_", "doing_")):
+            if is_under_way(order.location):
                 self._standing[publisher.resolved_name] = order
                 if not self._open:
                     self._late.append((publisher.resolved_name, publisher.publish))

@@ -17,6 +17,7 @@ import rospy
 from rosgraph_msgs.msg import Clock
 
 from pursue_runtime.data import Package
+from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, start_thread
 from pursue_runtime.simulator.clock import START, Memory, Pace, SimClock
@@ -66,11 +67,10 @@ def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Option
 
 def remember(scenario: str) -> Optional[Memory]:
     """The memory of this roscore's clock; None, and a warning, where there cannot be one."""
-    home = os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
     core = str(rospy.get_param("/run_id", "") or rosgraph.get_master_uri())
     name = "clock-" + "".join(sign if sign.isalnum() else "_" for sign in core)
     try:
-        return Memory(os.path.join(home, "pursue", scenario, name))
+        return Memory(os.path.join(scenario_folder(os.environ, scenario), name))
     except OSError as problem:
         rospy.logwarn("cannot keep the time (%s): a clock that is killed will start anew", problem)
         return None

@@ -167,9 +167,3 @@ def _forget_old(folder: str) -> None:
     for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-KEPT]:
         with contextlib.suppress(OSError):
             os.remove(entry.path)
-
-
-def journals_folder(environment: Mapping[str, str], scenario: str) -> str:
-    """Where the journals of a scenario are: in pursue/ under ROS_HOME (~/.ros by default)."""
-    home = environment.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
-    return os.path.join(home, "pursue", scenario)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Callable, Collection, Dict, List, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.board import Board
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
@@ -352,7 +353,7 @@ class Mission:
 
     def _failed(self, agent: str, now: float) -> List[SystemState]:
         """A robot says that it cannot do what it was told."""
-        if not self._board.place(agent).startswith(("going_", "doing_")):
+        if not is_under_way(self._board.place(agent)):
             self._drop("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
         elif agent not in self.lost:
             self._lose(agent, "has failed")

@@ -6,7 +6,8 @@ import os
 import sys
 
 from pursue_runtime.data import Package
-from pursue_runtime.reader.store import StoreError, missions_folder, table
+from pursue_runtime.folders import missions_folder
+from pursue_runtime.reader.store import StoreError, table
 
 
 def main(package: Package) -> int:

@@ -15,7 +15,7 @@ import json
 import os
 import shutil
 import zipfile
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, is_digest, mission_file, mission_id
 
@@ -58,12 +58,6 @@ class State(NamedTuple):
     def text(self) -> bytes:
         """As it stands in state.json."""
         return json.dumps({"format": 1, **self._asdict()}, indent=1).encode() + b"\n"
-
-
-def missions_folder(environ: Mapping[str, str]) -> str:
-    """Where the missions are: under ROS_HOME."""
-    home = environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
-    return os.path.join(home, "pursue", "missions")
 
 
 # Reading: changes nothing ---------------------------------------------------------------------------------------------

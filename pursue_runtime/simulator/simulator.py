@@ -10,14 +10,15 @@ import random
 from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 
+from pursue_runtime.locations import is_end
 from pursue_runtime.model import Automaton, Model
+from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older
 from pursue_runtime.words import Word, format_word
 
 ACTING = ("robot", "human", "agent")
 DELAYS = ("random", "early", "middle", "late")
 
-FIRST_PATIENCE, LAST_PATIENCE = 0.5, 4.0  # real seconds without any new state after which a report counts as lost
 INSIDE = (0.1, 0.2)  # time units: how far inside its window an end stays; more where being late would break it
 SAME = 0.5  # time units: starts that are closer than this are one start (no two can follow that fast)
 EARLY = 1.5  # time units by which a goal may seem older than the start it is for: two nodes have two clocks
@@ -44,11 +45,6 @@ class Activity:
     under_way: bool
     sends: int = 0
     sent: float = 0.0
-
-
-def is_end(source: str, target: str) -> bool:
-    """True for the end of a movement or an action: it leaves a `going_…` or `doing_…` location."""
-    return source != target and source.startswith(("going_", "doing_"))
 
 
 def window_at(automaton: Automaton, location: str) -> Optional[Window]:
@@ -184,8 +180,7 @@ class Simulator:
         activity.moment = max(activity.moment, now + activity.shortest)
 
     def _patience(self, activity: Activity) -> float:
-        patience = min(FIRST_PATIENCE * 2.0 ** (activity.sends - 1), LAST_PATIENCE)
-        return max(activity.sent, self._heard) + patience
+        return max(activity.sent, self._heard) + resend_timeout(activity.sends)
 
     def _lost(self, activity: Activity, real: float) -> bool:
         return real >= self._patience(activity)

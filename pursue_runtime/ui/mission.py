@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
 
+from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
-from pursue_runtime.simulator.simulator import is_end, spoken
+from pursue_runtime.simulator.simulator import spoken
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older
 from pursue_runtime.strategy import Plans, Strategy
 from pursue_runtime.words import START, Word, format_word
@@ -222,7 +223,7 @@ class Mission:
 
 def _told(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
     """What a person does who takes this edge."""
-    if edge.target.startswith("going_"):
+    if is_movement(edge.target):
         return f"go from {edge.source} to {_arrival(edges, edge)}{when}"
     return f"do {edge.word}{when}, at {edge.source}"
 

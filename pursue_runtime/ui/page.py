@@ -9,8 +9,9 @@ import json
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
-from pursue_runtime.simulator.simulator import ACTING, is_end, spoken, window_at
+from pursue_runtime.simulator.simulator import ACTING, spoken, window_at
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission import openings, tasks
 from pursue_runtime.words import START
@@ -165,7 +166,7 @@ class Page:
         begin = _begin(automaton, location)
         if to:
             agent["doing"] = f"from {place} to {to}"
-        elif begin is not None and location.startswith("doing_"):
+        elif begin is not None and is_action(location):
             agent["doing"] = f"{begin.word}, at {place or begin.source}"
         if window is not None and window.clock in state.clocks:
             since = at - state.clocks[window.clock]
@@ -178,10 +179,10 @@ class Page:
             return location, ""
         end = next((edge.target for edge in automaton.edges_from(location) if is_end(location, edge.target)), "")
         begin = _begin(automaton, location)
-        if location.startswith("going_") and begin is not None and end:
+        if is_movement(location) and begin is not None and end:
             return begin.source, end
         # An action ends where it began; it may be on a way.
-        return self._where(automaton, end) if end and end != location and not end.startswith("doing_") else ("", "")
+        return self._where(automaton, end) if end and end != location and not is_action(end) else ("", "")
 
     def _turn(self, agents: Sequence[Mapping[str, Any]], state: SystemState) -> str:
         """Whom the mission waits for, in a sentence."""
@@ -259,22 +260,22 @@ class _Phrase(NamedTuple):
 def _phrase(automaton: Automaton, edge: Edge) -> _Phrase:
     begin = _begin(automaton, edge.source)
     if is_end(edge.source, edge.target):
-        if edge.source.startswith("going_"):
+        if is_movement(edge.source):
             return _Phrase(f"arrive at {edge.target}", f"arrives at {edge.target}")
         word = begin.word if begin is not None else edge.word
         return _Phrase(f"{word} is done", f"has done {word}")
-    if edge.target.startswith("going_"):
+    if is_movement(edge.target):
         ends = (end.target for end in automaton.edges_from(edge.target) if is_end(end.source, end.target))
         to = next(ends, "?")
         return _Phrase(f"{edge.source} → {to}", f"sets out from {edge.source} to {to}")
-    if edge.target.startswith("doing_"):
+    if is_action(edge.target):
         return _Phrase(edge.word, f"begins {edge.word}")
     return _Phrase(edge.word, f"does {edge.word}")
 
 
 def _begin(automaton: Automaton, location: str) -> Optional[Edge]:
     """The edge that led into a movement or an action."""
-    if not location.startswith(("going_", "doing_")):
+    if not is_under_way(location):
         return None
     return next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
 

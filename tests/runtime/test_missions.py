@@ -15,9 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.folders import ros_home
 from pursue_runtime.hearing import Hearing
 from pursue_runtime.manifest import make_manifest, mission_file, mission_id
-from pursue_runtime.missions import Missions, own_source, ros_home
+from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.state import SystemState, format_state, older, parse_state
 
 DATA = {"bot": b"format: 1\nwhat: bot of %s\n", "observer": b"format: 1\nwhat: observer of %s\n"}

@@ -63,7 +63,7 @@ def test_every_section_of_the_page_that_is_linked_is_there() -> None:
 
 
 def test_every_fault_has_a_test_that_exists() -> None:
-    """Names are short there: `test_x.py`, `observer/test_x.py`, `test_x.py::test_y`, `…::test_y` of the same file, `test_y_…`."""
+    """Names are short: `test_x.py`, `ui/test_x.py`, `test_x.py::test_y`, `…::test_y` of the same file, `test_y_…`."""
     found = rows(FAULTS)
     assert len(found) > 25
     for cells in found:

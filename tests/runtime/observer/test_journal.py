@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
-from pursue_runtime.observer.journal import Journal, journals_folder, unfinished
+from pursue_runtime.observer.journal import Journal, unfinished
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import format_state
 from pursue_runtime.strategy import read_cover
@@ -197,5 +198,5 @@ def test_without_a_place_for_it_the_mission_runs_and_says_so(tmp_path: Path) -> 
 
 
 def test_the_journals_are_under_ros_home() -> None:
-    assert journals_folder({"ROS_HOME": "/some/where"}, "example") == "/some/where/pursue/example"
-    assert journals_folder({}, "example").endswith("/.ros/pursue/example")
+    assert scenario_folder({"ROS_HOME": "/some/where"}, "example") == "/some/where/pursue/example"
+    assert scenario_folder({}, "example").endswith("/.ros/pursue/example")

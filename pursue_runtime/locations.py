@@ -1,0 +1,38 @@
+"""Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`).
+
+The run time's only place for these two prefixes; the generator writes them in `pursue_gen.tga.names`.
+"""
+
+from __future__ import annotations
+
+_MOVEMENT, _ACTION = "going_", "doing_"
+
+
+def movement(origin: str, destination: str) -> str:
+    """Return the location of an agent that moves from one POI to another."""
+    return f"{_MOVEMENT}{origin}_to_{destination}"
+
+
+def is_movement(location: str) -> bool:
+    """Return True for the location of an agent that moves."""
+    return location.startswith(_MOVEMENT)
+
+
+def is_action(location: str) -> bool:
+    """Return True for the location of an agent in an action with a duration."""
+    return location.startswith(_ACTION)
+
+
+def is_under_way(location: str) -> bool:
+    """Return True for the location of a movement or an action."""
+    return is_movement(location) or is_action(location)
+
+
+def is_end(source: str, target: str) -> bool:
+    """Return True where the edge from source to target ends a movement or an action."""
+    return source != target and is_under_way(source)
+
+
+def action_of(location: str) -> str:
+    """Return the event of an action's location; other locations as they are."""
+    return location[len(_ACTION) :].rsplit("_in_", 1)[0] if is_action(location) else location
