@@ -8,21 +8,21 @@ from typing import Any, Callable, Dict
 from tornado.httpserver import HTTPServer
 
 
-class Door(HTTPServer):
+class LimitedServer(HTTPServer):
     """Lets in so many connections, each for so long. WebSockets leave by this door: they are counted elsewhere."""
 
-    def limit(self, connections: int, longest: float, turned_away: Callable[[], object]) -> None:
+    def limit(self, connections: int, longest: float, on_refused: Callable[[], object]) -> None:
         """To be called before it opens: the base class does not have its subclasses take arguments.
 
         `longest` in seconds; `turned_away` is called for each that finds no room.
         """
-        self._room, self._life, self._turned_away = connections, longest, turned_away
+        self._room, self._life, self._on_refused = connections, longest, on_refused
         self._inside: Dict[Any, asyncio.TimerHandle] = {}
 
     def handle_stream(self, stream: Any, address: Any) -> None:
         """One that comes."""
         if len(self._inside) >= self._room:
-            self._turned_away()
+            self._on_refused()
             stream.close()
             return
         loop = asyncio.get_running_loop()
@@ -36,13 +36,13 @@ class Door(HTTPServer):
             timer.cancel()
         super().on_close(server_conn)
 
-    def end(self) -> None:
+    def close_all(self) -> None:
         """Closes all."""
         for stream in list(self._inside):
             stream.close()
 
 
-def without_chunks(headers: Any) -> bool:
+def drop_chunks(headers: Any) -> bool:
     """Has tornado read no chunks of a request whose head has just come; True where some were announced.
 
     A negative size of a chunk keeps it (6.2) in a loop for ever.

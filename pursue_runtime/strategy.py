@@ -117,7 +117,7 @@ class Plans:
         self._strategies = {0: own}
         self._in_force = 0
 
-    def learn(self, number: int, strategy: Strategy) -> None:
+    def add(self, number: int, strategy: Strategy) -> None:
         """Keeps a plan for when it is in force, and forgets those that never will be again.
 
         Not every plan comes into force: the one that is may be older than others.
@@ -125,7 +125,7 @@ class Plans:
         self._strategies = {known: old for known, old in self._strategies.items() if known >= self._in_force}
         self._strategies[number] = strategy
 
-    def at(self, state: SystemState) -> Optional[Strategy]:
+    def strategy_for(self, state: SystemState) -> Optional[Strategy]:
         """The strategy that is in force; None where its plan has not come here yet."""
         self._in_force = state.plan
         return self._strategies.get(state.plan)

@@ -21,7 +21,7 @@ class KeyFolder:
 
     def keys(self) -> Keys:
         """Those of now, by fingerprint; `problems` says which files hold none."""
-        stamp = self._look()
+        stamp = self._scan()
         if stamp != self._stamp:
             try:
                 self._keys, self.problems = read_keys(self.folder)
@@ -30,7 +30,7 @@ class KeyFolder:
             self._stamp = stamp  # last: another thread may ask meanwhile
         return self._keys
 
-    def _look(self) -> Stamp:
+    def _scan(self) -> Stamp:
         try:
             with os.scandir(self.folder) as entries:
                 found = [(entry.name, entry.stat()) for entry in entries if entry.name.endswith(".pub")]
@@ -39,7 +39,7 @@ class KeyFolder:
         return tuple(sorted((name, facts.st_mtime_ns, facts.st_size, facts.st_ino) for name, facts in found))
 
 
-class Tally:
+class RateLimitedLog:
     """Counts what happens by word, and writes a line about it now and then: strangers cannot fill the log.
 
     `log(text)` writes; `period` is the least time in seconds between two lines.
@@ -49,15 +49,15 @@ class Tally:
         self._log = log
         self._period = period
         self._next = float("-inf")
-        self._unsaid = 0
+        self._suppressed = 0
         self.counts: Dict[str, int] = {}
 
     def count(self, word: str, text: str, now: float) -> None:
         """One more of this, at this moment (seconds); `text` is logged unless something was just now."""
         self.counts[word] = self.counts.get(word, 0) + 1
         if now < self._next:
-            self._unsaid += 1
+            self._suppressed += 1
             return
-        more = f" (and {self._unsaid} more that are not in the log)" if self._unsaid else ""
-        self._next, self._unsaid = now + self._period, 0
+        more = f" (and {self._suppressed} more that are not in the log)" if self._suppressed else ""
+        self._next, self._suppressed = now + self._period, 0
         self._log(text + more)

@@ -17,7 +17,7 @@ from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.wires import Wires
 from pursue_gen.simulation.world import Mover
 from pursue_gen.tga.network import Kind
-from pursue_runtime.controller.player import Order
+from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.state import (
@@ -218,7 +218,7 @@ class Play:
         self._said.append(text)
         self._hear(f"word:{node}", text, max(0.0, latest - self.clockwork.now), node)
 
-    def order(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
+    def order(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do."""
         self._note(f"{node} tells {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
         self._judge.told(order.agent, order.trigger, order.target, seq, newest, again)
@@ -263,7 +263,7 @@ class Play:
                 self._reachable[name] = clockwork.now
             if not observer.alive:
                 continue
-            away = name in observer.mission.away
+            away = name in observer.mission.silent
             if away and self._reachable[name] == clockwork.now:
                 self._note(f"{name} is heard again")
                 observer.call("back", name)

@@ -8,14 +8,14 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 from pursue_gen.simulation.clockwork import Alarm, Clockwork
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.tga.names import is_doing, is_going
-from pursue_runtime.controller.player import Order, Player
-from pursue_runtime.observer.journal import replay
+from pursue_runtime.controller.scheduler import CommandScheduler, StartedActivity
+from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui import mission as ui
-from pursue_runtime.ui.players import StandStill
+from pursue_runtime.ui import mission_view as ui
+from pursue_runtime.ui.environment import IdleEnvironment
 from pursue_runtime.words import Word, parse_word
 
 TICK = 1e-9
@@ -40,7 +40,7 @@ class Outside(Protocol):
     def say(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI says a word, which is promised to be heard by the moment `latest`."""
 
-    def order(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
+    def order(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do, because of state `seq`; `newest` is the last one that it knows,
         `again`: it was started again since it has told it anything."""
 
@@ -68,9 +68,9 @@ class ObserverNode:
         if not self.alive:
             return
         mission, now = self.mission, self._outside.clockwork.now
-        before = mission.mark() if self._outside.faulty else None
-        states = getattr(mission, name)(*args, now)
-        if before is not None and mission.mark() != before:
+        before = mission.revision() if self._outside.faulty else None
+        states = CALLS[name](mission, *args, now)
+        if before is not None and mission.revision() != before:
             end = {"seq": mission.seq, "status": mission.status}
             self._entries.append(json.dumps({"at": now, "call": name, "args": args, **end}))
         self._say(states)
@@ -104,7 +104,7 @@ class ObserverNode:
         if proposal is not None and proposal["plan"] != self._proposed:
             self._proposed = proposal["plan"]
             outside.propose(proposal)
-        outside.want(mission.wanted)
+        outside.want(mission.plan_request)
         self._alarm.set(mission.next_moment(outside.clockwork.now))
 
 
@@ -118,8 +118,8 @@ class ControllerNode:
         self._alarm = Alarm(outside.clockwork, self._ring)
         self._player = self._new()
 
-    def _new(self) -> Player:
-        return Player(self._stage.strategies[self.name], self.name)
+    def _new(self) -> CommandScheduler:
+        return CommandScheduler(self._stage.strategies[self.name], self.name)
 
     @property
     def _now(self) -> float:
@@ -131,11 +131,11 @@ class ControllerNode:
             return
         self._newest = max(self._newest, state.seq)
         known = self._player.state
-        for order in self._player.see(state, self._now):
+        for order in self._player.on_state(state, self._now):
             if order.agent in self._stage.robots and _is_for_robots(order):
                 self._outside.order(self.name, order, state.seq, self._newest, self._restarted)
         self._restarted = False
-        receipt = self._player.receipt()
+        receipt = self._player.repeated_receipt()
         if receipt:
             self._outside.say(self.name, receipt, self._outside.clockwork.now)
         if known is None or (known.seq, known.status) != (state.seq, state.status):
@@ -145,7 +145,7 @@ class ControllerNode:
         """Another plan has come."""
         if self.alive:
             strategy = Strategy(plan["strategies"][self.name])
-            word = self._player.learn(plan["plan"], strategy, self._now)
+            word = self._player.add_plan(plan["plan"], strategy, self._now)
             self._outside.say(self.name, word, self._outside.clockwork.now)
             self._set()
 
@@ -162,8 +162,8 @@ class ControllerNode:
         self._alarm.set()
 
     def _ring(self) -> None:
-        decided = self._player.wake()[0]
-        word = self._player.ring(self._now)
+        decided = self._player.next_wakeup()[0]
+        word = self._player.on_timer(self._now)
         if word:
             stage = self._stage
             moment = self._outside.clockwork.now if decided is None else decided - self._offset
@@ -171,7 +171,7 @@ class ControllerNode:
         self._set()
 
     def _set(self) -> None:
-        moment, patience = self._player.wake()
+        moment, patience = self._player.next_wakeup()
         now = self._outside.clockwork.now
         self._alarm.set(
             None if moment is None else moment - self._offset + TICK, None if patience is None else now + patience
@@ -183,7 +183,7 @@ class PeopleNode:
 
     def __init__(self, stage: Stage, outside: Outside) -> None:
         self._stage, self._outside = stage, outside
-        self._ui = ui.Mission(stage.model, StandStill(), stage.people)
+        self._ui = ui.MissionView(stage.model, IdleEnvironment(), stage.people)
         self._alarm = Alarm(outside.clockwork, self._ring)
 
     def see(self, state: SystemState) -> None:
@@ -194,7 +194,7 @@ class PeopleNode:
     def learn(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
         if plan["people"]:
-            self._ui.learn(plan["plan"], Strategy(plan["people"]))
+            self._ui.add_plan(plan["plan"], Strategy(plan["people"]))
             self._ring()
 
     def _ring(self) -> None:
@@ -206,7 +206,7 @@ class PeopleNode:
         self._alarm.set(*self._ui.next_moments(now))
 
 
-def _is_for_robots(order: Order) -> bool:
+def _is_for_robots(order: StartedActivity) -> bool:
     """What the exeggutor sends: goals and actions, not ends."""
     if is_going(order.target):
         return order.target != order.origin

@@ -13,7 +13,7 @@ from pursue_gen.simulation.faults import Breakdown, Trouble
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.wires import share
 from pursue_gen.tga.names import is_under_way
-from pursue_runtime.simulator.simulator import Simulator, Window, spoken, window_at
+from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
 from pursue_runtime.state import SystemState
 
 INSIDE = 1e-3
@@ -26,7 +26,7 @@ class Durations:
     def __init__(self, trouble: Trouble, seed: str) -> None:
         self._trouble, self._seed = trouble, seed
 
-    def draw(self, window: Window, agent: str, number: int) -> float:
+    def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Time units from the start of the agent's `number`-th activity to its end: each end of the window with
         probability 1/4."""
         part = share(random.Random(f"{self._seed}/{agent}/{number}"))
@@ -101,6 +101,6 @@ class Mover:
         """It can go on: what it was at ends now, if that is still to end."""
         self._broken = False
         model = self._stage.model
-        window = window_at(model.automaton(self.agent), self._place)
+        window = end_window(model.automaton(self.agent), self._place)
         if window is not None:
-            self._say(self.agent, spoken(model, self.agent, window.event))
+            self._say(self.agent, report_word(model, self.agent, window.event))

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.controller.player import Player
+from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.data import DataError
-from pursue_runtime.hearing import OLD, OTHER, Hearing
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.state import ENDED, WAITING, SystemState
+from pursue_runtime.state_filter import OLD, OTHER, StateFilter
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import Word
 
@@ -64,45 +64,45 @@ class Follower:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.part: Optional[Part] = None
-        self.player: Optional[Player] = None
-        self.trouble = self._told = ""
+        self.scheduler: Optional[CommandScheduler] = None
+        self.trouble = self._logged = ""
         self._missions, self._name, self._package, self._log = missions, name, package, log
-        self._hearing = Hearing("", missions.own.mission, again, clock)
+        self._filter = StateFilter("", missions.own.mission, again, clock)
         self._source: Optional[Source] = None  # where the part was read
         self.plan: Optional[Mapping[str, Any]] = None  # the newest, of whatever mission, until it is learned
 
-    def begin(self) -> None:
+    def load_current(self) -> None:
         """Reads the part of the mission that is current, before any state is heard. Raises DataError."""
         self._read(self._missions.current())
 
-    def follow(self, state: SystemState) -> str:
+    def on_state(self, state: SystemState) -> str:
         """A state: the part of its mission is read, if it is another one. What the state is to us (see Hearing)."""
-        verdict = self._hearing.judge(state)
-        if self._hearing.anew and self.part is not None:
+        verdict = self._filter.classify(state)
+        if self._filter.clock_set_back and self.part is not None:
             self._log("warn", "the observer's clock was set back: what was known of the mission is forgotten")
-            self._take_up(self.part._replace())  # a new one: what its robots were told is over
+            self._use(self.part._replace())  # a new one: what its robots were told is over
         if verdict == OTHER or (verdict != OLD and (self.part is None or self._moved(state))):
             self._change(state.mission)
-            verdict = self._hearing.judge(state) if self.part else OTHER
-        if verdict == OLD and self.player:
-            self.player.counts["old"] += 1
+            verdict = self._filter.classify(state) if self.part else OTHER
+        if verdict == OLD and self.scheduler:
+            self.scheduler.counts["old"] += 1
         elif verdict != OLD and state.status == WAITING:
             self.plan = None  # new plans are of missions that run
         return verdict
 
-    def refuse(self, why: str) -> None:
+    def reject(self, why: str) -> None:
         """The part that was read cannot be played."""
-        if why != self._told:
+        if why != self._logged:
             self._log("err", why)
-        self._take_up(None)
-        self.trouble = self._told = why
+        self._use(None)
+        self.trouble = self._logged = why
 
-    def learn(self, now: float) -> Optional[Word]:
+    def take_plan(self, now: float) -> Optional[Word]:
         """Learns the newest `plan`, if it is for the mission that is played: the word that says that we have it.
 
         Raises DataError if it cannot be read. One of another mission is kept until the states of that come.
         """
-        plan, player = self.plan, self.player
+        plan, player = self.plan, self.scheduler
         if plan is None or player is None or self.part is None:
             return None
         if (plan.get("mission") or self._missions.own.mission) != self.part.mission:
@@ -112,13 +112,13 @@ class Follower:
             strategy = Strategy(plan["strategies"][self._package])
         except (KeyError, TypeError) as problem:
             raise DataError(f"it lacks or misspells something: {problem!r}") from problem
-        return player.learn(int(plan["plan"]), strategy, now)
+        return player.add_plan(int(plan["plan"]), strategy, now)
 
-    def report(self) -> Tuple[Optional[SystemState], Optional[Player], Optional[Part], str]:
+    def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[Part], str]:
         """The newest state of whatever mission, what plays, the part, and what is wrong ("": nothing)."""
-        state = self._hearing.known
-        over = state is not None and state.status in ENDED and not self._hearing.joined
-        return state, self.player, self.part, self.trouble or ("waits for the next mission" if over else "")
+        state = self._filter.newest
+        over = state is not None and state.status in ENDED and not self._filter.joined
+        return state, self.scheduler, self.part, self.trouble or ("waits for the next mission" if over else "")
 
     def _change(self, mission: str) -> None:
         """Plays this mission from now on, if it is here."""
@@ -128,7 +128,7 @@ class Follower:
                 raise DataError(f"does not have mission {mission}: send it to this machine")
             self._read(source)
         except DataError as problem:
-            self.refuse(str(problem))
+            self.reject(str(problem))
 
     def _moved(self, state: SystemState) -> bool:
         """True where the same mission is to be read from another place, while it has not begun."""
@@ -136,11 +136,11 @@ class Follower:
         return state.status == WAITING and source is not None and self._missions.moved(state.mission, source)
 
     def _read(self, source: Source) -> None:
-        self._take_up(read_part(source))
+        self._use(read_part(source))
         self._source = source
 
-    def _take_up(self, part: Optional[Part]) -> None:
+    def _use(self, part: Optional[Part]) -> None:
         self.part, self.trouble = part, ""
-        self.player = Player(part.strategy, self._name) if part and part.strategy is not None else None
+        self.scheduler = CommandScheduler(part.strategy, self._name) if part and part.strategy is not None else None
         if part:
-            self._hearing.mission = part.mission
+            self._filter.mission = part.mission

@@ -10,7 +10,7 @@ from typing import Any, Callable, List, Tuple
 
 from tornado.netutil import bind_sockets
 
-QUIET = ("tornado", "asyncio")  # loggers that would tell the log of every stranger
+CAPTURED_LOGGERS = ("tornado", "asyncio")  # loggers that would tell the log of every stranger
 
 
 class ServerError(Exception):
@@ -91,12 +91,12 @@ class _Log(logging.Handler):
         self._trouble = trouble
 
     def __enter__(self) -> None:
-        for logger in map(logging.getLogger, QUIET):
+        for logger in map(logging.getLogger, CAPTURED_LOGGERS):
             logger.addHandler(self)
             logger.propagate = False
 
     def __exit__(self, *_: object) -> None:
-        for logger in map(logging.getLogger, QUIET):
+        for logger in map(logging.getLogger, CAPTURED_LOGGERS):
             logger.removeHandler(self)
             logger.propagate = True
 

@@ -18,35 +18,35 @@ from tornado.iostream import IOStream, StreamBufferFullError, StreamClosedError
 from tornado.tcpserver import TCPServer
 
 from pursue_runtime.manager.background import Service
-from pursue_runtime.manager.manager import Record
+from pursue_runtime.manager.manager import RequestLog
 
-SUBSCRIBERS = 32  # at a time
-BEHIND = 4 << 20  # bytes that a subscriber may be behind
-LONGEST = 1 << 20  # bytes of the longest line that is forwarded
-CHATTER = 1 << 16  # bytes that a subscriber may send until it is given up
+MAX_SUBSCRIBERS = 32  # at a time
+MAX_BACKLOG = 4 << 20  # bytes that a subscriber may be behind
+MAX_LINE = 1 << 20  # bytes of the longest line that is forwarded
+MAX_INPUT = 1 << 16  # bytes that a subscriber may send until it is given up
 
 
 class Forwarder(Service):
     """Tells every subscriber of every message; lives in the loop, but for the constructor."""
 
     def __init__(
-        self, sockets: List[Any], record: Record, subscribers: int = SUBSCRIBERS, behind: int = BEHIND
+        self, sockets: List[Any], record: RequestLog, subscribers: int = MAX_SUBSCRIBERS, backlog: int = MAX_BACKLOG
     ) -> None:
         """Of sockets that are bound. `behind` is for tests, like `subscribers`."""
         self.port = int(sockets[0].getsockname()[1])
         self._sockets, self._record = sockets, record
-        self._most, self._behind = subscribers, behind
+        self._most, self._backlog = subscribers, backlog
         self._streams: Set[IOStream] = set()
         self._last: Dict[str, bytes] = {}
-        self._door = _Door(self)
+        self._listener = _Listener(self)
 
     def open(self) -> None:
         """Serves from now on."""
-        self._door.add_sockets(self._sockets)
+        self._listener.add_sockets(self._sockets)
 
     async def close(self) -> None:
         """Ends all connections."""
-        self._door.stop()
+        self._listener.stop()
         for stream in list(self._streams):
             stream.close()
         await asyncio.sleep(0)
@@ -59,7 +59,7 @@ class Forwarder(Service):
     def send(self, topic: str, data: str, latched: bool = False) -> None:
         """A message of a topic."""
         line = json.dumps({"topic": topic, "data": data}).encode() + b"\n"
-        if len(line) > LONGEST:
+        if len(line) > MAX_LINE:
             self._record.count("not forwarded", f"a message of {topic} is too long to be forwarded: {len(line)} bytes")
             return
         if latched:
@@ -73,7 +73,7 @@ class Forwarder(Service):
             self._record.count("turned away", "too many subscribers: one was closed")
             stream.close()
             return
-        stream.max_write_buffer_size = self._behind
+        stream.max_write_buffer_size = self._backlog
         stream.set_nodelay(True)
         if stream.socket is not None:  # a machine that has vanished is found out in time
             stream.socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
@@ -82,7 +82,7 @@ class Forwarder(Service):
             for line in self._last.values():
                 self._write(stream, line)
             heard = 0
-            while heard < CHATTER:  # reading is how one learns that the other side has gone
+            while heard < MAX_INPUT:  # reading is how one learns that the other side has gone
                 heard += len(await stream.read_bytes(4096, partial=True))
             self._record.count("given up", "a subscriber that talks was given up")
         except StreamClosedError:
@@ -102,7 +102,7 @@ class Forwarder(Service):
                 asyncio.ensure_future(sent).add_done_callback(lambda done: done.cancelled() or done.exception())
 
 
-class _Door(TCPServer):
+class _Listener(TCPServer):
     def __init__(self, forwarder: Forwarder) -> None:
         super().__init__(max_buffer_size=1 << 16, read_chunk_size=4096)
         self._forwarder = forwarder

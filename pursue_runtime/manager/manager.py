@@ -14,7 +14,7 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
-from pursue_runtime.trusted_keys import KeyFolder, Tally
+from pursue_runtime.trusted_keys import KeyFolder, RateLimitedLog
 
 LOCAL_MISSION, MISSION_STATUS = "local_mission", "mission_status"
 LONGEST_HEADER = 4 * ORDER_LENGTH  # bytes of all headers of a request
@@ -41,7 +41,7 @@ REFUSED_BY_READER = 409
 """The HTTP status where the reader refuses with a word of its own."""
 
 
-class Answer(NamedTuple):
+class HttpAnswer(NamedTuple):
     """What a client is told: HTTP status, a word for programs, a sentence for people; `ok` for what was done."""
 
     http: int
@@ -50,12 +50,12 @@ class Answer(NamedTuple):
     ok: bool = False
 
 
-class NotNow(Exception):
+class RequestRefused(Exception):
     """A request is refused, with this answer."""
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)
-        self.answer = Answer(HTTP[code], code, message)
+        self.answer = HttpAnswer(HTTP[code], code, message)
 
 
 def is_loopback(host: str) -> bool:
@@ -86,7 +86,7 @@ def parse_length(text: Optional[str]) -> Optional[int]:
     if text is None:
         return None
     if not re.fullmatch(r"[0-9]{1,15}", text, re.ASCII):
-        raise NotNow("bad_length", "Content-Length is not a number")
+        raise RequestRefused("bad_length", "Content-Length is not a number")
     return int(text)
 
 
@@ -116,45 +116,45 @@ class Manager:
         self._folder, self._reader = keys, reader
         self._status: Optional[Dict[str, Any]] = None
 
-    def hear(self, text: str) -> None:
+    def on_status(self, text: str) -> None:
         """A message of the reader. One that speaks for another robot does not count."""
         status = parse_status(text)
         if status is not None and status["robot"] == self.robot:
             self._status = status
 
     @property
-    def trusts(self) -> bool:
+    def trusts_any_key(self) -> bool:
         """True where somebody's orders count."""
         return bool(self._folder.keys())
 
     def condition(self) -> Tuple[str, str]:
         """For /diagnostics: `ready`, or how bad it is (`warn`, `error`), and a sentence about it."""
-        if not self.trusts:
+        if not self.trusts_any_key:
             what_to_do = f"put the desk's public key into {self._folder.folder}"
             return ("error" if self.exposed else "warn"), f"no key is trusted, every order is refused: {what_to_do}"
-        if not self.reader_is_there:
+        if not self.reader_connected:
             return "warn", "pursue_reader is silent"
         if self._folder.problems:
             return "warn", "takes missions; not a key: " + "; ".join(self._folder.problems)
         return "ready", "takes missions"
 
     @property
-    def reader_is_there(self) -> bool:
+    def reader_connected(self) -> bool:
         """True when the reader is connected and has spoken."""
         return self._status is not None and self._reader()
 
     def status(self) -> Mapping[str, Any]:
         """The reader's last status; empty while it is silent."""
-        return self._status if self._status is not None and self.reader_is_there else {}
+        return self._status if self._status is not None and self.reader_connected else {}
 
-    def check_open(self) -> None:
+    def check_trust(self) -> None:
         """Raises NotNow while strangers could ask and nobody is trusted."""
-        if self.exposed and not self.trusts:
-            raise NotNow("no_keys", "this robot trusts no key yet: everything is refused")
+        if self.exposed and not self.trusts_any_key:
+            raise RequestRefused("no_keys", "this robot trusts no key yet: everything is refused")
 
     def health(self) -> Tuple[int, Dict[str, Any]]:
         """HTTP status and answer of /health."""
-        there = self.reader_is_there
+        there = self.reader_connected
         return (200 if there else HTTP["no_reader"]), {**self.status(), "robot": self.robot, "reader": there}
 
     def check_order(self, text: Optional[str], length: Optional[int], chunked: bool) -> Order:
@@ -163,53 +163,54 @@ class Manager:
         `length` is the announced length of the body; nothing of the body is needed for this.
         """
         if not text:
-            raise NotNow("bad_order", "the header Pursue-Order is missing")
+            raise RequestRefused("bad_order", "the header Pursue-Order is missing")
         try:
             order = read_order(text, self._folder.keys())
         except Refused as refused:
             code = "bad_order" if refused.code == "bad_version" else refused.code
-            raise NotNow(code if code in HTTP else "bad_order", str(refused)) from refused
+            raise RequestRefused(code if code in HTTP else "bad_order", str(refused)) from refused
         if order.robot != self.robot:
-            raise NotNow("wrong_robot", f"the order is for {order.robot[:100]!r}, and this is {self.robot!r}")
+            raise RequestRefused("wrong_robot", f"the order is for {order.robot[:100]!r}, and this is {self.robot!r}")
         self.check_ticket(order)
         self._check_length(order, length, chunked)
         return order
 
     def check_ticket(self, order: Order) -> None:
         """Raises NotNow unless the reader would take the order now."""
-        if not self.reader_is_there:
-            raise NotNow("no_reader", "pursue_reader is silent: nobody can carry the order out")
+        if not self.reader_connected:
+            raise RequestRefused("no_reader", "pursue_reader is silent: nobody can carry the order out")
         if order.ticket != self.status().get("ticket"):
-            raise NotNow("old_ticket", "the ticket is not the one that is out; the status has that")
+            raise RequestRefused("old_ticket", "the ticket is not the one that is out; the status has that")
 
     def _check_length(self, order: Order, length: Optional[int], chunked: bool) -> None:
         if chunked or (length is None and order.size):
-            raise NotNow("no_length", "Content-Length is needed, and no chunks")
+            raise RequestRefused("no_length", "Content-Length is needed, and no chunks")
         said = self.status().get("limit")
         limit = min(self.limit, said) if type(said) is int else self.limit
         if order.size > limit:
-            raise NotNow("too_large", f"the bundle has {order.size} bytes; at most {limit} are taken")
+            raise RequestRefused("too_large", f"the bundle has {order.size} bytes; at most {limit} are taken")
         if (length or 0) != order.size:
-            raise NotNow("bad_length", f"the order is about {order.size} bytes, and {length or 0} are announced")
+            sizes = f"the order is about {order.size} bytes, and {length or 0} are announced"
+            raise RequestRefused("bad_length", sizes)
 
-    def answer_to(self, ticket: str) -> Optional[Answer]:
+    def answer_to(self, ticket: str) -> Optional[HttpAnswer]:
         """What the reader has made of the order with this ticket; None while it has not spoken since."""
         status = self._status or {}
         answer = status.get("answer")
         if isinstance(answer, dict) and answer.get("ticket") == ticket:
             code, message = str(answer.get("code"))[:100], str(answer.get("message"))[:1000]
             if answer.get("ok") is True:
-                return Answer(200, code, message, True)
-            return Answer(HTTP.get(code, REFUSED_BY_READER), code, message)
+                return HttpAnswer(200, code, message, True)
+            return HttpAnswer(HTTP.get(code, REFUSED_BY_READER), code, message)
         if status.get("ticket") != ticket:  # each ticket is answered in turn, but for one that began anew
-            return Answer(HTTP["no_answer"], "no_answer", "pursue_reader has begun anew: ask it what it has")
+            return HttpAnswer(HTTP["no_answer"], "no_answer", "pursue_reader has begun anew: ask it what it has")
         return None
 
 
 def check_bundle(order: Order, body: bytes) -> None:
     """Raises NotNow where the body is not the one that the order is about."""
     if len(body) != order.size or (order.size and hashlib.sha256(body).hexdigest() != order.bundle):
-        raise NotNow("bad_bundle", "what came is not the bundle that the order is about")
+        raise RequestRefused("bad_bundle", "what came is not the bundle that the order is about")
 
 
 def mission_message(order_text: str, body: bytes) -> str:
@@ -223,7 +224,7 @@ def mission_message(order_text: str, body: bytes) -> str:
 # Counts and log -------------------------------------------------------------------------------------------------------
 
 
-class Record:
+class RequestLog:
     """Counts what happens by word, and writes lines about it, those of strangers now and then only.
 
     `warn(text)` and `note(text)` write to the log, `clock()` tells seconds.
@@ -232,21 +233,21 @@ class Record:
     def __init__(
         self, warn: Callable[[str], None], note: Callable[[str], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._note, self._clock = note, clock
-        self._tally = Tally(warn)
+        self._info, self._clock = note, clock
+        self._log = RateLimitedLog(warn)
 
     def count(self, word: str, text: str = "") -> None:
         """One more of this; `text`, where given, is worth a line unless there was one just now."""
         if text:
-            self._tally.count(word, text, self._clock())
+            self._log.count(word, text, self._clock())
         else:
-            self._tally.counts[word] = self._tally.counts.get(word, 0) + 1
+            self._log.counts[word] = self._log.counts.get(word, 0) + 1
 
-    def tell(self, word: str, text: str) -> None:
+    def log(self, word: str, text: str) -> None:
         """One more of this, which is always worth a line: no stranger can bring it about."""
         self.count(word)
-        self._note(text)
+        self._info(text)
 
     def counts(self) -> Dict[str, int]:
         """So many of each so far."""
-        return dict(self._tally.counts)
+        return dict(self._log.counts)

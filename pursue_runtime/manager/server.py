@@ -20,23 +20,23 @@ from typing import Any, Callable, List, Mapping, Optional, Tuple
 from tornado.web import Application, HTTPError, RequestHandler, stream_request_body
 
 from pursue_runtime.bundle import Order, mission_id
-from pursue_runtime.http_server import Door, without_chunks
+from pursue_runtime.http_server import LimitedServer, drop_chunks
 from pursue_runtime.manager.background import ServerError, Service
 from pursue_runtime.manager.manager import (
     HTTP,
     LONGEST_HEADER,
-    Answer,
+    HttpAnswer,
     Manager,
-    NotNow,
-    Record,
+    RequestLog,
+    RequestRefused,
     check_bundle,
     mission_message,
     parse_length,
 )
 
 HEALTH, MISSION = "/health", "/mission"
-LINGER = 1 << 20  # bytes of a refused body that are read and thrown away, so that the client hears the answer
-LINGER_TIME = 2.0  # seconds that this may take
+MAX_DISCARDED = 1 << 20  # bytes of a refused body that are read and thrown away, so that the client hears the answer
+DISCARD_TIME = 2.0  # seconds that this may take
 _HOST = re.compile(r"[A-Za-z0-9_.:%\[\]-]{1,255}", re.ASCII)
 
 
@@ -58,7 +58,7 @@ class Limits:
     @property
     def longest(self) -> float:
         """Seconds after which a connection ends in any case."""
-        return self.header + self.upload + self.patience + LINGER_TIME + 1.0
+        return self.header + self.upload + self.patience + DISCARD_TIME + 1.0
 
 
 def tls(certificate: str, private_key: str) -> Optional[ssl.SSLContext]:
@@ -87,7 +87,7 @@ class Server(Service):
         manager: Manager,
         sockets: List[Any],
         publish: Callable[[str], None],
-        record: Record,
+        record: RequestLog,
         limits: Limits,
         context: Optional[ssl.SSLContext] = None,
     ) -> None:
@@ -96,62 +96,62 @@ class Server(Service):
         self.port = int(sockets[0].getsockname()[1])
         self.busy = False
         self._sockets, self._publish, self._context = sockets, publish, context
-        self._waiting: Optional[Tuple[str, "asyncio.Future[Answer]"]] = None
-        self._door: Optional[Door] = None
+        self._waiting: Optional[Tuple[str, "asyncio.Future[HttpAnswer]"]] = None
+        self._server: Optional[LimitedServer] = None
 
     def open(self) -> None:
         """Serves from now on."""
         application = Application([(r".*", _Request, {"server": self})], log_function=self._log)
-        self._door = Door(
+        self._server = LimitedServer(
             application, ssl_options=self._context, no_keep_alive=True, chunk_size=1 << 16,
             max_header_size=LONGEST_HEADER, max_body_size=sys.maxsize, max_buffer_size=1 << 18,
             idle_connection_timeout=self.limits.header,
         )
-        self._door.limit(self.limits.connections, self.limits.longest, self._turned_away)
-        self._door.add_sockets(self._sockets)
+        self._server.limit(self.limits.connections, self.limits.longest, self._on_refused)
+        self._server.add_sockets(self._sockets)
 
     async def close(self) -> None:
         """Ends all connections."""
-        if self._door is not None:
-            self._door.stop()
-            self._door.end()
+        if self._server is not None:
+            self._server.stop()
+            self._server.close_all()
             await asyncio.sleep(0)
 
-    def hear(self, text: str) -> None:
+    def on_status(self, text: str) -> None:
         """A status of the reader."""
-        self.manager.hear(text)
+        self.manager.on_status(text)
         if self._waiting is not None:
             ticket, future = self._waiting
             answer = self.manager.answer_to(ticket)
             if answer is not None and not future.done():
                 future.set_result(answer)
 
-    async def deliver(self, text: str, order: Order, body: bytes) -> Answer:
+    async def deliver(self, text: str, order: Order, body: bytes) -> HttpAnswer:
         """Has the reader carry the order out, and waits for what it says. Raises NotNow."""
         check_bundle(order, body)
         self.manager.check_ticket(order)  # once more: the body may have taken its time
-        future: "asyncio.Future[Answer]" = asyncio.get_running_loop().create_future()
+        future: "asyncio.Future[HttpAnswer]" = asyncio.get_running_loop().create_future()
         self._waiting = (order.ticket, future)
         try:
             self._publish(mission_message(text, body))
             return await asyncio.wait_for(future, self.limits.patience)
         except asyncio.TimeoutError:
             message = f"pursue_reader has not answered within {self.limits.patience:g} s"
-            raise NotNow("no_answer", message) from None
+            raise RequestRefused("no_answer", message) from None
         finally:
             self._waiting = None
 
-    def _turned_away(self) -> None:
+    def _on_refused(self) -> None:
         self.record.count("turned away", "too many connections: one was closed")
 
     def _log(self, handler: RequestHandler) -> None:
         """Every request that was answered."""
         ip, http = handler.request.remote_ip, str(handler.get_status())
-        told, done = (handler.told, handler.done) if isinstance(handler, _Request) else (None, "")
+        told, done = (handler.sent, handler.done) if isinstance(handler, _Request) else (None, "")
         if told is None:
             self.record.count(http)
         elif done:
-            self.record.tell(http, f"{ip}: {done}: {told.message}")
+            self.record.log(http, f"{ip}: {done}: {told.message}")
         else:
             # Only words of our own, and what is quoted: lines of strangers do not get into the log as they are.
             self.record.count(http, f"{ip}: refused: {told.code}, {told.message}")
@@ -164,13 +164,13 @@ class _Request(RequestHandler):
     def initialize(self, server: Server) -> None:
         """Before anything else."""
         self.server = server
-        self.told: Optional[Answer] = None
+        self.sent: Optional[HttpAnswer] = None
         self.done = ""  # what an order that was taken has done
         self.body = bytearray()
         self.order: Optional[Order] = None  # one that was taken
-        self.length = self.thrown_away = self.seen = 0
+        self.length = self.discarded = self.seen = 0
         self.timers: List[asyncio.TimerHandle] = []
-        self.chunked = without_chunks(self.request.headers)
+        self.chunked = drop_chunks(self.request.headers)
 
     def set_default_headers(self) -> None:
         """JSON, for programs; nothing about what serves here."""
@@ -191,46 +191,46 @@ class _Request(RequestHandler):
             return
         try:
             self._check_head()
-        except NotNow as refused:
+        except RequestRefused as refused:
             await self._refuse(refused.answer)
 
     def _check_head(self) -> None:
         headers, method = self.request.headers, str(self.request.method)
         hosts = headers.get_list("Host")
         if len(hosts) > 1 or (hosts and not _HOST.fullmatch(hosts[0])):
-            raise NotNow("bad_request", "the header Host is not right")
+            raise RequestRefused("bad_request", "the header Host is not right")
         length = parse_length(headers.get("Content-Length"))
         self.length = length or 0
-        self.server.manager.check_open()
+        self.server.manager.check_trust()
         wanted = {HEALTH: "GET", MISSION: "POST"}.get(self.request.path)
         if wanted is None:
-            raise NotNow("not_found", f"there is nothing here but {HEALTH} and {MISSION}")
+            raise RequestRefused("not_found", f"there is nothing here but {HEALTH} and {MISSION}")
         if method != wanted:
-            raise NotNow("bad_method", f"{self.request.path} takes {wanted}")
+            raise RequestRefused("bad_method", f"{self.request.path} takes {wanted}")
         if wanted == "GET":
             if self.chunked or self.length:
-                raise NotNow("bad_request", f"{HEALTH} takes no body")
+                raise RequestRefused("bad_request", f"{HEALTH} takes no body")
             return
         order = self.server.manager.check_order(headers.get("Pursue-Order"), length, self.chunked)
         if self.server.busy:
-            raise NotNow("busy", "another order is under way: try again")
+            raise RequestRefused("busy", "another order is under way: try again")
         self.order, self.server.busy = order, True
         loop, limits = asyncio.get_running_loop(), self.server.limits
-        self.timers = [loop.call_later(limits.upload, self._too_slow), loop.call_later(limits.window, self._look)]
+        self.timers = [loop.call_later(limits.upload, self._too_slow), loop.call_later(limits.window, self._check_rate)]
 
     def data_received(self, chunk: bytes) -> None:
         """A part of the body."""
         if self.order is not None:
             self.body += chunk
             return
-        self.thrown_away += len(chunk)
-        if self.thrown_away > LINGER and not self._finished:
+        self.discarded += len(chunk)
+        if self.discarded > MAX_DISCARDED and not self._finished:
             self.finish()
 
     async def answer(self) -> None:
         """All of it is here."""
         self._stop_timers()
-        if self.told is not None:  # it was refused, and what was left of it has been read
+        if self.sent is not None:  # it was refused, and what was left of it has been read
             if not self._finished:
                 self.finish()
         elif self.order is not None:
@@ -246,38 +246,38 @@ class _Request(RequestHandler):
         body, self.body = bytes(self.body), bytearray()
         try:
             answer = await self.server.deliver(self.request.headers["Pursue-Order"], order, body)
-        except NotNow as refused:
+        except RequestRefused as refused:
             answer = refused.answer
         finally:
             self.server.busy = False
         if answer.ok:
             self.done = f"{order.action}, mission {mission_id(order.mission)}"
-        self._tell(answer)
+        self._send(answer)
         self.finish()
 
     def on_connection_close(self) -> None:
         """The client has gone before it was answered; an order that the reader has got goes its way."""
         if self.timers:
-            self._give_up()
+            self._abort_upload()
             self.server.record.count("broken off")
         super().on_connection_close()
 
     # How it ends otherwise --------------------------------------------------------------------------------------------
 
-    async def _refuse(self, answer: Answer) -> None:
+    async def _refuse(self, answer: HttpAnswer) -> None:
         """Says no, and closes. Of what is already on its way a little is read: else the client would not hear it."""
         self.set_header("Connection", "close")
-        self._tell(answer)
+        self._send(answer)
         headers = self.request.headers
         if not self.length or "Expect" in headers or self.chunked or self.request.method == "HEAD":
             self.finish()
             return
         connection: Any = self.request.connection
-        connection.set_body_timeout(LINGER_TIME)
+        connection.set_body_timeout(DISCARD_TIME)
         self.flush()
 
-    def _tell(self, answer: Answer, status: Optional[Mapping[str, Any]] = None) -> None:
-        self.told = answer
+    def _send(self, answer: HttpAnswer, status: Optional[Mapping[str, Any]] = None) -> None:
+        self.sent = answer
         status = self.server.manager.status() if status is None else status
         facts = {"ok": answer.ok, "code": answer.code, "message": answer.message, "status": status}
         text = json.dumps(facts).encode()
@@ -285,21 +285,21 @@ class _Request(RequestHandler):
         self.set_header("Content-Length", str(len(text)))
         self.write(text)
 
-    def _look(self) -> None:
+    def _check_rate(self) -> None:
         """Is the body coming fast enough?"""
         limits, here = self.server.limits, len(self.body)
         if here - self.seen < limits.rate * limits.window:
             self._too_slow()
             return
         self.seen = here
-        self.timers[1] = asyncio.get_running_loop().call_later(limits.window, self._look)
+        self.timers[1] = asyncio.get_running_loop().call_later(limits.window, self._check_rate)
 
     def _too_slow(self) -> None:
-        self._give_up()
-        self._tell(Answer(HTTP["too_slow"], "too_slow", "the bundle comes too slowly"))
+        self._abort_upload()
+        self._send(HttpAnswer(HTTP["too_slow"], "too_slow", "the bundle comes too slowly"))
         self.finish()
 
-    def _give_up(self) -> None:
+    def _abort_upload(self) -> None:
         """An upload that did not come to its end: others may try."""
         self._stop_timers()
         self.body, self.order, self.server.busy = bytearray(), None, False
@@ -315,7 +315,7 @@ class _Request(RequestHandler):
         """What tornado refuses by itself, or our own mistake: nothing about how it came is told."""
         words = {405: "bad_method", 500: "internal"}
         message = "something went wrong here" if status_code >= 500 else "the request cannot be understood"
-        self._tell(Answer(status_code, words.get(status_code, "bad_request"), message), {})
+        self._send(HttpAnswer(status_code, words.get(status_code, "bad_request"), message), {})
         self.finish()
 
     def log_exception(self, kind: Any, problem: Any, trace: Any) -> None:

@@ -22,7 +22,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
 from pursue_runtime.manager.background import Background, ServerError, Service, bind
 from pursue_runtime.manager.forwarder import Forwarder
-from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, Record, is_loopback, topic_names
+from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, is_loopback, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report
@@ -36,9 +36,9 @@ class CommunicationManager:
         host = str(rospy.get_param("~host", "127.0.0.1"))
         exposed = not is_loopback(host)
         keys = str(rospy.get_param("~keys", "")) or keys_folder(os.environ)
-        self.record = Record(lambda *text: rospy.logwarn("%s", *text), lambda *text: rospy.loginfo("%s", *text))
+        self.record = RequestLog(lambda *text: rospy.logwarn("%s", *text), lambda *text: rospy.loginfo("%s", *text))
         limit = int(number("~limit", LIMIT))
-        self.manager = Manager(robot_name(), KeyFolder(keys), self.reader_is_there, limit, exposed)
+        self.manager = Manager(robot_name(), KeyFolder(keys), self.reader_connected, limit, exposed)
         context = tls(str(rospy.get_param("~certificate", "")), str(rospy.get_param("~private_key", "")))
         self.limits = Limits(int(number("~connections", 64)), number("~patience", 10.0))
         self.sockets = bind(host, int(number("~port", 13000, 0)), "~port")
@@ -75,21 +75,21 @@ class CommunicationManager:
         if self.forwarder is not None:
             names = ", ".join(subscriber.resolved_name for subscriber in self.forwarded)
             rospy.loginfo("%s: forwarded at %s, port %d", names, host, self.forwarder.port)
-        if not self.manager.trusts:
+        if not self.manager.trusts_any_key:
             rospy.logwarn("%s", self.manager.condition()[1])
 
     def publish(self, text: str) -> None:
         """Publish an order for the reader."""
         self.orders.publish(text)
 
-    def reader_is_there(self) -> bool:
+    def reader_connected(self) -> bool:
         """True while the reader and this node are connected both ways. A connection without a socket is broken."""
         connections = list(self.statuses.impl.connections)
         return self.orders.get_num_connections() > 0 and any(each.socket is not None for each in connections)
 
     def on_status(self, message: String) -> None:
         """Handle a status of the reader."""
-        self.background.call(self.server.hear, message.data)
+        self.background.call(self.server.on_status, message.data)
 
     def on_message(self, message: String, topic: str) -> None:
         """Forward a message."""
@@ -104,7 +104,7 @@ class CommunicationManager:
         if self.forwarder is not None:
             values["subscribers"] = self.forwarder.subscribers
         values.update(sorted(self.record.counts().items()))
-        trusted = self.manager.trusts and self.manager.reader_is_there
+        trusted = self.manager.trusts_any_key and self.manager.reader_connected
         return Report(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 
     def master_lost(self, why: str) -> None:

@@ -16,13 +16,13 @@ from std_msgs.msg import String
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
-from pursue_runtime.hearing import OLD, OURS
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
+from pursue_runtime.state_filter import OLD, OURS
 from pursue_runtime.strategy import parse_plan
 from pursue_runtime.words import PLAN, format_word
 
@@ -42,11 +42,11 @@ class Controller:
         self.exegg = Exeggutor(self.ending)
         self.alarm = Alarm(self.on_alarm, self.ending)
         try:
-            self.follower.begin()
+            self.follower.load_current()
         except DataError as problem:
             if not home:
                 raise
-            self.follower.refuse(str(problem))  # the next one may be better
+            self.follower.reject(str(problem))  # the next one may be better
         self.take_up()
         states = subscribe_states(self.update_state)
         rospy.Subscriber(PLAN, String, self.learn, queue_size=10, tcp_nodelay=True)
@@ -64,30 +64,30 @@ class Controller:
     def update_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: order the robots what was taken, and plan the next command."""
         with self.lock:
-            played, verdict = self.follower.part, self.follower.follow(state)
+            played, verdict = self.follower.part, self.follower.on_state(state)
             if verdict != OLD:
                 self.observer = publisher
             if self.follower.part is not played:
                 try:
                     self.take_up()
                 except DataError as problem:
-                    self.follower.refuse(str(problem))
+                    self.follower.reject(str(problem))
                     return
             if verdict == OURS:
                 self.play(state)
 
     def play(self, state: SystemState) -> None:
         """Handle a state of the mission whose part this controller has."""
-        player = self.follower.player
-        if player is not None:
-            orders = player.see(state, rospy.get_time())
-            if player.news:  # else the alarm stays as it is
+        scheduler = self.follower.scheduler
+        if scheduler is not None:
+            orders = scheduler.on_state(state, rospy.get_time())
+            if scheduler.is_new:  # else the alarm stays as it is
                 self.wake()
             self.learned()
             self.exegg.follow(state)
             for order in orders:
                 self.exegg.exeggute(*order)
-            receipt = player.receipt()
+            receipt = scheduler.repeated_receipt()
             if receipt:
                 self.exegg.announce(format_word(receipt))
         if state.status == WON:
@@ -98,7 +98,7 @@ class Controller:
 
     def wake(self) -> None:
         """Set the alarm for the next command; publish at once what is due already."""
-        moment, patience = self.follower.player.wake() if self.follower.player else (None, None)
+        moment, patience = self.follower.scheduler.next_wakeup() if self.follower.scheduler else (None, None)
         if moment is not None and moment <= rospy.get_time():
             self.on_alarm()
         else:
@@ -118,7 +118,7 @@ class Controller:
     def learned(self) -> None:
         """Take the newest plan, if it is of the mission that is played, and report that to the observer."""
         try:
-            word = self.follower.learn(rospy.get_time())
+            word = self.follower.take_plan(rospy.get_time())
         except DataError as problem:
             rospy.logerr("cannot use the new plan: %s", problem)
             return
@@ -130,13 +130,13 @@ class Controller:
     def on_alarm(self) -> None:
         """Publish a command that is due, or that was not answered."""
         with self.lock:
-            player = self.follower.player
-            if player is None:
+            scheduler = self.follower.scheduler
+            if scheduler is None:
                 return
-            word = player.ring(rospy.get_time())
+            word = scheduler.on_timer(rospy.get_time())
             if word:
                 self.exegg.announce(format_word(word))
-            self.alarm.set(*player.wake())
+            self.alarm.set(*scheduler.next_wakeup())
 
     def master_lost(self, why: str) -> None:
         """End the node: without a master no node can join, so robots get no further orders."""
@@ -146,10 +146,10 @@ class Controller:
     def report(self) -> Report:
         """Return the report for /diagnostics: ready when the observer and this node are connected both ways."""
         with self.lock:
-            state, player, part, trouble = self.follower.report()
-            planned = player.planned if player else None
+            state, scheduler, part, trouble = self.follower.report()
+            planned = scheduler.planned if scheduler else None
             values: Dict[str, object] = {"seq": state.seq if state else "", "mission": part.mission if part else ""}
-            values.update(player.counts if player else {})
+            values.update(scheduler.counts if scheduler else {})
             values["next_command"] = planned[1].event if planned else ""
         if trouble:
             return Report(False, WARN, trouble, values)
@@ -157,7 +157,7 @@ class Controller:
             return Report(False, WARN, "no state from the observer yet", values)
         if self.observer not in self.exegg.observers():
             return Report(False, WARN, "the observer has not connected yet", values)
-        if player is None:
+        if scheduler is None:
             return Report(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
         return Report(True, ERROR if state.status in (LOST, STOPPED) else OK, state.status, values)
 

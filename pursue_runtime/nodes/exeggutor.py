@@ -11,7 +11,7 @@ from typing import Dict, Iterable, List, Mapping, Sequence
 import rospy
 from std_msgs.msg import String
 
-from pursue_runtime.controller.robot import Robot, Way, settings_of
+from pursue_runtime.controller.navigation import Movement, Navigation, read_settings
 from pursue_runtime.locations import is_action, is_movement, movement
 from pursue_runtime.nodes.node import Alarm, Ending, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
@@ -30,10 +30,10 @@ class Exeggutor:
     def __init__(self, ending: Ending) -> None:
         self._lock = threading.RLock()
         self._poses: Dict[str, List[float]] = {}
-        self._ways: Dict[str, Way] = {}
+        self._ways: Dict[str, Movement] = {}
         self._status = RUNNING
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
-        self._robots: Dict[str, Robot] = {}
+        self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
@@ -48,16 +48,16 @@ class Exeggutor:
             self._robots, self._status = {}, RUNNING
             self._poses = {poi: [float(number) for number in pose] for poi, pose in poses.items()}
             ways = [(movement(x, y), y) for x in self._poses for y in self._poses]
-            self._ways = {location: Way(location, y, *self._poses[y][:2]) for location, y in ways}
+            self._ways = {location: Movement(location, y, *self._poses[y][:2]) for location, y in ways}
             given = rospy.get_param("~", {})
-            settings = {robot: settings_of(robot, given) for robot in robots}
+            settings = {robot: read_settings(robot, given) for robot in robots}
             for robot in set(self._links) - set(settings):
                 self._links.pop(robot).close()
             for robot in settings:
                 if robot not in self._links:
                     answer, place = partial(self._result, robot), partial(self._place, robot)
                     self._links[robot] = RobotLink(robot, settings[robot], answer, place)
-                self._robots[robot] = Robot(robot, settings[robot], self._log)
+                self._robots[robot] = Navigation(robot, settings[robot], self._log)
 
     @staticmethod
     def _log(level: str, text: str) -> None:
@@ -82,7 +82,7 @@ class Exeggutor:
                 here = state.locations.get(name, "") if state.status in LIVE else ""
                 if state.status in ENDED and before not in ENDED:
                     self._call_back_one(name)
-                robot.follow(self._ways.get(here), state.status == RUNNING, name in state.lost)
+                robot.on_state(self._ways.get(here), state.status == RUNNING, name in state.lost)
                 self._links[name].keep(here, state.status == RUNNING, robot.goal)
             self._act()
 
@@ -96,7 +96,7 @@ class Exeggutor:
                 rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
                 return
             with self._lock:
-                self._robots[agent].order(way, rospy.get_time())
+                self._robots[agent].start(way, rospy.get_time())
                 self._act()
         elif target == origin:
             self._links[agent].do(trigger)
@@ -109,14 +109,14 @@ class Exeggutor:
         with self._lock:
             if robot not in self._robots:
                 return
-            self._robots[robot].result(goal, stamp, status, rospy.get_time())
+            self._robots[robot].on_result(goal, stamp, status, rospy.get_time())
             self._act()
 
     def _place(self, robot: str, x: float, y: float) -> None:
         with self._lock:
             if robot not in self._robots:
                 return
-            self._robots[robot].position(x, y, rospy.get_time())
+            self._robots[robot].on_position(x, y, rospy.get_time())
             self._act()
 
     # What is due ------------------------------------------------------------------------------------------------------
@@ -128,16 +128,16 @@ class Exeggutor:
         for name, robot in self._robots.items():
             goal, word = robot.due(now, real)
             if goal is not None:
-                self._links[name].go(goal, self._poses[goal.way.poi])
+                self._links[name].go(goal, self._poses[goal.movement.poi])
             if word is not None:
                 rospy.loginfo("reports %s", word)
                 self.announce(word)
             moment, repeat = robot.next_moments()
             moments += [] if moment is None else [moment]
             patience += [] if repeat is None else [repeat - real]
-            if robot.watching != self._links[name].watched:
+            if robot.needs_position != self._links[name].watched:
                 patience.append(0.0)  # topics are changed by the alarm's thread: that may have to wait for the master
-            elif robot.watching and robot.settings.ends == "tf":
+            elif robot.needs_position and robot.settings.ends == "tf":
                 patience.append(LOOKS)
         self._alarm.set(min(moments, default=None), max(0.0, min(patience)) if patience else None)
 
@@ -146,7 +146,7 @@ class Exeggutor:
         with self._lock:
             robots, links = dict(self._robots), dict(self._links)
         for name, robot in robots.items():
-            links[name].watch(robot.watching)
+            links[name].watch(robot.needs_position)
             place = links[name].look()
             if place is not None:
                 self._place(name, *place)

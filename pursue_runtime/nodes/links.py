@@ -22,7 +22,7 @@ import rosgraph
 import rospy
 from rospy.impl.registration import get_topic_manager
 
-from pursue_runtime.links import KNOWN, REFUSED, STRANGER, TROUBLES, UNREACHABLE, MasterWatch, Peers
+from pursue_runtime.links import MASTER_PROBLEMS, NOT_REGISTERED, REFUSED, REGISTERED, UNREACHABLE, MasterWatch, Peers
 from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, Report, start_thread, worse
 
 PERIOD = 1.0
@@ -84,7 +84,7 @@ class Links:
     def amend(self, report: Report) -> Report:
         """The node's report with what is wrong with the master and the connections."""
         with self._lock:
-            silent, trouble = self._peers.silent(time.monotonic()), TROUBLES[self._master.found]
+            silent, trouble = self._peers.silent(time.monotonic()), MASTER_PROBLEMS[self._master.found]
             cut_off = len(silent) == len(self._peers)
         values = {**report.values, "silent": " ".join(silent), "renewed": self._renewals}
         level, message = report.level, report.message
@@ -133,7 +133,7 @@ class Links:
             self._busy.discard(name)
             self._renewals += bool(answered)
             if answered or not old:
-                self._peers.renewed(name, time.monotonic())
+                self._peers.on_renewed(name, time.monotonic())
         if answered:
             rospy.logwarn("%s was silent for a while: connected to it anew", name)
 
@@ -170,19 +170,20 @@ class Links:
         while not rospy.is_shutdown():
             found, publishers = self._ask_master()
             with self._lock:
-                news = self._master.hear(found, time.monotonic())
+                news = self._master.update(found, time.monotonic())
                 lost = self._master.lost(time.monotonic())
             if news and not rospy.is_shutdown():
-                (rospy.logerr if TROUBLES[found] else rospy.logwarn)("%s", TROUBLES[found] or "the ROS master is back")
+                problem = MASTER_PROBLEMS[found]
+                (rospy.logerr if problem else rospy.logwarn)("%s", problem or "the ROS master is back")
             if lost and not reported and self._lost is not None:
-                self._lost(TROUBLES[found])
+                self._lost(MASTER_PROBLEMS[found])
             reported = reported or lost
-            if found == KNOWN:
+            if found == REGISTERED:
                 for topic, names in publishers.items():
                     for name in names:
                         with contextlib.suppress(*_CALL_ERRORS):
                             self._complete(topic, name)
-            time.sleep(MASTER_PERIOD if found == KNOWN else PERIOD)
+            time.sleep(MASTER_PERIOD if found == REGISTERED else PERIOD)
 
     @staticmethod
     def _ask_master() -> Tuple[str, Dict[str, List[str]]]:
@@ -194,9 +195,9 @@ class Links:
         except OSError:
             return UNREACHABLE, {}
         except (xmlrpc.client.Error, http.client.HTTPException, ValueError):
-            return STRANGER, {}  # something else answers there
+            return NOT_REGISTERED, {}  # something else answers there
         known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
-        return (KNOWN if known else STRANGER), dict(publishers)
+        return (REGISTERED if known else NOT_REGISTERED), dict(publishers)
 
     @staticmethod
     def _complete(topic: str, name: str) -> None:

@@ -11,10 +11,10 @@ from pursue_msgs.msg import SystemState as SystemStateMessage
 
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
-from pursue_runtime.hearing import OLD, OTHER, OURS, Hearing
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.state import WAITING, SystemState
+from pursue_runtime.state_filter import OLD, OTHER, OURS, StateFilter
 from pursue_runtime.words import STATE
 
 PATIENCE = 1.0
@@ -34,12 +34,12 @@ class Membership:
         self._ending = ending
         self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")
         self.source = self._choose()
-        self._hearing = Hearing(self.source.mission, own.mission, self.again)
+        self._filter = StateFilter(self.source.mission, own.mission, self.again)
 
     def takes(self, state: SystemState) -> bool:
         """True for a state that counts here. Where it is of another mission that is here, the node begins anew."""
-        verdict = self._hearing.judge(state)
-        if self._hearing.anew and verdict != OTHER:
+        verdict = self._filter.classify(state)
+        if self._filter.clock_set_back and verdict != OTHER:
             self._ending.renew()  # nothing that is known here is of the mission that comes
             return False
         if verdict == OTHER:

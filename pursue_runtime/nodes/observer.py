@@ -39,9 +39,9 @@ from pursue_runtime.nodes.node import (
     start_thread,
 )
 from pursue_runtime.nodes.state_message import message_of
-from pursue_runtime.observer.journal import Journal, unfinished
+from pursue_runtime.observer.journal import Journal, unfinished_mission
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.planner import Answer, Planner
+from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
@@ -104,7 +104,7 @@ class Observer:
     def _source(self) -> Source:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has
         been received meanwhile; else the current one is played. Raises DataError."""
-        going_on, source = unfinished(self._journal_path(), self._journal_name()), None
+        going_on, source = unfinished_mission(self._journal_path(), self._journal_name()), None
         if going_on is not None:
             try:
                 source = self.missions.find(going_on)
@@ -179,7 +179,7 @@ class Observer:
         """Handle a deadline, or a step that an objective takes by itself."""
         self.call("tick")
 
-    def answer(self, answer: Answer) -> None:
+    def answer(self, answer: PlannerAnswer) -> None:
         """Handle the planner's answer."""
         number, plan, why = answer
         self.call(*(("unplanned", number, why) if plan is None else ("planned", number, plan)))
@@ -190,7 +190,7 @@ class Observer:
             node, values = status.hardware_id, {value.key: value.value for value in status.values}
             if node in self.last_report and values.get("mission", self.mission.name) == self.mission.name:
                 self.last_report[node] = time.monotonic()
-                if node in self.mission.away:
+                if node in self.mission.silent:
                     self.call("back", node)
 
     def keep_publishing(self) -> None:
@@ -200,7 +200,7 @@ class Observer:
             now = time.monotonic()
             self.check_for_another()
             for node, reported in list(self.last_report.items()):
-                if now > reported + self.silence and node not in self.mission.away and self.mission.status in LIVE:
+                if now > reported + self.silence and node not in self.mission.silent and self.mission.status in LIVE:
                     self.call("silent", node)
             with self.lock:
                 if now >= self.published_at + self.heartbeat and self.mission.status not in ENDED:
@@ -241,7 +241,7 @@ class Observer:
         if proposal is not None and proposal["plan"] != self.proposed:
             self.proposed = proposal["plan"]
             self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
-        self.planner.want(self.mission.wanted)
+        self.planner.request_plan(self.mission.plan_request)
         self.alarm.set(self.mission.next_moment(self.now()))
         if self.mission.status in ENDED and not self.over:
             self.over = True
@@ -270,10 +270,11 @@ class Observer:
         """Return the report for /diagnostics: ready as soon as a node is connected that publishes words."""
         with self.lock:
             mission = self.mission
-            late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.away))
+            late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.silent))
             values: Dict[str, object] = {"mission": mission.name, "seq": mission.seq, "status": mission.status}
             values.update({"plan": mission.plan})
-            values.update({"late": late, "lost": lost, "silent": away, "journal": self.journal.works, **mission.counts})
+            values.update({"late": late, "lost": lost, "silent": away})
+            values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")
             warns = mission.late or mission.lost or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
@@ -285,7 +286,7 @@ class Observer:
         rospy.loginfo("the observer of %s, mission %s: %s", self.mission.model.scenario, name, self.mission.status)
         status = self.ending.wait(linger=float(rospy.get_param("~linger", 1.0)))
         if self.mission.status in ENDED and (self.again or not self.launch):
-            self.journal.told()  # a roscore may see another mission; a launch has one, unless ~again is set
+            self.journal.end()  # a roscore may see another mission; a launch has one, unless ~again is set
         if self.ending.renewed:
             restart_process()
         return status

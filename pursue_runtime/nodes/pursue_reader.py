@@ -27,7 +27,7 @@ from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
-from pursue_runtime.reader.reader import PATIENCE, Reader, Robot
+from pursue_runtime.reader.reader import PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store, StoreError
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
@@ -53,7 +53,7 @@ class Node:
         keys = KeyFolder(rospy.get_param("~keys", "") or keys_folder(os.environ))
         limit, patience = int(rospy.get_param("~limit", LIMIT)), float(rospy.get_param("~patience", PATIENCE))
         nodes, installed = str(rospy.get_param("~nodes", ALL)), mission_packages()
-        robot = Robot(robot_name(), scenario, packages_here(nodes, installed), limit)
+        robot = Machine(robot_name(), scenario, packages_here(nodes, installed), limit)
         self.reader = Reader(robot, store, keys, time.monotonic(), log, patience)
         self.published = ""
         self.statuses = rospy.Publisher("mission_status", String, queue_size=10, latch=True)
@@ -63,7 +63,7 @@ class Node:
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, "/" + topic.lstrip("/"))
         Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost))
-        trouble = self.reader.trouble()
+        trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):
             log("warn", f"~nodes: there is no package for {node} here, so it plays no part in missions")
@@ -71,19 +71,19 @@ class Node:
     def on_order(self, message: String) -> None:
         """Handle an order on local_mission."""
         with self.lock:
-            self.reader.handle(message.data, time.monotonic())
+            self.reader.on_message(message.data, time.monotonic())
             self.publish()
 
     def on_state(self, state: SystemState, _publisher: str) -> None:
         """Handle a state of the mission."""
         with self.lock:
-            if self.reader.see(state, time.monotonic()):
+            if self.reader.on_state(state, time.monotonic()):
                 self.publish()
 
     def on_alarm(self) -> None:
         """Handle the time at which an observer counts as gone."""
         with self.lock:
-            self.reader.tick(time.monotonic())
+            self.reader.on_time(time.monotonic())
             self.publish()
 
     def publish(self) -> None:
@@ -93,7 +93,7 @@ class Node:
             self.published = text
             with contextlib.suppress(rospy.ROSException):  # the node is going down
                 self.statuses.publish(text)
-        self.alarm.set(None, self.reader.wake(time.monotonic()))
+        self.alarm.set(None, self.reader.next_check(time.monotonic()))
 
     def master_lost(self, why: str) -> None:
         """End the node, which is then started again: another master would not know it."""
@@ -103,7 +103,7 @@ class Node:
     def report(self) -> Report:
         """For /diagnostics. It is ready as soon as it is connected with communication_manager."""
         with self.lock:
-            status, trouble = self.reader.status(), self.reader.trouble()
+            status, trouble = self.reader.status(), self.reader.problem()
             values: Dict[str, object] = {**self.reader.counts, "kept": len(status["kept"])}
             values["refused"] = sum(self.reader.refusals.counts.values())
         for name in ("current", "next", "prepared"):

@@ -30,7 +30,7 @@ from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, low
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import OptionError, expected, names
-from pursue_runtime.ui.recording import GAME, missing, reserve, topics
+from pursue_runtime.ui.recording import GAME, missing_connections, reserve_file, topics
 from pursue_runtime.words import STATE, SYSTEM_STATE
 
 CHUNK = 64 * 1024  # bytes; what is not yet in a whole chunk is harder to read after a crash
@@ -65,7 +65,7 @@ class Recorder:
         self.nodes = ["UI", *expected(rospy.get_param("~", {}), settings.get("nodes", ()))]
         file = str(rospy.get_param("~file", ""))
         file = "" if file.lower() == "true" else file
-        self.path = reserve(file, scenario_folder(os.environ, package.scenario))
+        self.path = reserve_file(file, scenario_folder(os.environ, package.scenario))
         self.lock = threading.Lock()
         self.status = ""
         self.count = 0
@@ -124,7 +124,7 @@ class Recorder:
         connected = {each.resolved_name: each.get_num_connections() for each in self.subscribers}
         own = "/diagnostics"  # we publish there ourselves, and rospy connects us to us
         connected[own] = connected.get(own, 0) - (rospy.get_name() in known.get(own, []))
-        return missing(self.nodes, publishers, connected)
+        return missing_connections(self.nodes, publishers, connected)
 
     def run(self) -> int:
         """Runs until the mission ends and its last words are in the bag; returns the exit status."""

@@ -11,7 +11,7 @@ import rospy
 from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
-from pursue_runtime.controller.robot import Goal, Settings
+from pursue_runtime.controller.navigation import Goal, Settings
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
 
@@ -64,7 +64,7 @@ class RobotLink(rospy.SubscribeListener):
         self._frames: Any = None
         self._messages: Any = None
         self._tf: Any = None
-        if settings.answers:
+        if settings.uses_results:
             why = "goals:=action" if settings.goals == "action" else "ends:=result"
             self._messages = needed("move_base_msgs", "move_base_msgs.msg", why)
         if settings.ends == "tf":
@@ -78,7 +78,7 @@ class RobotLink(rospy.SubscribeListener):
         if settings.on_stop == "cancel":
             self._ids = needed("actionlib_msgs", "actionlib_msgs.msg", "on_stop:=cancel").GoalID
             self._cancel = rospy.Publisher(f"{robot}/move_base/cancel", self._ids, queue_size=10)
-        if settings.answers:
+        if settings.uses_results:
             kind = self._messages.MoveBaseActionResult
             topic = f"{robot}/move_base/result"
             self._results = rospy.Subscriber(topic, kind, self._result, queue_size=100, tcp_nodelay=True)
@@ -98,8 +98,8 @@ class RobotLink(rospy.SubscribeListener):
             message = self._messages.MoveBaseActionGoal(header=stamped.header)
             message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
             message.goal.target_pose = stamped
-        self._send(self._move, Order(goal.way.location, message))
-        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.way.poi, position.x, position.y)
+        self._send(self._move, Order(goal.movement.location, message))
+        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.movement.poi, position.x, position.y)
 
     def do(self, trigger: str, location: str = "") -> None:
         """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""

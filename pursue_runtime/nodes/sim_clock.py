@@ -20,7 +20,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, start_thread
-from pursue_runtime.simulator.clock import START, Memory, Pace, SimClock
+from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock
 from pursue_runtime.words import EVENTS, STATE
 
 
@@ -35,7 +35,7 @@ def run(pace: Pace, scenario: str) -> int:
     publisher = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
     _, states = [
         rospy.Subscriber(
-            topic, rospy.AnyMsg, lambda _: clock.heard(time.monotonic()), queue_size=1000, tcp_nodelay=True
+            topic, rospy.AnyMsg, lambda _: clock.on_message(time.monotonic()), queue_size=1000, tcp_nodelay=True
         )
         for topic in (EVENTS, STATE)
     ]
@@ -45,7 +45,7 @@ def run(pace: Pace, scenario: str) -> int:
     return ending.wait()
 
 
-def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[Memory]) -> None:
+def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[ClockFile]) -> None:
     """Publishes /clock. While time stands still it is published on: a node that comes late, or that missed a message,
     does not wait for it."""
     moment = time.monotonic()
@@ -53,7 +53,7 @@ def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Option
         simulated = clock.tick(time.monotonic())
         try:
             if memory is not None:
-                memory.keep(simulated)
+                memory.save(simulated)
             publisher.publish(Clock(rospy.Time.from_sec(simulated)))
         except OSError as problem:
             rospy.logerr("cannot keep the time: %s", problem)
@@ -65,12 +65,12 @@ def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Option
         time.sleep(max(0.0, moment - time.monotonic()))
 
 
-def remember(scenario: str) -> Optional[Memory]:
+def remember(scenario: str) -> Optional[ClockFile]:
     """The memory of this roscore's clock; None, and a warning, where there cannot be one."""
     core = str(rospy.get_param("/run_id", "") or rosgraph.get_master_uri())
     name = "clock-" + "".join(sign if sign.isalnum() else "_" for sign in core)
     try:
-        return Memory(os.path.join(scenario_folder(os.environ, scenario), name))
+        return ClockFile(os.path.join(scenario_folder(os.environ, scenario), name))
     except OSError as problem:
         rospy.logwarn("cannot keep the time (%s): a clock that is killed will start anew", problem)
         return None

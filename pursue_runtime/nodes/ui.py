@@ -35,12 +35,23 @@ from pursue_runtime.nodes.node import (
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
-from pursue_runtime.ui.board import Board, open_board
-from pursue_runtime.ui.mission import SURE, Mission, Opening, Player, Readiness, Task, answer, menu, openings, tasks
+from pursue_runtime.ui.environment import IdleEnvironment, RandomEnvironment, TraceEnvironment
+from pursue_runtime.ui.mission_view import (
+    MARGIN,
+    Environment,
+    MissionView,
+    PossibleWord,
+    Readiness,
+    Task,
+    menu,
+    possible_words,
+    read_line,
+    tasks,
+)
 from pursue_runtime.ui.options import OptionError, Options, read_options
-from pursue_runtime.ui.page import Facts, Request
-from pursue_runtime.ui.players import AtRandom, Scripted, StandStill
-from pursue_runtime.ui.terminal import BAD, GOOD, PLAIN, TOLD, Terminal
+from pursue_runtime.ui.page import Facts, PageRequest
+from pursue_runtime.ui.page_server import PageServer, open_page
+from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal
 from pursue_runtime.ui.trace import TraceError, read_trace
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP
 
@@ -55,11 +66,11 @@ class UI:
     """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for messages."""
 
     def __init__(
-        self, options: Options, membership: Membership, ending: Ending, player: Player, model: Model
+        self, options: Options, membership: Membership, ending: Ending, player: Environment, model: Model
     ) -> None:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
         self.words: Set[str] = {edge.word for automaton in model.automata for edge in automaton.edges}
-        self.mission = Mission(model, player, people(membership.source))
+        self.mission = MissionView(model, player, people(membership.source))
         self.readiness = Readiness(options.nodes)
         self.terminal = Terminal(sys.stdout, os.environ)
         self.lock = threading.RLock()
@@ -67,10 +78,10 @@ class UI:
         self.observer = ""
         self.tries = 0
         self.concluded = False
-        self.offers: List[Opening] = []
+        self.offers: List[PossibleWord] = []
         self.given: List[Task] = []
         self.verdict: Optional[Tuple[int, str]] = None
-        self.board: Optional[Board] = None
+        self.board: Optional[PageServer] = None
         self.gives_up = time.monotonic() + options.wait
         self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
@@ -91,7 +102,7 @@ class UI:
                 values = {value.key: value.value for value in status.values}
                 ours = values.get("mission") in (None, "", self.membership.source.mission)
                 ready = ours and values.get("ready") == "true"
-                self.readiness.heard(status.hardware_id or status.name.partition(":")[0], ready)
+                self.readiness.update(status.hardware_id or status.name.partition(":")[0], ready)
             if self.phase == GATHERING and self.connected() and not self.readiness.missing():
                 self.gathered()
             elif self.phase == GATHERING:
@@ -113,7 +124,7 @@ class UI:
             elif state.status != WAITING:
                 if self.phase != RUNNING:
                     self.phase = RUNNING
-                    self.terminal.line(f"{self.mission.elapsed(rospy.get_time()):8.1f}  the mission runs", TOLD)
+                    self.terminal.line(f"{self.mission.elapsed(rospy.get_time()):8.1f}  the mission runs", BOLD)
                 self.act()
                 self.offer()
             self.show()
@@ -128,7 +139,7 @@ class UI:
             return
         with self.lock:
             if orders is not None and plan.get("mission", "") in ("", self.membership.source.mission):
-                self.mission.learn(plan["plan"], orders)
+                self.mission.add_plan(plan["plan"], orders)
                 self.act()
 
     def on_word(self, message: String) -> None:
@@ -147,17 +158,17 @@ class UI:
                 self.offer(again=True)
             else:
                 self.find_offers()
-                word, answer_text = answer(text, self.offers, self.words, self.given)
+                word, answer_text = read_line(text, self.offers, self.words, self.given)
                 if answer_text:
                     self.terminal.line(f"          {answer_text}")
                 if word:
                     self.events.publish(word)
 
-    def obey(self, request: Request) -> str:
+    def on_request(self, request: PageRequest) -> str:
         """Handle a request of the page; return what to show there, "" for nothing."""
         self.find_offers()
         reports = {task.word for task in self.given}
-        now = {offer.word for offer in self.offers if offer.opens <= SURE}
+        now = {offer.word for offer in self.offers if offer.opens <= MARGIN}
         if request.do == "start" and self.phase == READY:
             self.start()
         elif request.do == "stop":
@@ -179,11 +190,11 @@ class UI:
             self.start()
         elif self.board is not None:
             here = ", or press Enter" if self.reads() else ""
-            self.terminal.line(f"All nodes are ready. Start the mission on the page{here}.", TOLD)
+            self.terminal.line(f"All nodes are ready. Start the mission on the page{here}.", BOLD)
         elif self.reads():
-            self.terminal.line("All nodes are ready. Press Enter to start the mission.", TOLD)
+            self.terminal.line("All nodes are ready. Press Enter to start the mission.", BOLD)
         else:
-            self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", TOLD)
+            self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", BOLD)
 
     def start(self) -> None:
         """Says `_start_`, again if no state answers it."""
@@ -250,9 +261,9 @@ class UI:
             kinds = ("agent", "human") if self.options.ends else ("agent",)
             clocks = state.clocks_at(rospy.get_time())
             self.given = tasks(self.model, state)
-            reports = [Opening(task.word, 0.0, float("inf"), task.agent) for task in self.given]
+            reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent) for task in self.given]
             ends = {task.word for task in self.given}
-            offers = openings(self.model, state, clocks, kinds, self.options.ends)
+            offers = possible_words(self.model, state, clocks, kinds, self.options.ends)
             self.offers = [*(offer for offer in offers if offer.word not in ends), *reports]
 
     def conclude(self, status: int, sentence: str) -> None:
@@ -309,7 +320,7 @@ class UI:
         awaited = ", ".join(self.options.nodes) or "the observer"
         self.terminal.line(f"{self.model.scenario}: waiting for {awaited}", PLAIN)
         if self.board is not None:
-            self.terminal.line(f"The page is at {self.board.web.url}", TOLD)
+            self.terminal.line(f"The page is at {self.board.web.url}", BOLD)
         if self.reads():
             start_thread("typed", self.read, self.ending)
         status = self.ending.wait(linger=0.3)
@@ -334,18 +345,18 @@ def on_terminal() -> bool:
     return all(stream is not None and not stream.closed and stream.isatty() for stream in (sys.stdin, sys.stdout))
 
 
-def make_player(options: Options, model: Model) -> Player:
+def make_player(options: Options, model: Model) -> Environment:
     """Return the player of the agents that nobody controls. Raises TraceError."""
     if options.mode == "random":
-        return AtRandom(model, options.seed, options.pace)
+        return RandomEnvironment(model, options.seed, options.pace)
     if options.mode == "trace":
         words = {edge.word for automaton in model.automata for edge in automaton.edges if edge.sync != "receive"}
         try:
             with open(options.trace, encoding="utf-8") as file:
-                return Scripted(read_trace(file.read(), options.trace, words))
+                return TraceEnvironment(read_trace(file.read(), options.trace, words))
         except (OSError, UnicodeDecodeError) as problem:
             raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
-    return StandStill()
+    return IdleEnvironment()
 
 
 def people(source: Source) -> Optional[Strategy]:
@@ -367,7 +378,7 @@ def main(package: Package) -> int:
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
         ui = UI(options, membership, ending, player, model)
-        ui.board = open_board(model, options, settings, membership.source, ui)
+        ui.board = open_page(model, options, settings, membership.source, ui)
     except (DataError, OptionError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
         return 2

@@ -15,11 +15,21 @@ from pursue_runtime.data import DataError
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import SystemState
 
-CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
-TOLD = "told"
-"""The last line: everybody has been told how the mission ended."""
+CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
+    "hear": Mission.on_word,
+    "tick": Mission.on_time,
+    "silent": Mission.on_controller_silent,
+    "back": Mission.on_controller_back,
+    "planned": Mission.on_plan,
+    "unplanned": Mission.on_no_plan,
+    "stop": Mission.stop,
+}
+"""Mission methods by the names that journals have for them: those of older workspaces are still read."""
 
-KEPT = 20
+END = "told"
+"""The call of the last line: the end of the mission has been published."""
+
+MAX_JOURNALS = 20
 """So many journals of a scenario are kept."""
 
 Log = Callable[[str, str], None]
@@ -46,34 +56,34 @@ class Journal:
             self._fail(problem)
 
     @property
-    def works(self) -> bool:
+    def is_open(self) -> bool:
         """True where what happens is written down."""
         return self._file is not None
 
     def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
         """Calls the mission (one of CALLS) at this moment (seconds), and writes down what has changed it."""
-        before = self._mission.mark()
-        states: List[SystemState] = getattr(self._mission, name)(*args, now)
-        if self._mission.mark() != before:
+        before = self._mission.revision()
+        states = CALLS[name](self._mission, *args, now)
+        if self._mission.revision() != before:
             self.last = now
             self._write({"at": now, "call": name, "args": args, **_end_of(self._mission)})
         return states
 
-    def told(self) -> None:
+    def end(self) -> None:
         """The mission is over, and everybody knows: the next one begins a journal of its own."""
-        self._write({"call": TOLD})
+        self._write({"call": END})
 
     def _resume(self, path: str, header: Mapping[str, Any]) -> None:
         if os.path.exists(path):
             found, entries, whole = read_journal(path)
-            if found == header and not (entries and entries[-1].get("call") == TOLD):
+            if found == header and not (entries and entries[-1].get("call") == END):
                 os.truncate(path, whole)
                 self._replay(entries, path)
             elif entries:
                 _set_aside(path)
             else:
                 os.remove(path)  # its mission has never begun
-        _forget_old(os.path.dirname(path))
+        _delete_old(os.path.dirname(path))
         self._file = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
         if os.fstat(self._file).st_size == 0:
             self._write(header)
@@ -114,14 +124,14 @@ def read_journal(path: str) -> Tuple[Optional[Dict[str, Any]], List[Dict[str, An
     return (lines[0] if lines else None), lines[1:], whole
 
 
-def unfinished(path: str, launch: str) -> Optional[str]:
+def unfinished_mission(path: str, launch: str) -> Optional[str]:
     """The id of the mission that was under way when the observer of this launch died ("" for the workspace's own); None
     where none was, or nobody can tell."""
     try:
         header, entries, _ = read_journal(path)
     except OSError:
         return None
-    if not header or header.get("launch") != launch or not entries or entries[-1].get("call") == TOLD:
+    if not header or header.get("launch") != launch or not entries or entries[-1].get("call") == END:
         return None
     return str(header.get("mission", ""))
 
@@ -130,9 +140,7 @@ def replay(mission: Mission, entries: List[Dict[str, Any]]) -> None:
     """Takes a fresh mission through the entries. Raises DataError where they are not its own."""
     for number, entry in enumerate(entries, start=2):
         try:
-            if entry["call"] not in CALLS:
-                raise ValueError(entry["call"])
-            getattr(mission, entry["call"])(*entry["args"], float(entry["at"]))
+            CALLS[entry["call"]](mission, *entry["args"], float(entry["at"]))
             fits = {key: entry[key] for key in ("seq", "status")} == _end_of(mission)
         except (KeyError, TypeError, ValueError) as problem:
             raise DataError(f"line {number} cannot be read: {problem!r}") from problem
@@ -161,9 +169,9 @@ def _set_aside(path: str) -> None:
     os.rename(path, f"{stem}-{number}{ending}")
 
 
-def _forget_old(folder: str) -> None:
+def _delete_old(folder: str) -> None:
     """Deletes the oldest journals."""
     journals = [entry for entry in os.scandir(folder) if entry.name.startswith("journal-")]
-    for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-KEPT]:
+    for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-MAX_JOURNALS]:
         with contextlib.suppress(OSError):
             os.remove(entry.path)

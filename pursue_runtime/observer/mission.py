@@ -7,7 +7,7 @@ from typing import Any, Callable, Collection, Dict, List, Mapping, Optional, Set
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Move, Position
-from pursue_runtime.observer.board import Board
+from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.state import HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.words import FAILED, FINISH, PING, PLANNED, START, STOP, Word, parse_word
@@ -17,11 +17,11 @@ Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
 
 
-OVERSTAY = 2.0
+COVER_GRACE = 2.0
 """Seconds by which time may leave what the strategy covers, with nobody late, before that counts: words get lost and
 are sent again."""
 
-LONGEST = 1000
+MAX_WORD_LENGTH = 1000
 """Letters of a word, at most: what is longer is none."""
 
 ACTING = ("robot", "human", "agent")
@@ -55,14 +55,14 @@ class Mission:
         self.counts = dict.fromkeys(COUNTED, 0)
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
-        self.away: Set[str] = set()
+        self.silent: Set[str] = set()
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
         self._on_uncovered, self._lost_after = on_uncovered, lost_after
         self._early: Dict[Word, float] = {}  # and their moments
         self._planning = Planning(controllers)
         self._warned = False
-        self._board = Board(model, unit)
+        self._automata = Automata(model, unit)
         self._event = self._agent = ""
         self._ended: Optional[float] = None
 
@@ -70,7 +70,7 @@ class Mission:
 
     def position(self, now: float) -> Position:
         """Locations, variables and clocks of now (of the end, once the mission has ended)."""
-        return self._board.position(now if self._ended is None else self._ended)
+        return self._automata.position(now if self._ended is None else self._ended)
 
     def state(self, now: float) -> SystemState:
         """What is published."""
@@ -80,9 +80,9 @@ class Mission:
         return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
 
     @property
-    def wanted(self) -> Optional[PlanRequest]:
+    def plan_request(self) -> Optional[PlanRequest]:
         """The plan that is to be looked for."""
-        return self._planning.wanted if self.status in LIVE else None
+        return self._planning.request if self.status in LIVE else None
 
     @property
     def proposal(self) -> Optional[Dict[str, Any]]:
@@ -90,59 +90,59 @@ class Mission:
         proposal = self._planning.proposal
         return proposal.data if proposal else None
 
-    def mark(self) -> Tuple[object, ...]:
+    def revision(self) -> Tuple[object, ...]:
         """What a call changes that is not to be forgotten: equal before and after a call without consequences."""
-        people = len(self.late), len(self.lost), len(self.away)
-        return (self.seq, self.status, self.reason, *people, *self._early, *self._planning.mark())
+        people = len(self.late), len(self.lost), len(self.silent)
+        return (self.seq, self.status, self.reason, *people, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
         """When `tick` has something to do, if nothing is heard before; None: never."""
         if self.status not in LIVE:
             return None
         position = self.position(now)
-        delays = self._board.own_delays(position)
+        delays = self._automata.internal_delays(position)
         delays += [(moment - now) / self._unit for moment in self._early.values()]
-        delays += [delay + self._tolerance for name, delay in self._board.bounds(position) if name not in self.late]
-        delays += [delay + self._lost_after for name, delay in self._latecomers(position)]
+        delays += [delay + self._tolerance for name, delay in self._automata.bounds(position) if name not in self.late]
+        delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
         if self.status == RUNNING and not self._warned:
-            delays.append(stays(self._cover, position, self._tolerance) + self._overstay)
+            delays.append(stays(self._cover, position, self._tolerance) + self._cover_grace)
         first = min(delays, default=INFINITY)
         return None if first == INFINITY else now + max(0.0, first) * self._unit
 
     # What happens: each returns the states to publish, in order -------------------------------------------------------
 
-    def hear(self, text: str, now: float) -> List[SystemState]:
+    def on_word(self, text: str, now: float) -> List[SystemState]:
         """A word was published. What cannot be changes nothing."""
         orders = {START: self._start, PING: self._ping, STOP: self._stop, FINISH: self._finish}
         if text.strip() in orders:
             return orders[text.strip()](now)
-        word = parse_word(text) if len(text) <= LONGEST else None
+        word = parse_word(text) if len(text) <= MAX_WORD_LENGTH else None
         if word is None:
-            self._drop("unreadable", f"not a word: {text[:80]!r}")
+            self._reject("unreadable", f"not a word: {text[:80]!r}")
         elif self.status not in LIVE:
-            self._drop("impossible", f"{text} while the mission is {self.status}")
+            self._reject("impossible", f"{text} while the mission is {self.status}")
         elif word.event == PLANNED and word.seq is not None:
-            return self._has_plan(word.agent, word.seq, now)
+            return self._on_plan_receipt(word.agent, word.seq, now)
         elif word.event == FAILED:
-            return self._failed(word.agent, now)
+            return self._on_failure(word.agent, now)
         elif word.seq is not None and self.status == HOLDING:
-            self._drop("held", f"{text} while the mission holds", level="info")
+            self._reject("held", f"{text} while the mission holds", level="info")
         elif word.seq is not None and word.seq != self.seq:
-            self._drop("stale", f"{text}: this is state {self.seq}", level="info")
+            self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         else:
-            moves = self._moves(word, now)
+            moves = self._moves_of(word, now)
             return self._take(moves, now) if moves else []
         return []
 
-    def tick(self, now: float) -> List[SystemState]:
+    def on_time(self, now: float) -> List[SystemState]:
         """Time has passed: deadlines, agents that are late or lost, and steps that objectives take by themselves."""
         if self.status not in LIVE:
             return []
         position = self.position(now)
-        moves = self._board.own_move(position) or self._due_command(position, now)
+        moves = self._automata.internal_move(position) or self._due_command(position, now)
         if moves:
             return self._take(moves, now)
-        for name, delay in self._board.bounds(position):
+        for name, delay in self._automata.bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
                 continue
             automaton, place = self.model.automaton(name), position.locations[name]
@@ -151,35 +151,35 @@ class Mission:
                 return self._take((Move(name, own[0]),), now, f"the deadline of {name} has passed")
             self.late.add(name)
             self._log("warn", f"{name} is late: it should have left {place} by now")
-        for name, delay in self._latecomers(position):
+        for name, delay in self._late_agents(position):
             if delay + self._lost_after <= EPSILON:
-                self._lose(name, f"is late by {self._lost_after:g} time units")
-        return self._settled(now)
+                self._mark_lost(name, f"is late by {self._lost_after:g} time units")
+        return self._status_changes(now)
 
-    def silent(self, node: str, now: float) -> List[SystemState]:
+    def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
         """A controller has not been heard for a while: the mission holds until it is back."""
-        self.away.add(node)
-        return self._settled(now)
+        self.silent.add(node)
+        return self._status_changes(now)
 
-    def back(self, node: str, now: float) -> List[SystemState]:
+    def on_controller_back(self, node: str, now: float) -> List[SystemState]:
         """A controller is heard again."""
-        self.away.discard(node)
-        return self._settled(now)
+        self.silent.discard(node)
+        return self._status_changes(now)
 
-    def planned(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
+    def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
         """The plan that was wanted under this number was found."""
         try:
-            found = self._planning.found(number, answer)
+            found = self._planning.on_plan(number, answer)
         except (DataError, KeyError, TypeError) as problem:
-            return self.unplanned(number, f"the plan cannot be read: {problem}", now)
+            return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
         if found:
             self._log("info", f"plan {number} goes to the controllers")
-        return self._begin_plan(now)
+        return self._put_plan_in_force(now)
 
-    def unplanned(self, number: int, why: str, now: float) -> List[SystemState]:
+    def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """There is no plan for what was wanted under this number: a safe stop, unless somebody is only late."""
-        self._planning.not_found(number, why)
-        return self._settled(now)
+        self._planning.on_no_plan(number, why)
+        return self._status_changes(now)
 
     def stop(self, why: str, now: float) -> List[SystemState]:
         """A safe stop: nobody gets another command."""
@@ -189,9 +189,9 @@ class Mission:
         if self.status != WAITING:
             self._log("warn", f"{START} while the mission is {self.status}: ignored")
             return []
-        self._board.start(now)
+        self._automata.start(now)
         self.status, self.seq = RUNNING, 1
-        moves = self._judge(now)
+        moves = self._evaluate(now)
         return [self.state(now), *self._take(moves, now)]
 
     def _ping(self, now: float) -> List[SystemState]:
@@ -210,7 +210,7 @@ class Mission:
 
     # How it happens ---------------------------------------------------------------------------------------------------
 
-    def _moves(self, word: Word, now: float) -> Optional[Tuple[Move, ...]]:
+    def _moves_of(self, word: Word, now: float) -> Optional[Tuple[Move, ...]]:
         """What the word does here; None, and counted, where it cannot be.
 
         A command that is early by no more than the tolerance is kept until its moment: its machine's clock is ahead.
@@ -230,7 +230,7 @@ class Mission:
             return None
         why = "not at this moment" if untimed else "it cannot happen here"
         could = ", ".join(self.model.possible(position, timed=False)) or "nothing"
-        self._drop("impossible", f"{word.event}: {why}; what could have happened: {could}")
+        self._reject("impossible", f"{word.event}: {why}; what could have happened: {could}")
         return None
 
     def _due_command(self, position: Position, now: float) -> Optional[Tuple[Move, ...]]:
@@ -245,7 +245,7 @@ class Mission:
         """Takes the moves, and then whatever the objectives do by themselves."""
         states: List[SystemState] = []
         while moves:
-            self._board.take(moves, now)
+            self._automata.take(moves, now)
             for name, _ in moves:
                 self.late.discard(name)
                 self.lost.pop(name, None)
@@ -255,40 +255,40 @@ class Mission:
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
             self._log("info", f"state {self.seq}: {self._event} by {self._agent}")
-            moves = self._judge(now, why)
+            moves = self._evaluate(now, why)
             states.append(self.state(now))
         return states
 
-    def _judge(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
+    def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
         """Ends the mission where it is won, lost or not covered; else, what an objective does by itself now."""
         position = self.position(now)
-        if self._board.is_at(self.model.goal):
+        if self._automata.is_at(self.model.goal):
             self._conclude(WON, "", now)
-        elif self._board.is_at(self.model.bad):
+        elif self._automata.is_at(self.model.bad):
             self._conclude(LOST, why or f"{self._event} by {self._agent}", now)
         else:
-            moves = self._board.own_move(position)
+            moves = self._automata.internal_move(position)
             if not moves:
-                self._settle(now, self._tolerance)
+                self._update_status(now, self._tolerance)
             return moves
         return None
 
     # Holding, and planning again --------------------------------------------------------------------------------------
 
-    def _settled(self, now: float) -> List[SystemState]:
+    def _status_changes(self, now: float) -> List[SystemState]:
         """Something other than an event may have changed: what follows from it is a state of its own."""
         if self.status not in LIVE:
             return []
         before = self.status, self.reason, set(self.lost)
-        self._settle(now, self._overstay if self.status == RUNNING else self._tolerance)
-        return [] if before == (self.status, self.reason, set(self.lost)) else self._announce(now)
+        self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
+        return [] if before == (self.status, self.reason, set(self.lost)) else self._new_state(now)
 
-    def _announce(self, now: float) -> List[SystemState]:
+    def _new_state(self, now: float) -> List[SystemState]:
         self.seq += 1
         self._event = self._agent = ""
         return [self.state(now)]
 
-    def _settle(self, now: float, patience: float) -> None:
+    def _update_status(self, now: float, patience: float) -> None:
         """Runs where the strategy in force knows what to do, holds where a plan or a controller is missing.
 
         `patience`: the time units by which time may have left what the strategy covers.
@@ -303,13 +303,13 @@ class Mission:
             if not self._warned:
                 self._log("warn", trouble)
             self._warned, trouble = True, ""
-        reasons = [f"{node} is silent" for node in sorted(self.away)]
+        reasons = [f"{node} is silent" for node in sorted(self.silent)]
         if not trouble:
-            self._planning.drop()
-        elif self._plan_again(now):
+            self._planning.reset()
+        elif self._request_plan(now):
             reasons.append(f"{trouble}; looking for another plan")
         else:
-            trouble += f"; no other plan: {self._planning.hopeless}"
+            trouble += f"; no other plan: {self._planning.no_plan_reason}"
             awaited = " and ".join(sorted(self.late - set(self.lost)))
             if not awaited:
                 self._conclude(STOPPED, trouble, now)
@@ -321,51 +321,51 @@ class Mission:
         self.status, self.reason = HOLDING if reasons else RUNNING, reason
 
     @property
-    def _overstay(self) -> float:
-        return self._tolerance + OVERSTAY / self._unit
+    def _cover_grace(self) -> float:
+        return self._tolerance + COVER_GRACE / self._unit
 
-    def _plan_again(self, now: float) -> bool:
+    def _request_plan(self, now: float) -> bool:
         """Asks for another plan from here; False where there is none."""
         position = self.position(now)
         excused = frozenset(self.late | set(self.lost))
-        ends = [delay for name, delay in self._board.bounds(position) if name not in excused]
-        ahead = max(0.0, min([self._planning.took / self._unit, *ends]))
-        self._planning.want((self.counts["taken"], excused), position, now, excused, ahead)
-        return not self._planning.hopeless
+        ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
+        ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
+        self._planning.request_plan((self.counts["taken"], excused), position, now, excused, ahead)
+        return not self._planning.no_plan_reason
 
-    def _has_plan(self, node: str, number: int, now: float) -> List[SystemState]:
-        self._planning.has(node, number)
-        return self._begin_plan(now)
+    def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
+        self._planning.on_receipt(node, number)
+        return self._put_plan_in_force(now)
 
-    def _begin_plan(self, now: float) -> List[SystemState]:
+    def _put_plan_in_force(self, now: float) -> List[SystemState]:
         """Once every controller has the plan, it is in force from the next state on, if it fits the clocks of now."""
-        proposal = self._planning.ready()
+        proposal = self._planning.acknowledged()
         if proposal is None:
             return []
         if not covers(proposal.cover, self.position(now), self._tolerance):
-            self._planning.miss(proposal, now)
-            return self._settled(now)
+            self._planning.expire(proposal, now)
+            return self._status_changes(now)
         self.in_force = proposal.data
         self.plan, self._cover = proposal.data["plan"], proposal.cover
-        self._planning.begin(proposal)
-        self._settle(now, self._tolerance)
-        return self._announce(now)
+        self._planning.put_in_force(proposal)
+        self._update_status(now, self._tolerance)
+        return self._new_state(now)
 
-    def _failed(self, agent: str, now: float) -> List[SystemState]:
+    def _on_failure(self, agent: str, now: float) -> List[SystemState]:
         """A robot says that it cannot do what it was told."""
-        if not is_under_way(self._board.place(agent)):
-            self._drop("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
+        if not is_under_way(self._automata.location_of(agent)):
+            self._reject("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
         elif agent not in self.lost:
-            self._lose(agent, "has failed")
-        return self._settled(now)
+            self._mark_lost(agent, "has failed")
+        return self._status_changes(now)
 
-    def _lose(self, agent: str, why: str) -> None:
+    def _mark_lost(self, agent: str, why: str) -> None:
         self.lost[agent] = why
         self._log("err", f"nothing is expected of {agent} any more: it {why}")
 
-    def _latecomers(self, position: Position) -> List[Tuple[str, float]]:
+    def _late_agents(self, position: Position) -> List[Tuple[str, float]]:
         """The agents that are late but do not count as lost."""
-        acting = self._board.bounds(position, *ACTING)
+        acting = self._automata.bounds(position, *ACTING)
         return [(name, delay) for name, delay in acting if name in self.late and name not in self.lost]
 
     # Ends -------------------------------------------------------------------------------------------------------------
@@ -379,6 +379,6 @@ class Mission:
         self.status, self.reason, self._ended = status, reason, now
         self._log("info" if status == WON else "err", f"the mission is {status}" + (f": {reason}" if reason else ""))
 
-    def _drop(self, kind: str, message: str, level: str = "warn") -> None:
+    def _reject(self, kind: str, message: str, level: str = "warn") -> None:
         self.counts[kind] += 1
         self._log(level, message)

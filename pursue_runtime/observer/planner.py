@@ -13,17 +13,19 @@ from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
 from pursue_runtime.observer.planning import PlanRequest
 
-EXTRA = 5.0
+KILL_DELAY = 5.0
 """Seconds beyond its limit after which a planner is killed."""
 
-Answer = Tuple[int, Optional[Dict[str, Any]], str]
+PlannerAnswer = Tuple[int, Optional[Dict[str, Any]], str]
 """The number of the request, the plan or None, and why there is none."""
 
 
 class Planner:
     """Runs one planner at a time; what it answers goes to `done`, in a thread of its own."""
 
-    def __init__(self, command: str, game: Mapping[str, Any], limit: float, done: Callable[[Answer], None]) -> None:
+    def __init__(
+        self, command: str, game: Mapping[str, Any], limit: float, done: Callable[[PlannerAnswer], None]
+    ) -> None:
         """`command`: as in a shell, `off` for none; `game`: what the solver has to know; `limit`: seconds."""
         self._command = [] if command == "off" else shlex.split(command)
         self._game, self._limit, self._done = game, limit, done
@@ -31,7 +33,7 @@ class Planner:
         self._number = 0
         self._process: Optional[subprocess.Popen[bytes]] = None
 
-    def want(self, request: Optional[PlanRequest]) -> None:
+    def request_plan(self, request: Optional[PlanRequest]) -> None:
         """This plan is wanted now (None: none is); whoever looks for another one is stopped."""
         number = request.number if request else 0
         with self._lock:
@@ -43,10 +45,10 @@ class Planner:
             threading.Thread(target=self._run, args=(request,), name="planner", daemon=True).start()
 
     def _run(self, request: PlanRequest) -> None:
-        plan, why = self._ask(request)
+        plan, why = self._run_command(request)
         self._done((request.number, plan, why))
 
-    def _ask(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
+    def _run_command(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
         """The plan, or None and why there is none."""
         if not self._command:
             return None, "planning is switched off (~planner)"
@@ -66,7 +68,7 @@ class Planner:
         except OSError as problem:
             return None, f"{self._command[0]} cannot be run here: {problem}; set ~planner to the planner's command"
         try:
-            said, complaint = process.communicate(text.encode(), self._limit + EXTRA)
+            said, complaint = process.communicate(text.encode(), self._limit + KILL_DELAY)
         except subprocess.TimeoutExpired:
             _kill(process)
             process.communicate()

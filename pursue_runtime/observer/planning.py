@@ -10,7 +10,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import StateTable, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
 
-FIRST_AHEAD = 1.0
+MIN_LEAD_TIME = 1.0
 """Seconds that a first plan is given to be there: it is made for the moment at which it can begin."""
 
 ATTEMPTS = 5
@@ -50,77 +50,79 @@ class Planning:
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
-        self.wanted: Optional[PlanRequest] = None
+        self.request: Optional[PlanRequest] = None
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
-        self.hopeless = ""
-        self.took = FIRST_AHEAD
+        self.no_plan_reason = ""
+        self.lead_time = MIN_LEAD_TIME
         self._controllers = tuple(controllers)
-        self._missing: Set[str] = set()
+        self._unacknowledged: Set[str] = set()
         self._number = 0
         self._attempts = 0
         self._place: object = None
 
-    def mark(self) -> Tuple[object, ...]:
+    def revision(self) -> Tuple[object, ...]:
         """What a step of planning changes."""
-        return self._number, self.wanted is None, self.proposal is None, self.hopeless, len(self._missing)
+        return self._number, self.request is None, self.proposal is None, self.no_plan_reason, len(self._unacknowledged)
 
     def unexcused(self, lost: Mapping[str, str]) -> str:
         """Who is lost but expected by the plan in force, and why; "" for nobody."""
         return " and ".join(f"{name} {lost[name]}" for name in sorted(set(lost) - self.excused))
 
-    def want(self, place: object, position: Position, stamp: float, excused: FrozenSet[str], ahead: float) -> None:
+    def request_plan(
+        self, place: object, position: Position, stamp: float, excused: FrozenSet[str], ahead: float
+    ) -> None:
         """A plan from this position is needed. `place` tells positions apart: nothing is asked for twice."""
         if place != self._place:
-            self.drop()
+            self.reset()
             self._place = place
-        elif self.wanted or self.proposal or self.hopeless:
+        elif self.request or self.proposal or self.no_plan_reason:
             return
         if self._attempts == ATTEMPTS:
-            self.hopeless = f"{ATTEMPTS} plans came too late to begin"
+            self.no_plan_reason = f"{ATTEMPTS} plans came too late to begin"
             return
         self._attempts += 1
         self._number += 1
         what = position.locations, position.values, position.clocks
-        self.wanted = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)))
+        self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)))
 
-    def drop(self) -> None:
+    def reset(self) -> None:
         """No other plan is needed any more."""
-        self.wanted = self.proposal = self._place = None
-        self.hopeless, self._attempts, self.took = "", 0, FIRST_AHEAD
+        self.request = self.proposal = self._place = None
+        self.no_plan_reason, self._attempts, self.lead_time = "", 0, MIN_LEAD_TIME
 
-    def found(self, number: int, answer: Mapping[str, Any]) -> bool:
+    def on_plan(self, number: int, answer: Mapping[str, Any]) -> bool:
         """A plan was found; False for an answer that nobody waits for. Raises DataError or KeyError on bad data."""
-        if self.wanted is None or number != self.wanted.number:
+        if self.request is None or number != self.request.number:
             return False
         data = {"format": 1, "plan": number, **{key: answer[key] for key in ("strategies", "people", "cover")}}
-        self.proposal = Proposal(data, read_cover(answer["cover"]), self.wanted)
-        self.wanted = None
-        self._missing = set(self._controllers)
+        self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)
+        self.request = None
+        self._unacknowledged = set(self._controllers)
         return True
 
-    def not_found(self, number: int, why: str) -> None:
+    def on_no_plan(self, number: int, why: str) -> None:
         """There is no plan for what was asked under this number."""
-        if self.wanted is not None and number == self.wanted.number:
-            self.wanted, self.hopeless = None, why
+        if self.request is not None and number == self.request.number:
+            self.request, self.no_plan_reason = None, why
 
-    def has(self, node: str, number: int) -> None:
+    def on_receipt(self, node: str, number: int) -> None:
         """A controller says that it has a plan."""
         if self.proposal is not None and self.proposal.data["plan"] == number:
-            self._missing.discard(node)
+            self._unacknowledged.discard(node)
 
-    def ready(self) -> Optional[Proposal]:
+    def acknowledged(self) -> Optional[Proposal]:
         """The plan that every controller has."""
-        return None if self._missing else self.proposal
+        return None if self._unacknowledged else self.proposal
 
-    def begin(self, proposal: Proposal) -> None:
+    def put_in_force(self, proposal: Proposal) -> None:
         """It is in force."""
         self.excused = frozenset(proposal.request.excused)
-        self.drop()
+        self.reset()
 
-    def miss(self, proposal: Proposal, now: float) -> None:
+    def expire(self, proposal: Proposal, now: float) -> None:
         """It does not fit the clocks of now: the next one is given more time to be there."""
-        self.took = (now - proposal.request.stamp) * 1.3 + FIRST_AHEAD
+        self.lead_time = (now - proposal.request.stamp) * 1.3 + MIN_LEAD_TIME
         self.proposal = None
 
 

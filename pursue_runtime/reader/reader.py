@@ -30,10 +30,10 @@ from pursue_runtime.bundle import (
 )
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.model import Model
-from pursue_runtime.reader.store import Log, State, Store, StoreError, manifest
+from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, manifest
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover
-from pursue_runtime.trusted_keys import KeyFolder, Tally
+from pursue_runtime.trusted_keys import KeyFolder, RateLimitedLog
 
 PATIENCE = 5.0
 """Seconds without an observer's word, at the start or after it said that no mission runs, after which none runs."""
@@ -42,7 +42,7 @@ FRESH = 1.5
 """Seconds for which it counts that no mission runs: an observer says it once a second, and one that was started anew,
 and is not connected to us yet, takes longer to begin."""
 
-AGAIN = 10.0
+RETRY_PERIOD = 10.0
 """Seconds until an exchange of missions that the disk did not take is tried again."""
 
 CONTROLLER_FILES = ("strategy.yaml", "poses.yaml")
@@ -53,7 +53,7 @@ FILES: Mapping[str, Tuple[str, ...]] = {
 """What each package's nodes read; all others are controllers."""
 
 
-class Answer(NamedTuple):
+class OrderResult(NamedTuple):
     """What has become of an order: a word for programs, a sentence for people; `ticket` is the one that it used up."""
 
     ticket: str
@@ -62,7 +62,7 @@ class Answer(NamedTuple):
     message: str
 
 
-class Robot(NamedTuple):
+class Machine(NamedTuple):
     """Where this is: the robot's name, the scenario of its workspace, the packages with data of a mission that this
     machine has, and the bytes of the largest bundle that it takes."""
 
@@ -76,24 +76,24 @@ class Reader:
     """Takes orders and states one by one, keeps the store, and says how it stands."""
 
     def __init__(
-        self, robot: Robot, store: Store, keys: KeyFolder, now: float, log: Log, patience: float = PATIENCE
+        self, robot: Machine, store: Store, keys: KeyFolder, now: float, log: Log, patience: float = PATIENCE
     ) -> None:
         self.robot = robot
         self.ticket = new_ticket()
-        self.answer: Optional[Answer] = None
-        self.refusals = Tally(lambda text: log("warn", text))
+        self.answer: Optional[OrderResult] = None
+        self.refusals = RateLimitedLog(lambda text: log("warn", text))
         self.counts = dict.fromkeys((PREPARE, COMMIT, ABORT, "exchanged"), 0)
         self._store = store
         self._keys = keys
         self._log = log
         self._patience = patience
         self._known: Optional[SystemState] = None
-        self._heard = now
-        self._failures = Tally(lambda text: log("err", text))
+        self._received = now
+        self._failures = RateLimitedLog(lambda text: log("err", text))
 
     # What is heard ----------------------------------------------------------------------------------------------------
 
-    def handle(self, text: str, now: float) -> Answer:
+    def on_message(self, text: str, now: float) -> OrderResult:
         """A message on local_mission. Whatever it is, it is answered; only orders that count change anything."""
         try:
             order, bundle = self._read(text)
@@ -101,7 +101,7 @@ class Reader:
             return self._refuse("", refused, now)
         self.ticket = new_ticket()
         try:
-            self.answer = self._obey(order, bundle, now)
+            self.answer = self._execute(order, bundle, now)
         except Refused as refused:
             self.answer = self._refuse(order.ticket, refused, now)
         except StoreError as problem:
@@ -110,18 +110,18 @@ class Reader:
             self._log("info", self.answer.message)
         return self.answer
 
-    def see(self, state: SystemState, now: float) -> bool:
+    def on_state(self, state: SystemState, now: float) -> bool:
         """A state of the mission. True where it matters: a mission has begun or ended, or was exchanged."""
         known, before = self._known, self.mission_runs
-        late = known is not None and now < self._heard + LATE and older(state, known)
+        late = known is not None and now < self._received + LATE and older(state, known)
         if not late or state.status in LIVE:
-            self._known, self._heard = state, now
-        return self.tick(now) or self.mission_runs != before
+            self._known, self._received = state, now
+        return self.on_time(now) or self.mission_runs != before
 
-    def tick(self, now: float) -> bool:
+    def on_time(self, now: float) -> bool:
         """Exchanges missions if that is wanted, and can be. True if it was done."""
         state = self._store.state
-        if state.next is None or not self._free(now):
+        if state.next is None or not self._can_exchange(now):
             return False
         try:
             self._exchange(state, state.next)
@@ -130,12 +130,12 @@ class Reader:
             return isinstance(problem, Refused)
         return True
 
-    def wake(self, now: float) -> Optional[float]:
+    def next_check(self, now: float) -> Optional[float]:
         """In how many seconds to call `tick` if nothing is heard; None: no need."""
         if self._store.state.next is None or self.mission_runs:
             return None
-        sure = self._heard + self._patience
-        return sure - now if now < sure else AGAIN
+        sure = self._received + self._patience
+        return sure - now if now < sure else RETRY_PERIOD
 
     # What is said -----------------------------------------------------------------------------------------------------
 
@@ -148,7 +148,7 @@ class Reader:
         """Those whose orders count."""
         return self._keys.keys()
 
-    def trouble(self) -> str:
+    def problem(self) -> str:
         """What keeps it from taking orders: a sentence, "" for nothing."""
         found = [] if self.keys() else [
             f"no key is trusted, every order is refused: put the desk's public key into {self._keys.folder}"
@@ -176,8 +176,8 @@ class Reader:
 
     # Orders -----------------------------------------------------------------------------------------------------------
 
-    def _refuse(self, ticket: str, refused: Refused, now: float) -> Answer:
-        answer = Answer(ticket, False, refused.code, str(refused))
+    def _refuse(self, ticket: str, refused: Refused, now: float) -> OrderResult:
+        answer = OrderResult(ticket, False, refused.code, str(refused))
         self.refusals.count(refused.code, f"refused ({refused.code}): {refused}", now)
         return answer
 
@@ -185,7 +185,7 @@ class Reader:
         """The order in a message, if it counts, and the bundle as it came. Raises Refused."""
         keys = self.keys()
         if not keys:
-            raise Refused("no_keys", self.trouble())
+            raise Refused("no_keys", self.problem())
         if len(text) > 4 * (self.robot.limit // 3 + 1) + ORDER_LENGTH + 100:
             raise Refused("too_large", f"the message has {len(text)} characters")
         if text.count("{") > 1 or text.count(",") > 1 or "[" in text:  # nothing that would grow when it is read
@@ -203,12 +203,12 @@ class Reader:
             raise Refused("old_ticket", "the ticket is not the one that is out; the status has that")
         return order, message.get("bundle")
 
-    def _obey(self, order: Order, bundle: object, now: float) -> Answer:
+    def _execute(self, order: Order, bundle: object, now: float) -> OrderResult:
         content = self._content(order, bundle)
         act = {PREPARE: self._prepare, COMMIT: self._commit, ABORT: self._abort}[order.action]
         code, message = act(order.mission, content, now)
         self.counts[order.action] += 1
-        return Answer(order.ticket, True, code, message)
+        return OrderResult(order.ticket, True, code, message)
 
     def _content(self, order: Order, bundle: object) -> bytes:
         """The bundle that travels with the order, empty for none. Raises Refused."""
@@ -238,7 +238,7 @@ class Reader:
                 raise Refused("bad_bundle", "the bundle holds another mission than the order says")
             self._store.put(bundle, content, lambda folder: self._check(folder, bundle.manifest.files))
         elif mission != OWN:
-            if not self._store.whole(mission):
+            if not self._store.is_intact(mission):
                 raise Refused("unknown_mission", f"mission {name} is not here: send it with its bundle")
             folder = os.path.join(self._store.folder, mission)
             self._check(folder, manifest(self._store.folder, mission)["files"])
@@ -255,7 +255,7 @@ class Reader:
         if mission == state.current:
             self._store.save(state._replace(next=None, prepared=prepared))
             return "committed", f"mission {name} counts, as before"
-        if self._free(now):
+        if self._can_exchange(now):
             self._exchange(state._replace(prepared=prepared), mission)
             return "committed", f"mission {name} counts from now on"
         self._store.save(state._replace(next=mission, prepared=prepared))
@@ -271,14 +271,14 @@ class Reader:
 
     # Missions ---------------------------------------------------------------------------------------------------------
 
-    def _free(self, now: float) -> bool:
+    def _can_exchange(self, now: float) -> bool:
         """True where no mission can be under way: the observer has just said so, or there is none."""
-        fresh = self._known is not None and now <= self._heard + FRESH
-        return not self.mission_runs and (fresh or now >= self._heard + self._patience)
+        fresh = self._known is not None and now <= self._received + FRESH
+        return not self.mission_runs and (fresh or now >= self._received + self._patience)
 
-    def _exchange(self, state: State, mission: str) -> None:
+    def _exchange(self, state: StoreState, mission: str) -> None:
         """Makes this mission the current one. Raises Refused where it is damaged: then nothing is next."""
-        if mission != OWN and not self._store.whole(mission):
+        if mission != OWN and not self._store.is_intact(mission):
             self._store.save(self._store.state._replace(next=None))
             raise Refused("unknown_mission", f"mission {mission_id(mission)} is damaged: send it again with its bundle")
         history = [name for name in (*state.history, state.current) if name != mission]

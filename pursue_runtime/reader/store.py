@@ -35,11 +35,11 @@ class StoreError(Exception):
     """The disk does not take, or does not give, what it should; the text says what."""
 
 
-class NotNow(StoreError):
+class TemporaryError(StoreError):
     """What is on the disk cannot be known at the moment: nothing says that it is damaged."""
 
 
-class State(NamedTuple):
+class StoreState(NamedTuple):
     """Which mission counts; each is a digest, or OWN.
 
     `current` is what nodes start with; `next` takes its place when the mission under way is over; `prepared` waits for
@@ -63,7 +63,7 @@ class State(NamedTuple):
 # Reading: changes nothing ---------------------------------------------------------------------------------------------
 
 
-def read_state(folder: str) -> Optional[State]:
+def read_state(folder: str) -> Optional[StoreState]:
     """The state on the disk, None where there is none yet. Raises StoreError where it cannot be used."""
     path = os.path.join(folder, STATE)
     try:
@@ -80,26 +80,26 @@ def read_state(folder: str) -> Optional[State]:
     return state
 
 
-def _state(facts: Any) -> Optional[State]:
+def _state(facts: Any) -> Optional[StoreState]:
     if not isinstance(facts, dict) or facts.get("format") != 1:
         return None
-    current, following, prepared, history = (facts.get(name) for name in State._fields)
+    current, following, prepared, history = (facts.get(name) for name in StoreState._fields)
     history = history if isinstance(history, list) else [None]
     some = [name for name in (following, prepared) if name is not None]
     if not all(name == OWN or is_digest(name) for name in (current, *history, *some)):
         return None
-    return State(str(current), following, prepared, tuple(history))
+    return StoreState(str(current), following, prepared, tuple(history))
 
 
-def found(folder: str) -> List[str]:
+def stored_digests(folder: str) -> List[str]:
     """The digests of the missions in the store, the oldest first."""
     try:
-        return _found(folder)
+        return _list_digests(folder)
     except OSError:
         return []
 
 
-def _found(folder: str) -> List[str]:
+def _list_digests(folder: str) -> List[str]:
     with os.scandir(folder) as entries:
         there = [entry for entry in entries if is_digest(entry.name) and entry.is_dir(follow_symlinks=False)]
     return [entry.name for entry in sorted(there, key=lambda entry: (entry.stat().st_mtime, entry.name))]
@@ -123,7 +123,7 @@ def manifest(folder: str, digest: str) -> Dict[str, Any]:
     return facts
 
 
-def damage(folder: str, digest: str) -> str:
+def find_damage(folder: str, digest: str) -> str:
     """What is wrong with a mission in the store: a sentence, "" if it is whole. Raises NotNow."""
     try:
         facts = manifest(folder, digest)
@@ -135,7 +135,7 @@ def damage(folder: str, digest: str) -> str:
             if _read(_inside(place, f"{package}/{MISSION}")) != mission_file(digest, facts["scenario"]):
                 raise StoreError(f"{package}/{MISSION} is damaged")
     except (StoreError, OSError) as problem:
-        if isinstance(problem, NotNow):
+        if isinstance(problem, TemporaryError):
             raise
         return f"mission {mission_id(digest)} is not whole: {problem}"
     return ""
@@ -146,12 +146,12 @@ def table(folder: str, own: str) -> List[Tuple[str, str, str]]:
 
     Raises StoreError.
     """
-    state = read_state(folder) or State()
+    state = read_state(folder) or StoreState()
     rows = []
-    for digest in (OWN, *found(folder)):
+    for digest in (OWN, *stored_digests(folder)):
         roles = ((state.current, "current"), (state.next, "next, when no mission runs"), (state.prepared, "prepared"))
         told = [role for name, role in roles if name == digest] or ["earlier" if digest in state.history else "kept"]
-        wrong = damage(folder, digest) if digest else ""
+        wrong = find_damage(folder, digest) if digest else ""
         scenario = own if not digest else "?" if wrong else str(manifest(folder, digest)["scenario"])
         what = "the workspace's own; " if not digest else ""
         rows.append((mission_id(digest), scenario, what + "; ".join([*told, *([wrong] if wrong else [])])))
@@ -165,7 +165,7 @@ def _read(path: str) -> bytes:
             return file.read()
     except OSError as problem:
         if problem.errno in _PASSING:
-            raise NotNow(f"cannot read {path} now: {problem.strerror}") from problem
+            raise TemporaryError(f"cannot read {path} now: {problem.strerror}") from problem
         raise
 
 
@@ -205,11 +205,11 @@ class Store:
             raise StoreError(f"another pursue_reader works in {folder}") from problem
         self._remove(*self._leftovers())
         try:
-            self.state = self._mended()
+            self.state = self._repaired()
         except StoreError:
             self.close()
             raise
-        self._tidy()
+        self._remove_unused()
 
     def close(self) -> None:
         """Lets another process have it."""
@@ -217,11 +217,11 @@ class Store:
 
     def kept(self) -> List[str]:
         """The missions that it has, the oldest first."""
-        return found(self.folder)
+        return stored_digests(self.folder)
 
-    def whole(self, digest: str) -> bool:
+    def is_intact(self, digest: str) -> bool:
         """True where it has this mission, unharmed."""
-        wrong = damage(self.folder, digest) if digest in self.kept() else "nothing"
+        wrong = find_damage(self.folder, digest) if digest in self.kept() else "nothing"
         if wrong not in ("", "nothing"):
             self._log("err", wrong)
         return not wrong
@@ -237,12 +237,12 @@ class Store:
         """Keeps the mission of a bundle, as `unpack` has read it from `content`. `check` gets the folder where the
         mission is complete, and may raise. Raises StoreError, and what `check` raises; then nothing is left of it."""
         place = os.path.join(self.folder, bundle.digest)
-        if self.whole(bundle.digest):
+        if self.is_intact(bundle.digest):
             check(place)
             return
         new = self._new()
         try:
-            self._fill(new, bundle, _seal(content))
+            self._fill(new, bundle, _signature_of(content))
             check(new)
             if os.path.lexists(place):  # damaged, or not a mission
                 os.rename(place, self._new())
@@ -251,9 +251,9 @@ class Store:
             raise StoreError(f"cannot keep mission {mission_id(bundle.digest)}: {problem.strerror}") from problem
         finally:
             self._remove(*self._leftovers())
-        self._settle()
+        self._sync()
 
-    def save(self, state: State) -> None:
+    def save(self, state: StoreState) -> None:
         """From now on this is the state, also after a power cut. Raises StoreError; then it is the old one."""
         state = self._trimmed(state)
         if state != self.state:
@@ -261,11 +261,11 @@ class Store:
                 self._save(state)
                 self.state = state
             finally:
-                self._tidy()
+                self._remove_unused()
 
     # How it is done ---------------------------------------------------------------------------------------------------
 
-    def _save(self, state: State) -> None:
+    def _save(self, state: StoreState) -> None:
         new = self._new()
         try:
             _write(new, state.text())
@@ -273,36 +273,36 @@ class Store:
         except OSError as problem:
             self._remove(new)
             raise StoreError(f"cannot write {STATE} in {self.folder}: {problem.strerror}") from problem
-        self._settle()
+        self._sync()
 
-    def _settle(self) -> None:
+    def _sync(self) -> None:
         """What was renamed stays so in a power cut. It is so already for everybody who looks."""
         try:
-            _settle(self.folder)
+            _sync_folder(self.folder)
         except OSError as problem:
             self._log("warn", f"{self.folder} may be as it was before after a power cut: {problem.strerror}")
 
-    def _trimmed(self, state: State) -> State:
+    def _trimmed(self, state: StoreState) -> StoreState:
         """Without the oldest of the history, where that is too long."""
         history = list(state.history)
         while sum(name != OWN for name in history) > self._keep:
             history.pop(0)
         return state._replace(history=tuple(history))
 
-    def _mended(self) -> State:
+    def _repaired(self) -> StoreState:
         """The state on the disk, without what is not there or damaged. Raises StoreError."""
         try:
-            there = [OWN, *(digest for digest in _found(self.folder) if self.whole(digest))]
+            there = [OWN, *(digest for digest in _list_digests(self.folder) if self.is_intact(digest))]
         except OSError as problem:
             raise StoreError(f"cannot read {self.folder}: {problem.strerror}") from problem
         try:
-            known: Optional[State] = read_state(self.folder) or State()
-        except NotNow:
+            known: Optional[StoreState] = read_state(self.folder) or StoreState()
+        except TemporaryError:
             raise
         except StoreError as problem:
             self._log("err", f"{problem}: from now on the workspace's own mission counts; others can be called back")
             known = None
-        state = known or State(history=tuple(there[1:]))
+        state = known or StoreState(history=tuple(there[1:]))
         state = state._replace(
             next=state.next if state.next in there else None,
             prepared=state.prepared if state.prepared in there else None,
@@ -330,7 +330,7 @@ class Store:
         for path, content in files.items():
             _write(_inside(new, path), content)
         for folder in (*(os.path.join(new, package) for package in packages), new):
-            _settle(folder)
+            _sync_folder(folder)
 
     def _new(self) -> str:
         self._count += 1
@@ -342,7 +342,7 @@ class Store:
         except OSError:
             return []
 
-    def _tidy(self) -> None:
+    def _remove_unused(self) -> None:
         """Removes missions that nobody names any more."""
         named = set(self.state.named())
         for digest in self.kept():
@@ -366,7 +366,7 @@ class Store:
                 self._log("warn", f"cannot remove {path}: {problem.strerror}")
 
 
-def _seal(content: bytes) -> bytes:
+def _signature_of(content: bytes) -> bytes:
     """The signature in a bundle, as it stands there."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         return archive.read(SIGNATURE)
@@ -384,7 +384,7 @@ def _write(path: str, content: bytes) -> None:
         os.close(file)
 
 
-def _settle(folder: str) -> None:
+def _sync_folder(folder: str) -> None:
     """What the folder lists is on the disk."""
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:

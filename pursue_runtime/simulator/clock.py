@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 START = 1.0  # seconds; 0 means "no time yet" to rospy
-KEPT = 20  # so many files of clocks are kept in a folder
+MAX_FILES = 20  # so many files of clocks are kept in a folder
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class SimClock:
         """Simulated seconds."""
         return self._start + self._steps * self._pace.step
 
-    def heard(self, real: float) -> None:
+    def on_message(self, real: float) -> None:
         """A message was heard at this moment of the real clock."""
         self._held_until = max(self._held_until, real + self._pace.hold)
 
@@ -63,7 +63,7 @@ class SimClock:
         return self.now
 
 
-class Memory:
+class ClockFile:
     """The last time that was published, in a file that outlives a kill (not a failure of the machine).
 
     `last`: what the file held, None where there is none yet. Raises OSError where the file cannot be written.
@@ -77,11 +77,11 @@ class Memory:
         with contextlib.suppress(ValueError):  # empty: it is new
             self.last = float(os.pread(self._file, 64, 0))
         clocks = sorted((entry for entry in os.scandir(folder) if entry.name.startswith("clock-")), key=_changed)
-        for entry in clocks[:-KEPT]:
+        for entry in clocks[:-MAX_FILES]:
             with contextlib.suppress(OSError):
                 os.remove(entry.path)
 
-    def keep(self, moment: float) -> None:
+    def save(self, moment: float) -> None:
         """Writes the time down, in one piece and always as long. Raises OSError."""
         os.pwrite(self._file, b"%030.9f\n" % moment, 0)
 

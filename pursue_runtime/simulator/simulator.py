@@ -24,7 +24,7 @@ SAME = 0.5  # time units: starts that are closer than this are one start (no two
 EARLY = 1.5  # time units by which a goal may seem older than the start it is for: two nodes have two clocks
 
 
-class Window(NamedTuple):
+class EndWindow(NamedTuple):
     """The end `event` of what an agent does there: its clock is in (low, high], in time units."""
 
     event: str
@@ -47,7 +47,7 @@ class Activity:
     sent: float = 0.0
 
 
-def window_at(automaton: Automaton, location: str) -> Optional[Window]:
+def end_window(automaton: Automaton, location: str) -> Optional[EndWindow]:
     """When what the agent does in this location ends; None where it does nothing that ends."""
     for edge in automaton.edges_from(location):
         if edge.sync == "receive" or not is_end(edge.source, edge.target):
@@ -55,11 +55,11 @@ def window_at(automaton: Automaton, location: str) -> Optional[Window]:
         lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
         for bound in automaton.invariants[location]:
             if bound.left in lows:
-                return Window(edge.word, bound.left, lows[bound.left], bound.bound)
+                return EndWindow(edge.word, bound.left, lows[bound.left], bound.bound)
     return None
 
 
-def spoken(model: Model, agent: str, event: str) -> str:
+def report_word(model: Model, agent: str, event: str) -> str:
     """The word of a report: with the agent's name only where somebody else could mean the same."""
     able = {a.name for a in model.automata for edge in a.edges if edge.word == event and edge.sync != "receive"}
     return format_word(Word(agent if able - {agent} else "", event))
@@ -68,7 +68,7 @@ def spoken(model: Model, agent: str, event: str) -> str:
 class Durations(Protocol):
     """Draws how long activities take."""
 
-    def draw(self, window: Window, agent: str, number: int) -> float:
+    def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Return time units from the start of the agent's `number`-th activity to its end, which is in the window."""
 
 
@@ -81,7 +81,7 @@ class Delays:
         self._choice = choice
         self._seed = seed
 
-    def draw(self, window: Window, agent: str, number: int) -> float:
+    def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Time units from the start of the agent's `number`-th activity to its end."""
         shares = {"early": 0.0, "middle": 0.5, "late": 1.0}
         # One generator for each activity: the order in which messages arrive must not change what is drawn.
@@ -104,7 +104,7 @@ class Simulator:
         self._model = model
         self._delays = delays
         self._state: Optional[SystemState] = None
-        self._heard = 0.0
+        self._state_received = 0.0
         self._goals: Dict[str, float] = {}
         self._counts: Dict[str, int] = {}
         self._activities: Dict[str, Activity] = {}
@@ -116,7 +116,7 @@ class Simulator:
             return
         self._state = state
         if before is None or before.seq != state.seq:
-            self._heard = real
+            self._state_received = real
             for activity in self._activities.values():
                 activity.sends = min(activity.sends, 1)
         if state.status not in LIVE:
@@ -124,13 +124,13 @@ class Simulator:
             return
         for automaton in self._agents:
             # Whoever is on the way already when we start was on the way before: its goal came before our time.
-            self._follow(automaton, state, newborn=before is None)
+            self._update_activity(automaton, state, newborn=before is None)
 
     def on_goal(self, robot: str, now: float) -> None:
         """The robot got a goal or an action, at this moment of ROS time."""
         activity = self._activities.get(robot)
         if activity is not None and not activity.under_way:
-            self._set_out(activity, now)
+            self._start(activity, now)
         else:  # the state that it is for comes later
             self._goals[robot] = now
 
@@ -139,7 +139,7 @@ class Simulator:
         words = []
         for activity in self._activities.values():
             ended = activity.under_way and now >= activity.moment - 1e-6
-            if ended and (activity.sends == 0 or self._lost(activity, real)):
+            if ended and (activity.sends == 0 or self._is_unanswered(activity, real)):
                 activity.sends += 1
                 activity.sent = real
                 words.append(activity.word)
@@ -148,13 +148,13 @@ class Simulator:
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """When `due` should be asked again: in ROS time, and on the real clock; None: not before the next message."""
         ends = [a.moment for a in self._activities.values() if a.under_way and a.sends == 0]
-        receipts = [self._patience(a) for a in self._activities.values() if a.sends]
+        receipts = [self._resend_at(a) for a in self._activities.values() if a.sends]
         return min(ends, default=None), min(receipts, default=None)
 
-    def _follow(self, automaton: Automaton, state: SystemState, newborn: bool) -> None:
+    def _update_activity(self, automaton: Automaton, state: SystemState, newborn: bool) -> None:
         name = automaton.name
         location = state.locations.get(name, "")
-        window = window_at(automaton, location)
+        window = end_window(automaton, location)
         if window is None or window.clock not in state.clocks:
             self._activities.pop(name, None)
             return
@@ -164,23 +164,23 @@ class Simulator:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
         activity = Activity(
-            location, since, spoken(self._model, name, window.event), window.low * state.unit,
+            location, since, report_word(self._model, name, window.event), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
             under_way=automaton.kind != "robot" or newborn,
         )
         self._activities[name] = activity
         goal = self._goals.pop(name, None)  # it starts one activity
         if not activity.under_way and goal is not None and goal >= since - EARLY * state.unit:
-            self._set_out(activity, goal)
+            self._start(activity, goal)
 
     @staticmethod
-    def _set_out(activity: Activity, now: float) -> None:
+    def _start(activity: Activity, now: float) -> None:
         """The robot got its goal: a goal that was long under way makes it late, as it would a real one."""
         activity.under_way = True
         activity.moment = max(activity.moment, now + activity.shortest)
 
-    def _patience(self, activity: Activity) -> float:
-        return max(activity.sent, self._heard) + resend_timeout(activity.sends)
+    def _resend_at(self, activity: Activity) -> float:
+        return max(activity.sent, self._state_received) + resend_timeout(activity.sends)
 
-    def _lost(self, activity: Activity, real: float) -> bool:
-        return real >= self._patience(activity)
+    def _is_unanswered(self, activity: Activity, real: float) -> bool:
+        return real >= self._resend_at(activity)

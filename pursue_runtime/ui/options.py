@@ -13,7 +13,7 @@ MODES = {
     "trace": "they do what a trace file says",
 }
 
-SHORTEST = 8  # characters of a token
+MIN_TOKEN_LENGTH = 8  # characters of a token
 
 
 class OptionError(ValueError):
@@ -57,8 +57,9 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
     if port > 65535 or port != int(port):
         raise OptionError(f"port is {found['port']!r}; expected a whole number from 0 (any that is free) to 65535")
     token = str(found.get("token") or "")
-    if token and len(token) < SHORTEST:
-        raise OptionError(f"token has {len(token)} characters; expected {SHORTEST} at least, or none: one is made")
+    if token and len(token) < MIN_TOKEN_LENGTH:
+        hint = f"expected at least {MIN_TOKEN_LENGTH}, or no token: then one is generated"
+        raise OptionError(f"token has {len(token)} characters; {hint}")
     return Options(
         mode=mode,
         trace=trace,

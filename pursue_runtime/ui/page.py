@@ -11,26 +11,26 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
-from pursue_runtime.simulator.simulator import ACTING, spoken, window_at
+from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
-from pursue_runtime.ui.mission import openings, tasks
+from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.words import START
 
-KEPT = 300  # entries of the log
+MAX_ENTRIES = 300  # entries of the log
 REQUESTS = {"start": False, "stop": False, "say": True, "done": True}
 """What a page may ask for, and whether a word belongs to it."""
 
 NOTE, GOOD, BAD = "note", "good", "bad"
 
 
-class Request(NamedTuple):
+class PageRequest(NamedTuple):
     """What somebody wants who looks at the page."""
 
     do: str
     word: str = ""
 
 
-def read_request(text: Any) -> Request:
+def read_request(text: Any) -> PageRequest:
     """Reads a message of the page. Raises ValueError with what was expected."""
     try:
         data = json.loads(text)
@@ -40,28 +40,28 @@ def read_request(text: Any) -> Request:
     word = data.get("word", "") if known else None
     if not isinstance(word, str) or bool(word) != REQUESTS[data["do"]]:
         raise ValueError(_expected())
-    return Request(data["do"], word)
+    return PageRequest(data["do"], word)
 
 
 def _expected() -> str:
     return 'expected {"do": "start"}, {"do": "stop"}, {"do": "say", "word": …} or {"do": "done", "word": …}'
 
 
-class Plan(NamedTuple):
+class FloorPlan(NamedTuple):
     """Where the points of interest are (metres), and which of them are connected, at which distance."""
 
     places: Dict[str, Tuple[float, float]]
     ways: Tuple[Tuple[str, str, float], ...]
 
 
-def read_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> Plan:
+def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> FloorPlan:
     """The map, from poses.yaml and ui.yaml. Raises DataError."""
     try:
         places = {str(name): (float(pose[0]), float(pose[1])) for name, pose in poses["poses"].items()}
         ways = tuple((str(a), str(b), float(length)) for a, b, length in settings.get("connections", ()))
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as problem:
         raise DataError(f"poses.yaml or ui.yaml lacks or misspells something: {problem!r}") from problem
-    return Plan(places, tuple(way for way in ways if way[0] in places and way[1] in places))
+    return FloorPlan(places, tuple(way for way in ways if way[0] in places and way[1] in places))
 
 
 class Facts(NamedTuple):
@@ -83,7 +83,7 @@ class Facts(NamedTuple):
 class Page:
     """What there is to show, from the states of one mission."""
 
-    def __init__(self, model: Model, plan: Plan, ends: bool = False) -> None:
+    def __init__(self, model: Model, plan: FloorPlan, ends: bool = False) -> None:
         """`ends`: buttons also for the ends of what agents do that nobody controls."""
         self._model = model
         self._plan = plan
@@ -106,7 +106,7 @@ class Page:
     def view(self, facts: Facts) -> Dict[str, Any]:
         """What changes."""
         state = facts.state or self._unstarted()
-        offers = openings(self._model, state, state.clocks, ACTING, ends=True) if state.status in LIVE else []
+        offers = possible_words(self._model, state, state.clocks, ACTING, ends=True) if state.status in LIVE else []
         opens = {offer.word: [_round(facts.at + offer.opens), _end(facts.at, offer.closes)] for offer in offers}
         agents = [self._agent(automaton, state, facts.at) for automaton in self._acting]
         for agent in agents:
@@ -151,7 +151,7 @@ class Page:
         """Adds an entry to the log, and returns it."""
         self._number += 1
         entry = {"n": self._number, "at": _round(at), "text": text, "kind": kind, "word": word}
-        self.log = [*self.log, entry][-KEPT:]
+        self.log = [*self.log, entry][-MAX_ENTRIES:]
         return entry
 
     # Agents -----------------------------------------------------------------------------------------------------------
@@ -160,7 +160,7 @@ class Page:
         """Where an agent is, what it does, and between which moments that ends."""
         location = state.locations.get(automaton.name, automaton.initial)
         place, to = self._where(automaton, location)
-        window = window_at(automaton, location)
+        window = end_window(automaton, location)
         agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to, "doing": f"at {place or location}",
                                  "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
         begin = _begin(automaton, location)
@@ -214,7 +214,7 @@ class Page:
         found: Dict[str, Dict[str, str]] = {}
         for edge in automaton.edges:
             if edge.sync != "receive" and (self._ends or not is_end(edge.source, edge.target)):
-                word = spoken(self._model, automaton.name, edge.word)
+                word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
                 found.setdefault(word, {"agent": automaton.name, "word": word, "label": label})
         return list(found.values())
@@ -238,7 +238,7 @@ class Page:
         before = last.locations.get(state.agent, "") if last is not None else ""
         edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
         edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
-        told = _phrase(automaton, edge).told if edge is not None and edge.source != edge.target else ""
+        told = _phrase(automaton, edge).past if edge is not None and edge.source != edge.target else ""
         return f"{state.agent} {told or 'does ' + state.event}"
 
     def _kind(self, agent: str) -> str:
@@ -254,7 +254,7 @@ class _Phrase(NamedTuple):
     """An edge in words: on a button, and after it was taken."""
 
     label: str
-    told: str
+    past: str
 
 
 def _phrase(automaton: Automaton, edge: Edge) -> _Phrase:

@@ -29,7 +29,7 @@ def topics(model: Model, simulated_time: bool) -> List[str]:
     return [*names, "/diagnostics", *(["/clock"] if simulated_time else [])]
 
 
-def reserve(asked: str, folder: str) -> str:
+def reserve_file(asked: str, folder: str) -> str:
     """The path of a new bag: the one that was asked for, `mission.bag` in the folder for none, or where that is taken
     the next with a number. What is being written stands in `<path>.active`, which is made here: no two recorders get
     the same. Raises OSError.
@@ -50,15 +50,17 @@ def reserve(asked: str, folder: str) -> str:
         return free
 
 
-def missing(nodes: Sequence[str], publishers: Mapping[str, Collection[str]], heard: Mapping[str, int]) -> str:
+def missing_connections(
+    nodes: Sequence[str], publishers: Mapping[str, Collection[str]], connected: Mapping[str, int]
+) -> str:
     """Why the recording would not be complete yet, "" where it would.
 
     `nodes` are those of the mission; `publishers` are the nodes on each of our topics, as the master knows them,
-    `heard` how many of them we are connected to.
+    `connected` how many of them we are connected to.
     """
     present = {node.strip("/") for names in publishers.values() for node in names}
     absent = [node for node in nodes if node.strip("/") not in present]
     if absent:
         return f"nothing from {', '.join(absent)} yet"
-    deaf = [topic for topic, names in publishers.items() if heard.get(topic, 0) < len(names)]
+    deaf = [topic for topic, names in publishers.items() if connected.get(topic, 0) < len(names)]
     return f"not connected to everybody on {deaf[0]} yet" if deaf else ""

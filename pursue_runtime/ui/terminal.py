@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from typing import Mapping, TextIO
 
-GOOD, BAD, TOLD, PLAIN = "32", "31", "1", ""
+GOOD, BAD, BOLD, PLAIN = "32", "31", "1", ""
 """Styles: the codes of ANSI terminals."""
 
 

@@ -24,14 +24,14 @@ class TraceError(ValueError):
 
 
 @dataclass(frozen=True)
-class Step:
+class TraceStep:
     """At `at` time units since the start, publish `word`."""
 
     at: float
     word: str
 
 
-def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[Step, ...]:
+def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[TraceStep, ...]:
     """The steps of a trace, in order of time. `words` are those that the model knows.
 
     Raises TraceError, with every fault of the file in it.
@@ -45,7 +45,7 @@ def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[Step, ...]
         raise TraceError(f"{file}:{line}: not YAML: {getattr(error, 'problem', error)}; {EXPECTED}") from error
     if not isinstance(root, yaml.SequenceNode):
         raise TraceError(f"{file}:1: a trace is a list of steps: {EXPECTED}")
-    steps: List[Step] = []
+    steps: List[TraceStep] = []
     faults: List[str] = []
     for number, node in enumerate(root.value, start=1):
         try:
@@ -60,7 +60,7 @@ def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[Step, ...]
     return tuple(steps)
 
 
-def _step(entry: Any, words: Collection[str]) -> Step:
+def _step(entry: Any, words: Collection[str]) -> TraceStep:
     if not isinstance(entry, dict) or set(entry) != {"at", "do"}:
         raise TraceError(f"{entry!r} is no step; {EXPECTED}")
     moment, word = entry["at"], entry["do"]
@@ -73,4 +73,4 @@ def _step(entry: Any, words: Collection[str]) -> Step:
         near = difflib.get_close_matches(event, sorted(words), n=1)
         hint = f"; did you mean {near[0]}?" if near else f"; expected one of {', '.join(sorted(words))}"
         raise TraceError(f"nobody in this scenario knows the event {word}{hint}")
-    return Step(float(moment), word)
+    return TraceStep(float(moment), word)

@@ -26,7 +26,7 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from pursue_runtime.http_server import Door, without_chunks
+from pursue_runtime.http_server import LimitedServer, drop_chunks
 
 FILES = {
     "/": ("index.html", "text/html"),
@@ -34,15 +34,15 @@ FILES = {
     "/page.css": ("page.css", "text/css"),
 }
 TICK = 0.5  # real seconds between two words on what time it is
-PATIENCE = 30.0  # real seconds that a request may take to arrive
-LONGEST = 120.0  # real seconds that a connection may last that does not become a page that listens
-CONNECTIONS = 64  # of those at a time
-LARGEST = 4096  # bytes that a page may send in a message or a request
-BEHIND = 1 << 20  # bytes that a page may be behind
-PAGES = 50  # pages at a time
-JUNK = 20  # messages of a page that cannot be understood until it is closed
+REQUEST_TIMEOUT = 30.0  # real seconds that a request may take to arrive
+MAX_CONNECTION_TIME = 120.0  # real seconds that a connection may last that does not become a page that listens
+MAX_CONNECTIONS = 64  # of those at a time
+MAX_MESSAGE = 4096  # bytes that a page may send in a message or a request
+MAX_BACKLOG = 1 << 20  # bytes that a page may be behind
+MAX_PAGES = 50  # pages at a time
+MAX_INVALID = 20  # messages of a page that cannot be understood until it is closed
 
-WHY = {
+ERROR_TEXTS = {
     400: "This request cannot be understood.",
     411: "This request is refused: nothing is taken here in chunks.",
     401: "This page needs its token: open the whole link that the UI has printed.",
@@ -81,9 +81,9 @@ class Web:
         host: str,
         port: int,
         token: str,
-        welcome: Callable[[], Mapping[str, Any]],
-        asked: Callable[[str], str],
-        moment: Callable[[], Optional[float]],
+        first_message: Callable[[], Mapping[str, Any]],
+        on_message: Callable[[str], str],
+        present: Callable[[], Optional[float]],
     ) -> None:
         """Binds the address (port 0: any that is free) and reads the page from `folder`; serves after `start`.
 
@@ -93,8 +93,8 @@ class Web:
         """
         self.generated = not token and not is_loopback(host)
         self.token = secrets.token_urlsafe(16) if self.generated else token
-        self.welcome, self.asked, self._moment = welcome, asked, moment
-        self._pages: Set[Live] = set()
+        self.first_message, self.on_message, self._present = first_message, on_message, present
+        self._pages: Set[PageSocket] = set()
         try:
             self._files = {path: (_read(folder, name), kind) for path, (name, kind) in FILES.items()}
             self._sockets = bind_sockets(port, host)
@@ -129,7 +129,7 @@ class Web:
         """Tells every page; from any thread."""
         text = json.dumps(message, allow_nan=False)
         with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._tell, text)
+            self._loop.call_soon_threadsafe(self._send_text, text)
 
     def close(self) -> None:
         """Lets what was sent go out, closes every page, and ends."""
@@ -150,23 +150,23 @@ class Web:
     async def _serve(self) -> None:
         paths: List[Any] = [(path, File, {"web": self}) for path in FILES]
         application = _Requests(
-            [*paths, ("/live", Live, {"web": self})],
-            default_handler_class=Nothing, default_handler_args={"web": self}, log_function=lambda _: None,
-            websocket_max_message_size=LARGEST, websocket_ping_interval=10, websocket_ping_timeout=30,
+            [*paths, ("/live", PageSocket, {"web": self})],
+            default_handler_class=NotFound, default_handler_args={"web": self}, log_function=lambda _: None,
+            websocket_max_message_size=MAX_MESSAGE, websocket_ping_interval=10, websocket_ping_timeout=30,
         )
-        server = Door(
-            application, max_header_size=4 * LARGEST, max_body_size=LARGEST, max_buffer_size=16 * LARGEST,
-            idle_connection_timeout=PATIENCE, body_timeout=PATIENCE,
+        server = LimitedServer(
+            application, max_header_size=4 * MAX_MESSAGE, max_body_size=MAX_MESSAGE, max_buffer_size=16 * MAX_MESSAGE,
+            idle_connection_timeout=REQUEST_TIMEOUT, body_timeout=REQUEST_TIMEOUT,
         )
-        server.limit(CONNECTIONS, LONGEST, lambda: None)
+        server.limit(MAX_CONNECTIONS, MAX_CONNECTION_TIME, lambda: None)
         server.add_sockets(self._sockets)
         self._closed = asyncio.Event()
         while not self._closing:
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._closed.wait(), TICK)
-            now = self._moment() if self._pages else None
+            now = self._present() if self._pages else None
             if now is not None:
-                self._tell(json.dumps({"type": "tick", "now": now}))
+                self._send_text(json.dumps({"type": "tick", "now": now}))
         server.stop()
         for page in list(self._pages):
             page.close(1000, "the mission has ended")
@@ -178,22 +178,22 @@ class Web:
         if self._closed is not None:
             self._closed.set()
 
-    def _tell(self, text: str) -> None:
+    def _send_text(self, text: str) -> None:
         for page in list(self._pages):
-            page.tell(text)
+            page.send_text(text)
 
     def file(self, path: str) -> Any:
         """The content of a file, and what it is."""
         return self._files[path]
 
-    def enter(self, page: "Live") -> bool:
+    def add_page(self, page: "PageSocket") -> bool:
         """A page wants to listen; False: there are too many."""
-        if len(self._pages) >= PAGES:
+        if len(self._pages) >= MAX_PAGES:
             return False
         self._pages.add(page)
         return True
 
-    def leave(self, page: "Live") -> None:
+    def remove_page(self, page: "PageSocket") -> None:
         """It has gone."""
         self._pages.discard(page)
 
@@ -229,7 +229,7 @@ def _own_address() -> str:
 class _Requests(Application):
     def find_handler(self, request: Any, **more: Any) -> Any:
         """Called with the head of a request, before anything of its body is read."""
-        if without_chunks(request.headers):
+        if drop_chunks(request.headers):
             request.headers.pop("Content-Length", None)
             return self.get_handler_delegate(request, Chunked, self.settings["default_handler_args"])
         return super().find_handler(request, **more)
@@ -277,7 +277,7 @@ class Guarded(RequestHandler):
 
     def write_error(self, status_code: int, **_: Any) -> None:
         """A page that says why."""
-        why = html.escape(WHY.get(status_code, "Something went wrong."))
+        why = html.escape(ERROR_TEXTS.get(status_code, "Something went wrong."))
         self.finish(f"<!DOCTYPE html><html lang=en><title>{status_code}</title><h1>{why}</h1>")
 
     def log_exception(self, *_: Any) -> None:
@@ -317,7 +317,7 @@ class File(Guarded):
         self.finish(content)
 
 
-class Nothing(Guarded):
+class NotFound(Guarded):
     """Everything else."""
 
     def prepare(self) -> None:
@@ -326,7 +326,7 @@ class Nothing(Guarded):
         raise HTTPError(404)
 
 
-class Live(Guarded, WebSocketHandler):
+class PageSocket(Guarded, WebSocketHandler):
     """One page that listens."""
 
     def prepare(self) -> None:
@@ -343,37 +343,37 @@ class Live(Guarded, WebSocketHandler):
 
     def open(self, *_: str, **__: str) -> None:
         """A page listens from now on."""
-        if not self.web.enter(self):
+        if not self.web.add_page(self):
             self.close(1013, "too many pages")
             return
         assert self.ws_connection is not None and self.ws_connection.stream is not None
-        self.ws_connection.stream.max_write_buffer_size = BEHIND
-        self.tell(json.dumps(self.web.welcome(), allow_nan=False))
+        self.ws_connection.stream.max_write_buffer_size = MAX_BACKLOG
+        self.send_text(json.dumps(self.web.first_message(), allow_nan=False))
 
     def on_message(self, message: Any) -> None:
         """A page asks for something."""
         try:
-            remark = self.web.asked(message)
+            remark = self.web.on_message(message)
         except ValueError as problem:
             self.junk += 1
             remark = str(problem)
-        if self.junk >= JUNK:
+        if self.junk >= MAX_INVALID:
             self.close(1008, "too much that cannot be understood")
         elif remark:
-            self.tell(json.dumps({"type": "remark", "text": remark}))
+            self.send_text(json.dumps({"type": "remark", "text": remark}))
 
     def on_close(self) -> None:
         """It has gone."""
-        self.web.leave(self)
+        self.web.remove_page(self)
 
-    def tell(self, text: str) -> None:
+    def send_text(self, text: str) -> None:
         """Sends; a page that is too far behind is closed, and comes back by itself."""
         try:
             sent = self.write_message(text)
         except WebSocketClosedError:
-            self.web.leave(self)
+            self.web.remove_page(self)
         except StreamBufferFullError:
-            self.web.leave(self)
+            self.web.remove_page(self)
             self.close(1013, "too far behind")
         else:
             sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # it has gone: on_close says so

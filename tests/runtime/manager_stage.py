@@ -14,7 +14,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager.background import Background, bind
-from pursue_runtime.manager.manager import Manager, Record
+from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE, connected, may_close, rest
@@ -92,7 +92,7 @@ class Robot:
         self.keys = folder / "keys"
         self.lines: List[str] = []
         self.notes: List[str] = []
-        self.record = Record(self.lines.append, self.notes.append)
+        self.record = RequestLog(self.lines.append, self.notes.append)
         self.reader = (reader or Reader)(self.keys, self.say)
         exposed, limit = options.pop("exposed", False), options.pop("limit", mission_bundle.LIMIT)
         there = options.pop("there", lambda: bool(self.reader.there))
@@ -111,7 +111,7 @@ class Robot:
         return int(self.server.port)
 
     def say(self, text: str) -> None:
-        self.background.call(self.server.hear, text)
+        self.background.call(self.server.on_status, text)
 
     def publish(self, text: str) -> None:
         """As ROS does: in another thread."""

@@ -16,7 +16,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from pursue_runtime import bundle as desk_bundle
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.reader import Reader
-from pursue_runtime.reader.store import State, Store, read_state
+from pursue_runtime.reader.store import Store, StoreState, read_state
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 
@@ -91,7 +91,7 @@ class Robot:
         keep, packages = self._make
         folder = self.folder / "missions"
         self.store = Store(str(folder), keep, lambda *line: self.log.append(line))
-        facts = reader_core.Robot("bot1", "own_scenario", packages, 10**6)
+        facts = reader_core.Machine("bot1", "own_scenario", packages, 10**6)
         keys = KeyFolder(str(self.folder / "keys"))
         log: Callable[..., None] = lambda *line: self.log.append(line)  # noqa: E731
         self.reader = Reader(facts, self.store, keys, self.now, log, PATIENCE)
@@ -106,7 +106,7 @@ class Robot:
     def order(self, action: str, digest: str, bundle: bytes = b"", **other: Any) -> Any:
         """A right order; the answer."""
         ticket = self.reader.ticket
-        return self.reader.handle(message(action, digest, ticket, bundle, **other), self.now)
+        return self.reader.on_message(message(action, digest, ticket, bundle, **other), self.now)
 
     def send(self, made: Mission) -> None:
         """The mission is prepared and committed, both with success."""
@@ -116,14 +116,14 @@ class Robot:
 
     def state(self, status: str, seq: int = 1, stamp: float = 0.0) -> bool:
         """A system state is heard."""
-        return bool(self.reader.see(SystemState(seq, stamp or self.now, {}, {}, {}, status=status), self.now))
+        return bool(self.reader.on_state(SystemState(seq, stamp or self.now, {}, {}, {}, status=status), self.now))
 
     # What is there ----------------------------------------------------------------------------------------------------
 
     @property
     def current(self) -> str:
         """The mission that nodes would start with, as the disk says."""
-        return str((read_state(str(self.folder / "missions")) or State()).current)
+        return str((read_state(str(self.folder / "missions")) or StoreState()).current)
 
     @property
     def places(self) -> List[str]:

@@ -28,7 +28,7 @@ from pursue_runtime.missions import Missions, Source
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader import store as mission_store
 from pursue_runtime.reader.reader import Reader
-from pursue_runtime.reader.store import Store, damage
+from pursue_runtime.reader.store import Store, find_damage
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.reader_stage import DESK, OWN, POSES, STRATEGY
@@ -81,7 +81,7 @@ class Machine:
     def start(self) -> None:
         """The reader starts."""
         self.store = Store(str(self.folder / "pursue" / "missions"), KEEP, lambda *_: None)
-        facts = reader_core.Robot(self.name, "own", PACKAGES[self.name], 10**6)
+        facts = reader_core.Machine(self.name, "own", PACKAGES[self.name], 10**6)
         keys = KeyFolder(str(self.folder / "keys"))
         self.reader = Reader(facts, self.store, keys, self.world.now, lambda *_: None, 5.0)
         self.reader._check = lambda folder, files: None  # data is looked at elsewhere
@@ -100,14 +100,14 @@ class Machine:
         self.missions = missions
         if self.name in BOTS:
             with contextlib.suppress(DataError):
-                self.follower.begin()
+                self.follower.load_current()
 
     def take(self, text: str, bundle: bytes) -> Any:
         """A message on local_mission."""
         message = {"order": text}
         if bundle:
             message["bundle"] = base64.b64encode(bundle).decode()
-        return self.world.unswapped(self, lambda: self.reader.handle(json.dumps(message), self.world.now))
+        return self.world.unswapped(self, lambda: self.reader.on_message(json.dumps(message), self.world.now))
 
     def status(self) -> Status:
         facts = self.reader.status()
@@ -117,7 +117,7 @@ class Machine:
 
     def whole(self, mission: str) -> bool:
         """It has this mission, unharmed."""
-        return mission == OWN or not damage(self.store.folder, mission)
+        return mission == OWN or not find_damage(self.store.folder, mission)
 
 
 class Desk(threading.Thread):
@@ -225,8 +225,8 @@ class World:
                 self.hear(machine, state)
 
     def hear(self, machine: Machine, state: Any) -> None:
-        self.unswapped(machine, lambda: machine.reader.see(state, self.now), state)
-        if machine.name in BOTS and machine.follower.follow(state) == "ours":
+        self.unswapped(machine, lambda: machine.reader.on_state(state, self.now), state)
+        if machine.name in BOTS and machine.follower.on_state(state) == "ours":
             part = machine.follower.part
             assert part is not None and part.mission == state.mission
             assert part.mission == "0" * 12 or any(
@@ -285,7 +285,7 @@ class World:
         elif what == "wait":
             self.now += 7.0
             for each in self.machines.values():
-                self.unswapped(each, lambda each=each: each.reader.tick(self.now))  # type: ignore[misc]
+                self.unswapped(each, lambda each=each: each.reader.on_time(self.now))  # type: ignore[misc]
         elif what in ("look", "begin", "finish"):
             getattr(self, what)()
         elif what == "kill observer":

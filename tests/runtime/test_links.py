@@ -7,9 +7,9 @@ from typing import Any, Dict, List
 
 import pytest
 
-from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, TROUBLES, MasterWatch, Peers
+from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, MASTER_PROBLEMS, MasterWatch, Peers
 
-KNOWN, STRANGER, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
+REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
 
 
 def spoken(peers: Any, until: float, since: float = 0.0, name: str = "/bot", first: int = 1) -> int:
@@ -36,7 +36,7 @@ def test_who_was_silent_gets_new_connections_even_if_heard_again_before() -> Non
     assert peers.silent(12.0) == ["/bot"] == peers.due()
     peers.update({"/bot": count + 1}, 13.0)
     assert peers.silent(13.0) == [] and peers.due() == ["/bot"], "its other connections may still be dumb"
-    peers.renewed("/bot", 13.5)
+    peers.on_renewed("/bot", 13.5)
     spoken(peers, since=14.0, until=100.0)
     assert peers.due() == []
 
@@ -64,7 +64,7 @@ def test_who_stays_silent_on_new_connections_is_tried_ever_more_rarely() -> None
         peers.update({"/bot": 0 if tries else 7}, float(now))
         if peers.due():
             tries.append(float(now))
-            peers.renewed("/bot", float(now))
+            peers.on_renewed("/bot", float(now))
     pauses = [later - earlier for earlier, later in zip(tries, tries[1:])]
     assert pauses == sorted(pauses) and pauses[0] == FIRST_WAIT and pauses[-1] == LAST_WAIT
     peers.update({"/bot": 1}, 600.0)
@@ -95,29 +95,31 @@ def verdicts(*answers: str) -> Dict[int, bool]:
     watch = MasterWatch(patience=10.0)
     found = {}
     for second, answer in enumerate(answers):
-        watch.hear(answer, float(second))
+        watch.update(answer, float(second))
         found[second] = watch.lost(float(second))
     return found
 
 
-@pytest.mark.parametrize("gone", [[REFUSED] * 20, [STRANGER] * 20, [REFUSED] * 5 + [STRANGER] * 15])
+@pytest.mark.parametrize("gone", [[REFUSED] * 20, [NOT_REGISTERED] * 20, [REFUSED] * 5 + [NOT_REGISTERED] * 15])
 def test_a_master_that_is_gone_or_another_one_is_given_up_after_a_while(gone: List[str]) -> None:
-    found = verdicts(KNOWN, *gone)
+    found = verdicts(REGISTERED, *gone)
     assert not any(found[second] for second in range(11)) and found[11]
 
 
 def test_a_master_that_cannot_be_reached_is_waited_for() -> None:
-    assert not any(verdicts(KNOWN, *[UNREACHABLE] * 300, KNOWN).values())
+    assert not any(verdicts(REGISTERED, *[UNREACHABLE] * 300, REGISTERED).values())
 
 
 def test_patience_starts_anew_when_it_was_back_or_out_of_reach() -> None:
-    for between in (KNOWN, UNREACHABLE):
+    for between in (REGISTERED, UNREACHABLE):
         found = verdicts(*[REFUSED] * 9, between, *[REFUSED] * 9)
         assert not any(found.values())
 
 
 def test_what_the_master_is_like_is_news_once() -> None:
     watch = MasterWatch()
-    news = [watch.hear(answer, 0.0) for answer in (KNOWN, REFUSED, REFUSED, KNOWN, UNREACHABLE, UNREACHABLE)]
+    answers = REGISTERED, REFUSED, REFUSED, REGISTERED, UNREACHABLE, UNREACHABLE
+    news = [watch.update(answer, 0.0) for answer in answers]
     assert news == [False, True, False, True, True, False]
-    assert set(TROUBLES) == {KNOWN, STRANGER, REFUSED, UNREACHABLE} and TROUBLES[KNOWN] == ""
+    assert set(MASTER_PROBLEMS) == {REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE}
+    assert MASTER_PROBLEMS[REGISTERED] == ""

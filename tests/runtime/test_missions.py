@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
-from pursue_runtime.hearing import Hearing
 from pursue_runtime.manifest import make_manifest, mission_file, mission_id
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.state import SystemState, format_state, older, parse_state
+from pursue_runtime.state_filter import StateFilter
 
 DATA = {"bot": b"format: 1\nwhat: bot of %s\n", "observer": b"format: 1\nwhat: observer of %s\n"}
 
@@ -236,32 +236,32 @@ def state(seq: int, stamp: float, mission: str = A, status: str = "running") -> 
     return SystemState(seq, stamp, {}, {}, {}, status=status, mission=mission)
 
 
-def hearing(mission: str = A, again: bool = False) -> Any:
-    return Hearing(mission, A, again)
+def state_filter(mission: str = A, again: bool = False) -> Any:
+    return StateFilter(mission, A, again)
 
 
 def test_only_states_of_its_mission_are_a_nodes_own() -> None:
-    assert hearing().judge(state(1, 1.0)) == "ours"
-    assert hearing().judge(state(1, 1.0, B)) == "other"
-    assert hearing(B).judge(state(1, 1.0)) == "other"
+    assert state_filter().classify(state(1, 1.0)) == "ours"
+    assert state_filter().classify(state(1, 1.0, B)) == "other"
+    assert state_filter(B).classify(state(1, 1.0)) == "other"
 
 
 def test_a_state_that_names_no_mission_is_of_the_workspaces_own() -> None:
-    assert hearing().judge(state(1, 1.0, "")) == "ours"
-    assert hearing(B).judge(state(1, 1.0, "")) == "other"
-    assert Hearing("", "").judge(state(1, 1.0, "")) == "ours"
-    assert Hearing("", "").judge(state(1, 1.0, B)) == "other"
+    assert state_filter().classify(state(1, 1.0, "")) == "ours"
+    assert state_filter(B).classify(state(1, 1.0, "")) == "other"
+    assert StateFilter("", "").classify(state(1, 1.0, "")) == "ours"
+    assert StateFilter("", "").classify(state(1, 1.0, B)) == "other"
 
 
 def test_a_delayed_state_of_the_mission_before_does_not_bring_it_back() -> None:
-    node = hearing()
-    assert node.judge(state(40, 100.0)) == "ours"
-    assert node.judge(state(0, 101.0, B, "waiting")) == "other"
-    assert node.judge(state(41, 100.5)) == "old"
+    node = state_filter()
+    assert node.classify(state(40, 100.0)) == "ours"
+    assert node.classify(state(0, 101.0, B, "waiting")) == "other"
+    assert node.classify(state(41, 100.5)) == "old"
     node.mission = B
-    assert node.judge(state(1, 102.0, B)) == "ours"
-    assert node.judge(state(41, 100.5)) == "old"
-    assert node.judge(state(41, 101.9, A, "won")) == "old"
+    assert node.classify(state(1, 102.0, B)) == "ours"
+    assert node.classify(state(41, 100.5)) == "old"
+    assert node.classify(state(41, 101.9, A, "won")) == "old"
 
 
 class Real:
@@ -277,37 +277,37 @@ class Real:
 @pytest.mark.parametrize(("mission", "seq"), [(B, 0), (B, 7), (A, 0)])
 def test_an_observer_whose_clock_was_set_back_is_heard_again_after_a_minute(mission: str, seq: int) -> None:
     real = Real()
-    node = Hearing(A, A, False, real)
-    assert node.judge(state(40, 5000.0, status="won")) == "ours"
+    node = StateFilter(A, A, False, real)
+    assert node.classify(state(40, 5000.0, status="won")) == "ours"
     heard = []
     for second in range(1, 64):
         real.now = float(second)
-        heard.append(node.judge(state(seq, 1000.0 + second, mission, "waiting")))
-        assert node.anew == (second == 60)
+        heard.append(node.classify(state(seq, 1000.0 + second, mission, "waiting")))
+        assert node.clock_set_back == (second == 60)
     assert heard == ["old"] * 59 + ["ours" if mission == A else "other"] * 4
 
 
 def test_while_the_observer_is_heard_no_state_is_too_old_to_be_delayed() -> None:
     """Also where its clock was set back while nothing happens: what it says is known then."""
     real = Real()
-    node = Hearing(B, A, False, real)
-    assert node.judge(state(3, 5000.0, B)) == "ours"
+    node = StateFilter(B, A, False, real)
+    assert node.classify(state(3, 5000.0, B)) == "ours"
     for second in range(1, 200):
         real.now = float(second)
-        assert node.judge(state(3, 1000.0 + second, B)) == "old"
-        assert node.judge(state(40, 999.0, A)) == "old"
-    assert node.judge(state(4, 1200.0, B)) == "ours" and not node.anew
+        assert node.classify(state(3, 1000.0 + second, B)) == "old"
+        assert node.classify(state(40, 999.0, A)) == "old"
+    assert node.classify(state(4, 1200.0, B)) == "ours" and not node.clock_set_back
 
 
 def test_who_comes_after_the_end_waits_for_the_next_mission() -> None:
-    node = hearing(again=True)
-    assert [node.judge(state(40, 100.0 + n, status="won")) for n in range(2)] == ["over", "over"]
-    assert node.judge(state(0, 103.0, status="waiting")) == "ours"
-    assert node.judge(state(2, 104.0, status="stopped")) == "ours", "this end is its own"
+    node = state_filter(again=True)
+    assert [node.classify(state(40, 100.0 + n, status="won")) for n in range(2)] == ["over", "over"]
+    assert node.classify(state(0, 103.0, status="waiting")) == "ours"
+    assert node.classify(state(2, 104.0, status="stopped")) == "ours", "this end is its own"
 
 
 def test_who_waits_for_nothing_more_ends_with_the_mission_whenever_it_comes() -> None:
-    assert hearing().judge(state(40, 100.0, status="won")) == "ours"
+    assert state_filter().classify(state(40, 100.0, status="won")) == "ours"
 
 
 @given(st.text("0123456789abcdef", max_size=12), st.integers(0, 99), st.sampled_from(("", "a=b mission=x")))

@@ -20,7 +20,7 @@ from pursue_gen.transport.send_checks import fits, kept_by_all, previous
 from pursue_gen.transport.sender import Sent, look, send, wait
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager.background import Background, bind
-from pursue_runtime.manager.manager import Manager, Record
+from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.reader import Reader
@@ -50,11 +50,11 @@ class Machine:
         self.silent = False
         self.log: List[str] = []
         self.store = Store(str(folder / "missions"), 5, lambda *line: self.log.append(line[-1]))
-        facts = reader_core.Robot(name, "scenario_1", MACHINES[name], 10**6)
+        facts = reader_core.Machine(name, "scenario_1", MACHINES[name], 10**6)
         folder_of_keys = KeyFolder(str(keys))
         long_ago = time.monotonic() - 100.0
         self.reader = Reader(facts, self.store, folder_of_keys, long_ago, lambda *line: None, 5.0)
-        record = Record(self.log.append, self.log.append)
+        record = RequestLog(self.log.append, self.log.append)
         manager = Manager(name, KeyFolder(str(keys)), lambda: not self.silent)
         sockets = bind("127.0.0.1", 0, "~port")
         limits = Limits(patience=PATIENCE, header=PATIENCE, window=PATIENCE)
@@ -68,17 +68,17 @@ class Machine:
 
     def hear(self, text: str) -> None:
         with self.lock:
-            self.reader.handle(text, time.monotonic())
+            self.reader.on_message(text, time.monotonic())
             self.say()
 
     def say(self) -> None:
-        self.background.call(self.server.hear, json.dumps(self.reader.status()))
+        self.background.call(self.server.on_status, json.dumps(self.reader.status()))
 
     def state(self, status: str, seq: int) -> None:
         """A system state is heard."""
         with self.lock:
             now = time.monotonic()
-            self.reader.see(SystemState(seq, now, {}, {}, {}, status=status), now)
+            self.reader.on_state(SystemState(seq, now, {}, {}, {}, status=status), now)
             self.say()
 
     @property

@@ -13,24 +13,24 @@ from stages import THIEF, files, missions, sabotaged, solved, stage
 from pursue_gen.simulation.commands import commands_of
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.mission import FAILED, Outcome, Settings
-from pursue_runtime.controller.player import Player
-from pursue_runtime.observer.board import Board
+from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import SystemState
 
 SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
     "a clock that is not reset": (
-        Board, "take", "dict.fromkeys(edge.resets, now)", "dict.fromkeys(edge.resets[:0], now)", ", not 0.0"
+        Automata, "take", "dict.fromkeys(edge.resets, now)", "dict.fromkeys(edge.resets[:0], now)", ", not 0.0"
     ),
     "a variable that is not set": (
-        Board, "take", "self._values.update(edge.assign)", "self._values.update({})", "is no step of the network"
+        Automata, "take", "self._values.update(edge.assign)", "self._values.update({})", "is no step of the network"
     ),
     "a number that is skipped": (Mission, "_take", "self.seq += 1", "self.seq += 2", "state 3 follows state 1"),
     "an order for another place": (
-        Player,
+        CommandScheduler,
         "_begun",
-        "orders.append(Order(agent, state.event if own else action_of(target), origin, target))",
-        'orders.append(Order(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
+        "orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))",
+        'orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
         "wrong order: polBot1 is told",
     ),
 }  # fmt: skip

@@ -3,7 +3,7 @@
 // Names and words come from a scenario that somebody else wrote: they become text nodes, never markup.
 
 const SVG = "http://www.w3.org/2000/svg";
-const SURE = 0.05; // time units inside a bound that something must be to count as possible, as in ui/mission.py
+const MARGIN = 0.05; // time units inside a bound that something must be to count as possible, as in ui/mission_view.py
 const MARK = 24; // pixels from one mark to the next above it
 const POI = 14; // half the height of a point of interest
 const $ = (id) => document.getElementById(id);
@@ -331,7 +331,7 @@ function refresh() { // what changes while nothing happens: times, and what is p
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
   for (const [word, { button, time }] of widgets.buttons) {
     const [opens, closes] = view.open[word] || [Infinity, null];
-    const possible = opens <= now + SURE && (closes === null || now <= closes);
+    const possible = opens <= now + MARGIN && (closes === null || now <= closes);
     enable(button, here && possible);
     say(time, possible ? (closes === null ? "now" : `now, for ${units(closes - now)}`) : opens > now && opens < Infinity ? `in ${units(opens - now)}` : "");
   }
@@ -346,7 +346,7 @@ function showAgent(widget, agent, now) {
   widget.progress.value = share(agent, now);
   const parts = agent.next.map(({ label, opens, closes }) => {
     if (closes !== null && now > closes) return agent.since !== null && agent.high !== null && now > agent.high ? `${label}: ${units(now - closes)} late` : "";
-    return `${label} ${opens <= now + SURE ? "now" : `in ${units(opens - now)}`}`;
+    return `${label} ${opens <= now + MARGIN ? "now" : `in ${units(opens - now)}`}`;
   }).filter((part) => part);
   say(widget.next, parts.slice(0, 4).join(", ") + (parts.length > 4 ? " …" : ""));
 }

@@ -85,15 +85,15 @@ class Controller:
         here = SystemState(
             seq, stamp, {"bot": "x"}, {}, {"Cbot": 2.0}, status=status, plan=plan, mission=mission
         )
-        verdict: str = self.follower.follow(here)
-        if verdict == "ours" and self.follower.player:
-            self.follower.player.see(here, stamp)
+        verdict: str = self.follower.on_state(here)
+        if verdict == "ours" and self.follower.scheduler:
+            self.follower.scheduler.on_state(here, stamp)
         return verdict
 
     def says(self, now: float) -> str:
         """The word of the command that is due."""
-        player = self.follower.player
-        word = player.ring(now) if player else None
+        player = self.follower.scheduler
+        word = player.on_timer(now) if player else None
         return format_word(word) if word else ""
 
     @property
@@ -103,7 +103,7 @@ class Controller:
 
 def begun(*others: Source, again: bool = False) -> Controller:
     made = Controller(Shelf(*others), again)
-    made.follower.begin()
+    made.follower.load_current()
     return made
 
 
@@ -111,7 +111,7 @@ def test_it_begins_with_the_current_mission() -> None:
     shelf = Shelf(SECOND)
     shelf.first = SECOND
     bot = Controller(shelf)
-    bot.follower.begin()
+    bot.follower.load_current()
     assert (bot.mission, bot.follower.part.robots, list(bot.follower.part.poses)) == (B, ["bot"], ["y"])
 
 
@@ -126,7 +126,7 @@ def test_it_plays_the_mission_of_the_states_with_all_that_belongs_to_it() -> Non
 def test_where_the_own_mission_is_sent_as_well_it_is_read_anew_before_it_begins_and_not_later() -> None:
     shelf = Shelf()
     bot = Controller(shelf)
-    bot.follower.begin()
+    bot.follower.load_current()
     bot.see(0, 10.0, A, "waiting")
     before = bot.follower.part
     bot.see(0, 11.0, A, "waiting")
@@ -140,11 +140,11 @@ def test_where_the_own_mission_is_sent_as_well_it_is_read_anew_before_it_begins_
 def test_a_mission_that_is_not_here_is_never_played_and_looked_for_with_each_state() -> None:
     shelf = Shelf()
     bot = Controller(shelf)
-    bot.follower.begin()
+    bot.follower.load_current()
     assert bot.see(3, 10.0, A) == "ours"
     for stamp in (11.0, 12.0, 13.0):
         assert bot.see(3, stamp, B) == "other"
-        assert (bot.says(stamp), bot.mission, bot.follower.player) == ("", None, None)
+        assert (bot.says(stamp), bot.mission, bot.follower.scheduler) == ("", None, None)
         assert B in bot.follower.trouble and bot.follower.trouble == bot.follower.report()[3]
     assert [level for level, _ in bot.logs] == ["err"], "it is said once"
     shelf.here[B] = SECOND
@@ -157,7 +157,7 @@ def test_a_delayed_state_does_not_bring_back_the_mission_before() -> None:
     bot.see(7, 10.0, A)
     bot.see(1, 12.0, B)
     assert bot.see(8, 11.0, A) == "old"
-    assert (bot.mission, bot.says(12.0), bot.follower.player.counts["old"]) == (B, "bot:b@1", 1)
+    assert (bot.mission, bot.says(12.0), bot.follower.scheduler.counts["old"]) == (B, "bot:b@1", 1)
 
 
 def test_a_delayed_state_is_left_aside_while_the_new_mission_is_not_here_too() -> None:
@@ -187,14 +187,14 @@ def test_after_the_observers_clock_was_set_back_nothing_of_before_is_played(miss
 def test_who_has_no_part_in_a_mission_commands_nothing_and_is_well() -> None:
     bot = begun(NO_PART)
     assert bot.see(1, 10.0, C) == "ours"
-    assert (bot.mission, bot.follower.player, bot.follower.part.robots, bot.follower.trouble) == (C, None, [], "")
+    assert (bot.mission, bot.follower.scheduler, bot.follower.part.robots, bot.follower.trouble) == (C, None, [], "")
 
 
 def test_an_empty_strategy_is_a_part_all_the_same() -> None:
     idle = {**strategy("b"), "strategy": []}
     bot = begun(Source(B, strategy=idle, poses={"poses": POSES}))
     assert bot.see(1, 10.0, B) == "ours"
-    assert bot.follower.player is not None and bot.follower.part.robots == ["bot"]
+    assert bot.follower.scheduler is not None and bot.follower.part.robots == ["bot"]
 
 
 @pytest.mark.parametrize("broken", [
@@ -216,8 +216,8 @@ def test_a_damaged_current_mission_is_said_and_the_next_one_is_played() -> None:
     shelf.first = DataError("damaged")
     bot = Controller(shelf)
     with pytest.raises(DataError):
-        bot.follower.begin()
-    bot.follower.refuse("damaged")
+        bot.follower.load_current()
+    bot.follower.reject("damaged")
     assert bot.follower.report()[3] == "damaged"
     assert bot.see(1, 10.0, A) == "ours" and bot.says(10.0) == "bot:a@1"
 
@@ -229,7 +229,7 @@ def plan(word: str, mission: Optional[str]) -> Dict[str, Any]:
 
 def learn(bot: Controller, data: Dict[str, Any], now: float) -> Any:
     bot.follower.plan = data
-    return bot.follower.learn(now)
+    return bot.follower.take_plan(now)
 
 
 def test_a_plan_is_learned_for_its_own_mission_only() -> None:
@@ -244,8 +244,8 @@ def test_a_plan_that_comes_before_the_states_of_its_mission_waits_for_them() -> 
     bot = begun(SECOND)
     assert learn(bot, plan("later", B), 10.0) is None
     bot.see(3, 11.0, B, plan=1)
-    assert bot.follower.learn(11.0) and bot.says(11.0) == "bot:later@3"
-    assert bot.follower.learn(11.0) is None, "once"
+    assert bot.follower.take_plan(11.0) and bot.says(11.0) == "bot:later@3"
+    assert bot.follower.take_plan(11.0) is None, "once"
 
 
 def test_a_plan_without_a_name_is_the_workspaces() -> None:
@@ -258,7 +258,7 @@ def test_plans_do_not_outlive_their_mission() -> None:
     learn(bot, plan("old", A), 10.0)
     bot.see(0, 20.0, A, "waiting")
     bot.see(5, 21.0, A, "holding")
-    assert bot.follower.player.receipt() is None, "it does not have the plan that this mission may make"
+    assert bot.follower.scheduler.repeated_receipt() is None, "it does not have the plan that this mission may make"
     bot.see(6, 22.0, A, plan=1)
     assert bot.says(22.0) == ""
 
@@ -267,7 +267,7 @@ def test_a_plan_that_waits_for_its_mission_is_forgotten_where_that_begins() -> N
     bot = begun(SECOND)
     learn(bot, plan("old", B), 10.0)
     bot.see(0, 11.0, B, "waiting")
-    assert bot.follower.learn(12.0) is None
+    assert bot.follower.take_plan(12.0) is None
 
 
 @pytest.mark.parametrize("data", [{"strategies": {}}, {"strategies": 7}, {}])

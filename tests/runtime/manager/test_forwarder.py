@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Iterator, List
 import pytest
 
 from pursue_runtime.manager.background import Background, bind
-from pursue_runtime.manager.forwarder import LONGEST, Forwarder
-from pursue_runtime.manager.manager import Record
+from pursue_runtime.manager.forwarder import MAX_LINE, Forwarder
+from pursue_runtime.manager.manager import RequestLog
 from tests.waiting import PATIENCE, connected, until
 
 
@@ -19,7 +19,7 @@ class Stage:
 
     def __init__(self, **options: int) -> None:
         self.lines: List[str] = []
-        self.record = Record(self.lines.append, self.lines.append)
+        self.record = RequestLog(self.lines.append, self.lines.append)
         self.forwarder = Forwarder(bind("127.0.0.1", 0, "~pubsubport"), self.record, **options)
         self.background = Background((self.forwarder,), self.record.count)
         self.background.start()
@@ -99,7 +99,7 @@ def test_whoever_goes_leaves_room_and_there_is_no_more(stage: Callable[..., Stag
 
 
 def test_who_does_not_read_is_given_up_and_others_hear_on(stage: Callable[..., Stage]) -> None:
-    here = stage(behind=1 << 16)
+    here = stage(backlog=1 << 16)
     with socket.socket() as idle:
         idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         idle.settimeout(PATIENCE)
@@ -133,7 +133,7 @@ def test_a_message_that_is_too_long_is_not_forwarded_and_said(stage: Callable[..
     here = stage()
     there = here.connect()
     here.wait(1)
-    here.send("t", "x" * LONGEST, latched=True)
+    here.send("t", "x" * MAX_LINE, latched=True)
     here.send("t", "short")
     assert lines(there, 1) == [{"topic": "t", "data": "short"}]
     assert "too long" in here.lines[0] and "xxx" not in here.lines[0]

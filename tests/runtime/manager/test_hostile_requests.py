@@ -49,7 +49,7 @@ class RealReader:
         self.folder, self.there, self.say = keys.parent / "missions", True, say
         log = lambda level, text: self.lines.append(text)  # noqa: E731
         self.store = Store(str(self.folder), 5, log)
-        facts = reader_core.Robot(ROBOT, "own", ("controller_bot1",), 1 << 20)
+        facts = reader_core.Machine(ROBOT, "own", ("controller_bot1",), 1 << 20)
         self.core = Reader(facts, self.store, KeyFolder(str(keys)), 0.0, log)
 
     @property
@@ -60,7 +60,7 @@ class RealReader:
         return json.dumps(self.core.status())
 
     def hear(self, text: str) -> None:
-        self.core.handle(text, time.monotonic())
+        self.core.on_message(text, time.monotonic())
         self.say(self.status())
 
 

@@ -16,8 +16,8 @@ from pursue_runtime.manager import manager as manager_core
 from pursue_runtime.manager.manager import (
     HTTP,
     Manager,
-    NotNow,
-    Record,
+    RequestLog,
+    RequestRefused,
     check_bundle,
     is_loopback,
     mission_message,
@@ -40,12 +40,12 @@ def manager(tmp_path: Path) -> Any:
     """One that trusts desk 1 and hears its reader."""
     Desk().trusted_by(tmp_path)
     made = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True)
-    made.hear(status())
+    made.on_status(status())
     return made
 
 
 def refused(manager: Any, text: Any, length: Any = 0, chunked: bool = False) -> Any:
-    with pytest.raises(NotNow) as caught:
+    with pytest.raises(RequestRefused) as caught:
         manager.check_order(text, length, chunked)
     return caught.value.answer.http, caught.value.answer.code
 
@@ -79,7 +79,7 @@ def test_each_reason_to_refuse_has_its_word(manager: Any) -> None:
 def test_the_smaller_limit_counts(tmp_path: Path) -> None:
     Desk().trusted_by(tmp_path)
     manager = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True, limit=10)
-    manager.hear(status())
+    manager.on_status(status())
     assert refused(manager, Desk().order(TICKET, body=b"x" * 11), 11) == (413, "too_large")
 
 
@@ -92,7 +92,7 @@ def test_without_a_reader_nothing_is_taken(tmp_path: Path) -> None:
     there.append(True)
     assert refused(manager, order) == (503, "no_reader"), "it has not spoken yet"
     assert manager.health() == (503, {"robot": ROBOT, "reader": False})
-    manager.hear(status())
+    manager.on_status(status())
     assert manager.check_order(order, 0, False)
     assert manager.health()[0] == 200 and manager.health()[1]["reader"] is True
     there.clear()
@@ -106,7 +106,7 @@ def test_without_a_reader_nothing_is_taken(tmp_path: Path) -> None:
 ])
 def test_what_is_no_status_of_our_reader_changes_nothing(manager: Any, text: str) -> None:
     before = manager.status()
-    manager.hear(text)
+    manager.on_status(text)
     assert manager.status() == before
 
 
@@ -114,7 +114,7 @@ def test_what_is_no_status_of_our_reader_changes_nothing(manager: Any, text: str
 def test_junk_is_refused_and_nothing_else(tmp_path_factory: pytest.TempPathFactory, text: str, length: int) -> None:
     keys = tmp_path_factory.getbasetemp() / "no_keys"
     manager = Manager(ROBOT, KeyFolder(str(keys)), lambda: True)
-    manager.hear(status())
+    manager.on_status(status())
     assert refused(manager, text, length)[0] in (400, 401)
 
 
@@ -123,7 +123,7 @@ def test_junk_is_refused_and_nothing_else(tmp_path_factory: pytest.TempPathFacto
 def test_keys_count_from_the_moment_they_are_there_until_they_are_taken_away(tmp_path: Path) -> None:
     folder = KeyFolder(str(tmp_path / "keys"))
     manager = Manager(ROBOT, folder, lambda: True)
-    manager.hear(status())
+    manager.on_status(status())
     assert refused(manager, Desk().order(TICKET)) == (401, "unknown_key")
     assert manager.condition()[0] == "warn" and str(tmp_path / "keys") in manager.condition()[1]
     Desk().trusted_by(tmp_path / "keys")
@@ -148,7 +148,7 @@ def test_files_that_hold_no_key_are_told(tmp_path: Path) -> None:
     (tmp_path / "junk.pub").write_bytes(b"\xff")
     folder = KeyFolder(str(tmp_path))
     manager = Manager(ROBOT, folder, lambda: True)
-    manager.hear(status())
+    manager.on_status(status())
     assert manager.check_order(Desk().order(TICKET), 0, False), "the others count"
     assert manager.condition()[0] == "warn" and "junk.pub" in manager.condition()[1]
 
@@ -156,17 +156,17 @@ def test_files_that_hold_no_key_are_told(tmp_path: Path) -> None:
 def test_where_others_reach_it_and_nobody_is_trusted_everything_is_refused(tmp_path: Path) -> None:
     manager = Manager(ROBOT, KeyFolder(str(tmp_path)), lambda: True, exposed=True)
     assert manager.condition()[0] == "error"
-    with pytest.raises(NotNow) as caught:
-        manager.check_open()
+    with pytest.raises(RequestRefused) as caught:
+        manager.check_trust()
     assert (caught.value.answer.http, caught.value.answer.code) == (503, "no_keys")
     Desk().trusted_by(tmp_path)
-    manager.check_open()
+    manager.check_trust()
 
 
 # What the reader answers
 
 def answered(manager: Any, ticket: str = TICKET, **answer: object) -> Any:
-    manager.hear(status(ticket="2" * 32, answer={"ticket": TICKET, "ok": False, "message": "m", **answer}))
+    manager.on_status(status(ticket="2" * 32, answer={"ticket": TICKET, "ok": False, "message": "m", **answer}))
     return manager.answer_to(ticket)
 
 
@@ -182,7 +182,7 @@ def test_the_readers_answer_becomes_the_servers(manager: Any) -> None:
 
 
 def test_a_reader_that_began_anew_is_not_waited_for(manager: Any) -> None:
-    manager.hear(status(ticket="3" * 32))
+    manager.on_status(status(ticket="3" * 32))
     assert manager.answer_to(TICKET)[:2] == (504, "no_answer")
 
 
@@ -192,7 +192,7 @@ def test_the_body_is_the_one_that_the_order_is_about() -> None:
     order = mission_bundle.Order("prepare", "", ROBOT, TICKET, 3, manager_core.hashlib.sha256(b"abc").hexdigest())
     check_bundle(order, b"abc")
     for body in (b"", b"ab", b"abd", b"abcd"):
-        with pytest.raises(NotNow):
+        with pytest.raises(RequestRefused):
             check_bundle(order, body)
 
 
@@ -203,7 +203,7 @@ def test_messages_carry_the_order_as_it_came() -> None:
 
 @pytest.mark.parametrize("text", ["", "-1", "+1", "1_0", " 1", "1 ", "0x1", "1,1", "1e3", "\u0661", "9" * 16, "1\n"])
 def test_lengths_are_plain_numbers(text: str) -> None:
-    with pytest.raises(NotNow):
+    with pytest.raises(RequestRefused):
         parse_length(text)
     assert parse_length(None) is None
     assert parse_length("042") == 42
@@ -213,12 +213,12 @@ def test_lengths_are_plain_numbers(text: str) -> None:
 
 def test_the_log_gets_a_line_now_and_then_and_the_counts_get_all() -> None:
     now, lines, notes = [0.0], [], []  # type: ignore[var-annotated]
-    record = Record(lines.append, notes.append, lambda: now[0])
+    record = RequestLog(lines.append, notes.append, lambda: now[0])
     for _ in range(1000):
         record.count("401", "a stranger")
     record.count("200")
     assert lines == ["a stranger"] and record.counts() == {"401": 1000, "200": 1}
-    record.tell("200", "a mission")
+    record.log("200", "a mission")
     assert notes == ["a mission"] and record.counts()["200"] == 2, "strangers do not keep it out"
     now[0] = 11.0
     record.count("404", "another")

@@ -53,10 +53,10 @@ def uncovered() -> Journey:
 
 def planned(made: Journey, cover: Dict[str, Any], now: float) -> List[Any]:
     """The planner answers, and both controllers have the plan."""
-    number = made.mission.wanted.number
-    assert made.mission.planned(number, answer(cover), now) == []
-    made.mission.hear(f"one:_plan_@{number}", now)
-    states: List[Any] = made.mission.hear(f"two:_plan_@{number}", now)
+    number = made.mission.plan_request.number
+    assert made.mission.on_plan(number, answer(cover), now) == []
+    made.mission.on_word(f"one:_plan_@{number}", now)
+    states: List[Any] = made.mission.on_word(f"two:_plan_@{number}", now)
     return states
 
 
@@ -65,7 +65,7 @@ def planned(made: Journey, cover: Dict[str, Any], now: float) -> List[Any]:
 
 def test_a_plan_is_wanted_from_where_the_mission_is() -> None:
     made = uncovered()
-    wanted = made.mission.wanted
+    wanted = made.mission.plan_request
     assert wanted.locations["bot"] == "b" and wanted.values["Pbot"] == 2 and wanted.excused == ()
     assert (wanted.clocks["Cbot"], wanted.clocks["Creach"], wanted.stamp) == (0.0, 4.0, 4.0)
     assert wanted.ahead == 1.0
@@ -80,11 +80,11 @@ def test_while_the_mission_holds_commands_are_dropped_and_reports_count() -> Non
 
 def test_a_plan_is_in_force_for_everybody_in_one_step() -> None:
     made = uncovered()
-    number = made.mission.wanted.number
-    assert made.mission.planned(number, answer(EVERYWHERE), 4.2) == []
-    assert made.mission.wanted is None and made.mission.proposal["plan"] == number
-    assert made.mission.hear(f"one:_plan_@{number}", 4.3) == [] and made.mission.status == "holding"
-    (state,) = made.mission.hear(f"two:_plan_@{number}", 4.4)
+    number = made.mission.plan_request.number
+    assert made.mission.on_plan(number, answer(EVERYWHERE), 4.2) == []
+    assert made.mission.plan_request is None and made.mission.proposal["plan"] == number
+    assert made.mission.on_word(f"one:_plan_@{number}", 4.3) == [] and made.mission.status == "holding"
+    (state,) = made.mission.on_word(f"two:_plan_@{number}", 4.4)
     assert (state.status, state.seq, state.plan, state.event) == ("running", 4, number, "")
     assert made.mission.proposal is None
     assert parse_state(format_state(state)).plan == number
@@ -99,53 +99,54 @@ def test_a_command_from_before_the_new_plan_is_stale() -> None:
 
 def test_an_event_while_a_plan_is_looked_for_makes_it_look_from_there() -> None:
     made = uncovered()
-    first = made.mission.wanted.number
+    first = made.mission.plan_request.number
     made.hear("thief:thief_leaves", 11.0)
-    assert made.mission.wanted.number > first and made.mission.wanted.locations["thief"] == "gone"
-    assert made.mission.planned(first, answer(EVERYWHERE), 11.1) == [] and made.mission.proposal is None
+    assert made.mission.plan_request.number > first and made.mission.plan_request.locations["thief"] == "gone"
+    assert made.mission.on_plan(first, answer(EVERYWHERE), 11.1) == [] and made.mission.proposal is None
 
 
 def test_an_event_after_the_plan_was_found_makes_it_look_again() -> None:
     made = uncovered()
-    number = made.mission.wanted.number
-    made.mission.planned(number, answer(EVERYWHERE), 4.2)
+    number = made.mission.plan_request.number
+    made.mission.on_plan(number, answer(EVERYWHERE), 4.2)
     made.hear("thief:thief_leaves", 11.0)
-    assert made.mission.proposal is None and made.mission.wanted.number == number + 1
-    assert made.mission.hear(f"one:_plan_@{number}", 12.0) == made.mission.hear(f"two:_plan_@{number}", 12.0) == []
+    assert made.mission.proposal is None and made.mission.plan_request.number == number + 1
+    for node in ("one", "two"):
+        assert made.mission.on_word(f"{node}:_plan_@{number}", 12.0) == []
 
 
 def test_an_event_that_leads_back_to_what_the_strategy_knows_ends_the_search() -> None:
     made = uncovered()
     assert made.hear("dog:catch", 4.5).status == "running"
-    assert made.mission.wanted is None
+    assert made.mission.plan_request is None
 
 
 def test_a_mission_that_is_over_wants_no_plan() -> None:
     made = uncovered()
     made.hear("_stop_", 4.5)
-    assert made.mission.wanted is None
+    assert made.mission.plan_request is None
 
 
 def test_a_plan_that_comes_too_late_is_made_again_with_more_time_ahead() -> None:
     made = uncovered()
-    ahead = made.mission.wanted.ahead
+    ahead = made.mission.plan_request.ahead
     for late in range(1, 5):
         assert planned(made, NOWHERE, 4.0 + 3.0 * late) == []
-        assert made.mission.wanted.ahead > ahead
+        assert made.mission.plan_request.ahead > ahead
     states = planned(made, NOWHERE, 30.0)
     assert states[-1].status == "stopped" and "too late" in states[-1].reason
 
 
 def test_where_there_is_no_plan_it_stops_and_says_why() -> None:
     made = uncovered()
-    (state,) = made.mission.unplanned(made.mission.wanted.number, "the thief is faster", 4.5)
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "the thief is faster", 4.5)
     assert state.status == "stopped" and "no strategy" in state.reason and "the thief is faster" in state.reason
 
 
 @pytest.mark.parametrize("cover", [None, {"format": 1}, {"format": 1, "cover": [{"state": {}, "zones": ["?"]}]}])
 def test_a_plan_that_cannot_be_read_is_none(cover: Any) -> None:
     made = uncovered()
-    (state,) = made.mission.planned(made.mission.wanted.number, answer(cover), 4.2)
+    (state,) = made.mission.on_plan(made.mission.plan_request.number, answer(cover), 4.2)
     assert state.status == "stopped" and "cannot be read" in state.reason
 
 
@@ -154,8 +155,8 @@ def test_time_that_leaves_what_the_strategy_knows_is_noticed() -> None:
     made = journey()
     moment = made.mission.next_moment(0.0)
     assert moment == pytest.approx(3.0 + 2.0 + 0.1)
-    assert made.mission.tick(moment - 0.5) == []
-    (state,) = made.mission.tick(moment)
+    assert made.mission.on_time(moment - 0.5) == []
+    (state,) = made.mission.on_time(moment)
     assert (state.status, state.seq) == ("holding", 2)
 
 
@@ -168,21 +169,21 @@ def test_who_is_late_for_too_long_is_lost_and_a_plan_without_it_is_wanted() -> N
     moments = []
     while not made.mission.lost and len(moments) < 5:
         moments.append(made.mission.next_moment(moments[-1] if moments else 2.0))
-        made.mission.tick(moments[-1])
+        made.mission.on_time(moments[-1])
     assert moments[0] == pytest.approx(6.1) and moments[-1] == pytest.approx(6.0 + 8.0)
-    assert made.mission.wanted.excused == ("bot",)
-    (state,) = made.mission.unplanned(made.mission.wanted.number, "nobody else can", 15.0)
+    assert made.mission.plan_request.excused == ("bot",)
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 15.0)
     assert state.status == "stopped" and "bot is late by 8" in state.reason
 
 
 def test_who_is_only_late_is_waited_for_where_there_is_no_plan_without_it() -> None:
     made = journey()
     made.hear("bot_a2b", 2.0)
-    made.mission.tick(6.1)
-    made.mission.tick(8.2)  # beyond what the strategy knows
-    assert made.mission.status == "holding" and made.mission.wanted.excused == ("bot",)
-    (state,) = made.mission.unplanned(made.mission.wanted.number, "nobody else can", 9.0)
-    assert state.status == "holding" and "waiting for bot" in state.reason and made.mission.wanted is None
+    made.mission.on_time(6.1)
+    made.mission.on_time(8.2)  # beyond what the strategy knows
+    assert made.mission.status == "holding" and made.mission.plan_request.excused == ("bot",)
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 9.0)
+    assert state.status == "holding" and "waiting for bot" in state.reason and made.mission.plan_request is None
     assert made.hear("bot_going_a_to_b2b", 10.0).status == "running"
 
 
@@ -216,30 +217,30 @@ def test_a_lost_robot_that_arrives_is_back() -> None:
 
 def test_the_mission_holds_while_a_controller_is_silent() -> None:
     made = journey()
-    (state,) = made.mission.silent("one", 1.0)
+    (state,) = made.mission.on_controller_silent("one", 1.0)
     assert (state.status, state.seq, state.reason) == ("holding", 2, "one is silent")
     assert made.hear("bot:bot_a2b@2", 1.5) is None
-    assert made.mission.silent("one", 1.6) == []
-    (state,) = made.mission.back("one", 2.0)
+    assert made.mission.on_controller_silent("one", 1.6) == []
+    (state,) = made.mission.on_controller_back("one", 2.0)
     assert (state.status, state.seq, state.reason) == ("running", 3, "")
 
 
 def test_who_comes_back_too_late_for_the_strategy_finds_a_new_plan() -> None:
     made = journey()
-    made.mission.silent("one", 1.0)
-    made.mission.back("one", 9.0)
-    assert made.mission.status == "holding" and made.mission.wanted is not None
+    made.mission.on_controller_silent("one", 1.0)
+    made.mission.on_controller_back("one", 9.0)
+    assert made.mission.status == "holding" and made.mission.plan_request is not None
     assert planned(made, EVERYWHERE, 9.5)[-1].status == "running"
 
 
 def test_a_plan_does_not_end_the_waiting_for_a_silent_controller() -> None:
     made = uncovered()
-    made.mission.silent("one", 4.1)
-    number = made.mission.wanted.number
-    made.mission.planned(number, answer(EVERYWHERE), 4.2)
+    made.mission.on_controller_silent("one", 4.1)
+    number = made.mission.plan_request.number
+    made.mission.on_plan(number, answer(EVERYWHERE), 4.2)
     made.hear(f"two:_plan_@{number}", 4.3)
     assert made.mission.status == "holding"
-    made.mission.back("one", 5.0)
+    made.mission.on_controller_back("one", 5.0)
     assert made.mission.status == "holding"
     assert made.hear(f"one:_plan_@{number}", 5.1).status == "running"
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
-from pursue_runtime.observer.journal import Journal, unfinished
+from pursue_runtime.observer.journal import Journal, unfinished_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import format_state
 from pursue_runtime.strategy import read_cover
@@ -140,7 +140,7 @@ def test_an_end_that_was_not_told_is_told_again_and_then_it_is_over(path: Path) 
     Life(path).play(("hear", "_start_"), ("hear", "_stop_"))
     again = Life(path)
     assert again.mission.status == "stopped"
-    again.journal.told()
+    again.journal.end()
     assert Life(path).mission.status == "waiting"
 
 
@@ -148,28 +148,28 @@ MISSION = {**HEADER, "mission": "0123456789ab"}
 
 
 def test_a_new_observer_learns_whose_mission_was_under_way(path: Path) -> None:
-    assert unfinished(str(path), "x") is None
+    assert unfinished_mission(str(path), "x") is None
     life = Life(path, MISSION)
-    assert unfinished(str(path), "x") is None, "it has not begun"
+    assert unfinished_mission(str(path), "x") is None, "it has not begun"
     life.play(("hear", "_start_"))
-    assert unfinished(str(path), "x") == "0123456789ab"
-    assert unfinished(str(path), "y") is None, "that was in another launch"
+    assert unfinished_mission(str(path), "x") == "0123456789ab"
+    assert unfinished_mission(str(path), "y") is None, "that was in another launch"
     life.play(("hear", "_stop_"), first=1)
-    assert unfinished(str(path), "x") == "0123456789ab", "nobody may have heard of its end"
-    life.journal.told()
-    assert unfinished(str(path), "x") is None
+    assert unfinished_mission(str(path), "x") == "0123456789ab", "nobody may have heard of its end"
+    life.journal.end()
+    assert unfinished_mission(str(path), "x") is None
 
 
 def test_the_workspaces_own_mission_may_have_no_name(path: Path) -> None:
     Life(path).play(("hear", "_start_"))
-    assert unfinished(str(path), "x") == ""
+    assert unfinished_mission(str(path), "x") == ""
 
 
 @pytest.mark.parametrize("text", ["", "rubbish\nrubbish\n", "[]\n{}\n", '{"format": 1}\n{"call": "hear"}\n'])
 def test_what_is_no_journal_says_of_no_mission_that_it_is_under_way(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True)
     path.write_text(text)
-    assert unfinished(str(path), "x") is None
+    assert unfinished_mission(str(path), "x") is None
 
 
 def test_a_journal_of_a_mission_that_never_began_leaves_nothing_behind(path: Path) -> None:
@@ -194,7 +194,7 @@ def test_without_a_place_for_it_the_mission_runs_and_says_so(tmp_path: Path) -> 
     (tmp_path / "file").write_text("")
     life = Life(tmp_path / "file" / "journal.jsonl")
     assert life.play(("hear", "_start_"))[-1].seq == 1
-    assert not life.journal.works and any(level == "err" for level, _ in life.logs)
+    assert not life.journal.is_open and any(level == "err" for level, _ in life.logs)
 
 
 def test_the_journals_are_under_ros_home() -> None:

@@ -104,7 +104,7 @@ class Journey:
 
     def hear(self, word: str, now: float) -> Any:
         """The last state published for the word, None: none."""
-        states = self.mission.hear(word, now)
+        states = self.mission.on_word(word, now)
         return states[-1] if states else None
 
     def tick(self) -> Any:
@@ -114,7 +114,7 @@ class Journey:
     def tick_from(self, now: float) -> Any:
         """The same, asked at this moment."""
         moment = self.mission.next_moment(now)
-        states = self.mission.tick(moment)
+        states = self.mission.on_time(moment)
         return moment, (states[-1] if states else None)
 
 
@@ -257,7 +257,7 @@ def test_a_robot_that_is_late_is_told_once_and_may_still_arrive(chase: Journey) 
     chase.hear("bot_a2b", 102.0)
     moment = chase.mission.next_moment(102.0)
     assert moment == pytest.approx(106.1)
-    assert chase.mission.tick(moment) == [] and chase.mission.late == {"bot"}
+    assert chase.mission.on_time(moment) == [] and chase.mission.late == {"bot"}
     assert chase.mission.next_moment(moment) == pytest.approx(136.0)
     assert chase.hear("bot_going_a_to_b2b", 120.0).locations["bot"] == "b"
     assert not chase.mission.late
@@ -273,8 +273,8 @@ def test_a_deadline_that_passes_is_lost() -> None:
     journey.hear("call", 1.0)
     moment = journey.mission.next_moment(1.0)
     assert moment == pytest.approx(6.1)
-    assert journey.mission.tick(5.9) == []
-    state = journey.mission.tick(moment)[-1]
+    assert journey.mission.on_time(5.9) == []
+    state = journey.mission.on_time(moment)[-1]
     assert (state.status, state.locations["obj"]) == ("lost", "lose") and "deadline of obj" in state.reason
 
 
@@ -289,7 +289,7 @@ def test_an_answer_in_time_lifts_the_deadline() -> None:
 def test_agents_that_must_never_meet_lose_as_soon_as_they_do() -> None:
     journey = Journey(DEADLINE)
     journey.hear("_start_", 0.0)
-    states = journey.mission.hear("bot_a2b", 1.0)
+    states = journey.mission.on_word("bot_a2b", 1.0)
     assert [(state.seq, state.agent, state.status) for state in states] == [(2, "bot", "running"), (3, "obj", "lost")]
 
 
@@ -354,4 +354,4 @@ def test_an_early_command_that_an_event_overtakes_is_stale(chase: Journey) -> No
     chase.hear("bot:bot_a2b@1", 100.95)
     chase.hear("bot_a2b", 100.99)
     assert chase.hear("_ping_", 101.1).seq == 2
-    assert chase.mission.tick(101.1) == [] and chase.mission.seq == 2
+    assert chase.mission.on_time(101.1) == [] and chase.mission.seq == 2

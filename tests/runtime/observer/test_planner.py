@@ -34,7 +34,7 @@ class Office:
         self.planner = Planner(command, {"name": "chase"}, limit, self.answers.put)
 
     def ask(self, number: int = 1) -> Tuple[int, Any, str]:
-        self.planner.want(request(number))
+        self.planner.request_plan(request(number))
         answer: Tuple[int, Any, str] = self.answers.get(timeout=2 * PATIENCE)
         return answer
 
@@ -83,7 +83,7 @@ def test_one_that_hangs_is_killed_with_its_children(
         f"open({str(note)!r}, 'w').write(str(subprocess.Popen(['sleep', '1000']).pid)); time.sleep(1000)"
     )
     for extra in (0.5, 5.0, PATIENCE):  # on a busy machine it may be killed before it has come to its note
-        monkeypatch.setattr(observer_planner, "EXTRA", extra)
+        monkeypatch.setattr(observer_planner, "KILL_DELAY", extra)
         assert Office(program, limit=0.5).ask() == (1, None, "none was found within 0.5 s")
         if note.exists() and note.read_text():
             break
@@ -95,9 +95,9 @@ def test_who_is_not_wanted_any_more_is_killed(tmp_path: Path, thrown: List[Any])
     program = f"import os, time; open({str(note)!r}, 'a').write(str(os.getpid()) + ' '); time.sleep(1000)"
     office = Office(program)
     for number in (1, 2):
-        office.planner.want(request(number))
+        office.planner.request_plan(request(number))
         until(lambda: note.exists() and note.read_text().count(" ") == number, f"note {number}")  # noqa: B023
-    office.planner.want(None)
+    office.planner.request_plan(None)
     first, second = (int(number) for number in note.read_text().split())
     assert gone(first) and gone(second)
     answers = [office.answers.get(timeout=PATIENCE) for _ in range(2)]

@@ -105,28 +105,28 @@ def test_only_what_was_prepared_counts(robot: Robot) -> None:
 
 def test_an_order_counts_once(robot: Robot) -> None:
     text = message("prepare", FIRST.digest, robot.reader.ticket, FIRST.bundle)
-    assert robot.reader.handle(text, robot.now).ok
+    assert robot.reader.on_message(text, robot.now).ok
     done = robot.reader.answer
     robot.order("abort", FIRST.digest)
-    again = robot.reader.handle(text, robot.now)
+    again = robot.reader.on_message(text, robot.now)
     assert (again.ok, again.code) == (False, "old_ticket")
     assert robot.reader.status()["prepared"] is None and done.ok
     robot.restart()
-    assert robot.reader.handle(text, robot.now).code == "old_ticket"
+    assert robot.reader.on_message(text, robot.now).code == "old_ticket"
 
 
 def test_an_order_that_is_refused_has_used_its_ticket_too(robot: Robot) -> None:
     text = message("commit", FIRST.digest, robot.reader.ticket)
-    assert robot.reader.handle(text, robot.now).code == "not_prepared"
+    assert robot.reader.on_message(text, robot.now).code == "not_prepared"
     robot.order("prepare", FIRST.digest, FIRST.bundle)
-    assert robot.reader.handle(text, robot.now).code == "old_ticket"
+    assert robot.reader.on_message(text, robot.now).code == "old_ticket"
     assert robot.current == OWN
 
 
 def refused(robot: Robot, text: str, code: str) -> None:
     """It is refused with this word, and nothing is changed, not even what the status says."""
     before, there = robot.reader.status(), files(robot)
-    answer = robot.reader.handle(text, robot.now)
+    answer = robot.reader.on_message(text, robot.now)
     assert (answer.ok, answer.code) == (False, code), answer
     assert (robot.reader.status(), files(robot)) == (before, there)
     assert answer.message
@@ -159,7 +159,7 @@ def test_what_is_too_long_is_refused_before_it_is_read(robot: Robot) -> None:
 def test_a_bundle_that_is_not_the_one_of_the_order_is_refused(robot: Robot) -> None:
     def with_bundle(digest: str, announced: bytes, sent: object) -> Any:
         text = json.loads(message("prepare", digest, robot.reader.ticket, announced))
-        return robot.reader.handle(json.dumps({**text, "bundle": sent}), robot.now)
+        return robot.reader.on_message(json.dumps({**text, "bundle": sent}), robot.now)
 
     there = files(robot)
     good = base64.b64encode(FIRST.bundle).decode()
@@ -169,7 +169,7 @@ def test_a_bundle_that_is_not_the_one_of_the_order_is_refused(robot: Robot) -> N
     assert with_bundle(SECOND.digest, FIRST.bundle, good).code == "bad_bundle"
     assert with_bundle(OWN, FIRST.bundle, good).code == "bad_order"
     text = json.loads(message("prepare", FIRST.digest, robot.reader.ticket))
-    assert robot.reader.handle(json.dumps({**text, "bundle": good}), robot.now).code == "bad_bundle"
+    assert robot.reader.on_message(json.dumps({**text, "bundle": good}), robot.now).code == "bad_bundle"
     assert robot.order("commit", FIRST.digest, FIRST.bundle).code == "bad_order"
     assert files(robot) == there
     assert robot.order("prepare", FIRST.digest, FIRST.bundle).ok
@@ -225,7 +225,7 @@ def test_without_a_key_everything_is_refused(tmp_path: Path) -> None:
     robot = Robot(tmp_path)
     (tmp_path / "keys" / "desk.pub").unlink()
     refused(robot, message("prepare", FIRST.digest, robot.reader.ticket, FIRST.bundle), "no_keys")
-    assert "put the desk's public key into" in robot.reader.trouble()
+    assert "put the desk's public key into" in robot.reader.problem()
     shutil.rmtree(tmp_path / "keys")
     refused(robot, message("prepare", FIRST.digest, robot.reader.ticket, FIRST.bundle), "no_keys")
 
@@ -238,10 +238,10 @@ def test_keys_count_as_soon_as_they_are_there_and_no_longer(robot: Robot) -> Non
     assert robot.order("prepare", theirs.digest, theirs.bundle, signer=STRANGER).ok
     (keys / "theirs.pub").unlink()
     assert robot.order("commit", theirs.digest, signer=STRANGER).code == "unknown_key"
-    assert robot.reader.trouble() == ""
+    assert robot.reader.problem() == ""
     (keys / "junk.pub").write_bytes(b"\xff\x00")
     assert robot.order("abort", theirs.digest).ok
-    assert "junk.pub" in robot.reader.trouble()
+    assert "junk.pub" in robot.reader.problem()
 
 
 def test_whoever_asks_while_keys_are_being_read_gets_them_too(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -305,12 +305,12 @@ def test_until_it_is_clear_that_no_mission_runs_none_is_exchanged(tmp_path: Path
     robot = Robot(tmp_path)
     robot.order("prepare", FIRST.digest, FIRST.bundle)
     assert robot.order("commit", FIRST.digest).code == "waiting"
-    assert robot.reader.wake(robot.now) == pytest.approx(PATIENCE)
+    assert robot.reader.next_check(robot.now) == pytest.approx(PATIENCE)
     robot.now += PATIENCE - 0.1
-    assert not robot.reader.tick(robot.now) and robot.current == OWN
+    assert not robot.reader.on_time(robot.now) and robot.current == OWN
     robot.now += 0.2
-    assert robot.reader.wake(robot.now) > 0 and robot.reader.tick(robot.now) and robot.current == FIRST.digest
-    assert robot.reader.wake(robot.now) is None
+    assert robot.reader.next_check(robot.now) > 0 and robot.reader.on_time(robot.now) and robot.current == FIRST.digest
+    assert robot.reader.next_check(robot.now) is None
 
 
 def test_what_the_observer_said_a_while_ago_does_not_count(robot: Robot) -> None:
@@ -319,10 +319,10 @@ def test_what_the_observer_said_a_while_ago_does_not_count(robot: Robot) -> None
     robot.now += 1.6
     robot.send(FIRST)
     assert robot.current == OWN and robot.reader.status()["next"] == FIRST.digest
-    assert robot.reader.wake(robot.now) == pytest.approx(PATIENCE - 1.6)
+    assert robot.reader.next_check(robot.now) == pytest.approx(PATIENCE - 1.6)
     robot.state("running", 2)
     robot.now += 2 * PATIENCE
-    assert not robot.reader.tick(robot.now) and robot.current == OWN
+    assert not robot.reader.on_time(robot.now) and robot.current == OWN
     robot.state("won", 3)
     assert robot.current == FIRST.digest
 
@@ -332,9 +332,9 @@ def test_where_the_observer_has_gone_no_mission_runs_after_a_while(robot: Robot)
     robot.now += 1.6
     robot.send(FIRST)
     robot.now += PATIENCE - 1.7
-    assert not robot.reader.tick(robot.now)
+    assert not robot.reader.on_time(robot.now)
     robot.now += 0.2
-    assert robot.reader.tick(robot.now) and robot.current == FIRST.digest
+    assert robot.reader.on_time(robot.now) and robot.current == FIRST.digest
 
 
 def test_a_reader_that_was_killed_waits_for_the_observers_word(robot: Robot) -> None:
@@ -342,11 +342,11 @@ def test_a_reader_that_was_killed_waits_for_the_observers_word(robot: Robot) -> 
     robot.state("running", 2)
     robot.send(SECOND)
     robot.restart()
-    assert not robot.reader.tick(robot.now)
+    assert not robot.reader.on_time(robot.now)
     robot.now += 1.0
     robot.state("running", 40)
     robot.now += 10 * PATIENCE
-    assert not robot.reader.tick(robot.now) and robot.reader.wake(robot.now) is None
+    assert not robot.reader.on_time(robot.now) and robot.reader.next_check(robot.now) is None
     assert robot.current == FIRST.digest
     robot.state("stopped", 41)
     assert robot.current == SECOND.digest
@@ -391,7 +391,7 @@ def test_ten_thousand_refusals_do_not_fill_the_log(robot: Robot) -> None:
     there = files(robot)
     for number in range(10_000):
         robot.now += 0.01
-        assert not robot.reader.handle(f"junk {number}", robot.now).ok
+        assert not robot.reader.on_message(f"junk {number}", robot.now).ok
     assert 1 <= len(robot.log) <= 15
     assert "not a message" in robot.log[0][1] and "999 more" in robot.said
     assert robot.reader.refusals.counts == {"bad_order": 10_000} and files(robot) == there

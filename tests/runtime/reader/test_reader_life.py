@@ -52,7 +52,7 @@ class Life(RuleBasedStateMachine):
                 disk = Disk(at, fault or None)
                 patch.setattr(mission_store, "os", disk)
                 patch.setattr(mission_store, "shutil", disk)
-            answer = self.robot.reader.handle(text, self.robot.now)
+            answer = self.robot.reader.on_message(text, self.robot.now)
         if answer is None:
             self.robot.restart()
         if self.robot.reader.ticket != ticket:
@@ -87,14 +87,14 @@ class Life(RuleBasedStateMachine):
     @rule(data=st.data())
     def replay(self, data: st.DataObject) -> None:
         before = self.robot.store.state
-        self.robot.reader.handle(data.draw(st.sampled_from(self.sent)), self.robot.now)
+        self.robot.reader.on_message(data.draw(st.sampled_from(self.sent)), self.robot.now)
         assert self.robot.store.state == before
 
     @rule(number=CHOICE, action=st.sampled_from(["prepare", "commit", "abort"]))
     def forge(self, number: int, action: str) -> None:
         before = self.robot.reader.status()
         text = message(action, MISSIONS[number].digest, self.robot.reader.ticket, signer=STRANGER)
-        assert not self.robot.reader.handle(text, self.robot.now).ok
+        assert not self.robot.reader.on_message(text, self.robot.now).ok
         assert self.robot.reader.status() == before
 
     @rule(live=st.sampled_from(LIVE))
@@ -120,7 +120,7 @@ class Life(RuleBasedStateMachine):
     def wait(self, seconds: float) -> None:
         if not self.runs:  # its observer would be heard
             self.robot.now += seconds
-            self.robot.reader.tick(self.robot.now)
+            self.robot.reader.on_time(self.robot.now)
 
     @rule()
     def kill(self) -> None:
@@ -143,7 +143,7 @@ class Life(RuleBasedStateMachine):
     def what_is_current_is_whole(self) -> None:
         current = self.robot.current
         assert current == self.robot.store.state.current
-        assert current == OWN or mission_store.damage(self.robot.store.folder, current) == ""
+        assert current == OWN or mission_store.find_damage(self.robot.store.folder, current) == ""
 
     @invariant()
     def a_mission_that_runs_is_not_exchanged(self) -> None:
@@ -158,7 +158,7 @@ class Life(RuleBasedStateMachine):
     def only_so_many_are_kept_and_each_is_whole(self) -> None:
         store = self.robot.store
         assert len(store.kept()) <= KEEP + 3 and set(store.kept()) == set(store.state.named())
-        assert all(mission_store.damage(store.folder, digest) == "" for digest in store.kept())
+        assert all(mission_store.find_damage(store.folder, digest) == "" for digest in store.kept())
 
 
 TestLife = Life.TestCase

@@ -19,15 +19,15 @@ def test_who_has_recorded_everything_cannot_bring_an_earlier_mission_back(tmp_pa
     for made in (EARLIER, LATER):
         for action, bundle in (("prepare", made.bundle), ("commit", b"")):
             recorded.append(message(action, made.digest, robot.reader.ticket, bundle))
-            assert robot.reader.handle(recorded[-1], robot.now).ok
+            assert robot.reader.on_message(recorded[-1], robot.now).ok
     assert robot.current == LATER.digest
     mixed = recorded * 10
     random.Random(1).shuffle(mixed)
     for text in recorded + mixed:
-        assert robot.reader.handle(text, robot.now).code == "old_ticket"
+        assert robot.reader.on_message(text, robot.now).code == "old_ticket"
     robot.restart()
     for text in recorded + mixed:
-        assert robot.reader.handle(text, robot.now).code == "old_ticket"
+        assert robot.reader.on_message(text, robot.now).code == "old_ticket"
     assert (robot.current, robot.reader.status()["prepared"]) == (LATER.digest, None)
 
 
@@ -35,5 +35,5 @@ def test_what_was_recorded_at_one_robot_is_nothing_to_another(tmp_path: Path) ->
     """Not even where the other one were to give out the same ticket."""
     robot = Robot(tmp_path)
     text = message("prepare", EARLIER.digest, robot.reader.ticket, EARLIER.bundle, robot="bot2")
-    assert robot.reader.handle(text, robot.now).code == "wrong_robot"
+    assert robot.reader.on_message(text, robot.now).code == "wrong_robot"
     assert robot.store.kept() == []

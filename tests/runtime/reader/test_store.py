@@ -15,7 +15,7 @@ import pytest
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.bundle import Bundle, mission_file, unpack
 from pursue_runtime.reader import store as mission_store
-from pursue_runtime.reader.store import Store, StoreError, damage, table
+from pursue_runtime.reader.store import Store, StoreError, find_damage, table
 from tests.runtime.reader_stage import OWN, Crash, Disk, Mission, Robot, mission
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")
@@ -33,7 +33,7 @@ def tree(folder: Path) -> Dict[str, bytes]:
 
 
 def whole(robot: Robot, made: Mission) -> bool:
-    return bool(damage(robot.store.folder, made.digest) == "")
+    return bool(find_damage(robot.store.folder, made.digest) == "")
 
 
 def test_a_mission_lies_there_as_the_nodes_look_for_it(robot: Robot) -> None:
@@ -142,11 +142,11 @@ def test_wherever_it_is_killed_there_is_a_whole_mission(tmp_path: Path, monkeypa
                 robot.send(THIRD)
         assert robot.current in (SECOND.digest, THIRD.digest)
         for digest in robot.store.kept():
-            assert damage(robot.store.folder, digest) == "", at
+            assert find_damage(robot.store.folder, digest) == "", at
         robot.restart()
         assert not [name for name in robot.places if name.startswith(".new-")]
         for digest in robot.store.kept():
-            assert damage(robot.store.folder, digest) == "", at
+            assert find_damage(robot.store.folder, digest) == "", at
         assert set(robot.store.kept()) == set(robot.store.state.named())
         robot.state("waiting")
         robot.send(THIRD)
@@ -254,7 +254,7 @@ def test_what_cannot_be_read_just_now_is_not_thrown_away(
             with pytest.raises(StoreError):
                 robot.start()
     robot.start()
-    assert robot.current == FIRST.digest and robot.store.whole(FIRST.digest)
+    assert robot.current == FIRST.digest and robot.store.is_intact(FIRST.digest)
 
 
 def test_what_others_put_into_the_store_is_not_followed(robot: Robot, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.simulator.clock import KEPT, Memory, Pace, SimClock
+from pursue_runtime.simulator.clock import MAX_FILES, ClockFile, Pace, SimClock
 
 
 def test_it_starts_after_zero_and_goes_in_steps() -> None:
@@ -21,9 +21,9 @@ def test_it_starts_after_zero_and_goes_in_steps() -> None:
 
 def test_it_holds_after_a_message_and_goes_on() -> None:
     clock = SimClock(Pace(hold=0.03))
-    clock.heard(10.0)
+    clock.on_message(10.0)
     held = clock.tick(10.01)
-    clock.heard(10.02)
+    clock.on_message(10.02)
     assert clock.tick(10.04) == held, "each message starts the pause anew"
     assert clock.tick(10.06) > held
 
@@ -45,7 +45,7 @@ def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
     before = clock.now
     for message, real in happenings:
         if message:
-            clock.heard(real)
+            clock.on_message(real)
         else:
             after = clock.tick(real)
             assert before <= after <= before + 0.02 + 1e-9
@@ -54,16 +54,16 @@ def test_it_never_goes_back_nor_jumps(happenings: list) -> None:
 
 def test_it_goes_on_where_a_killed_one_was(tmp_path: Path) -> None:
     path = str(tmp_path / "pursue" / "example" / "clock-1")
-    memory = Memory(path)
+    memory = ClockFile(path)
     assert memory.last is None
     for moment in (1.02, 123456789.25, 7.5):
-        memory.keep(moment)
-        assert Memory(path).last == moment, "a shorter number leaves nothing of a longer one"
-    again = SimClock(Pace(step=0.02), Memory(path).last)
+        memory.save(moment)
+        assert ClockFile(path).last == moment, "a shorter number leaves nothing of a longer one"
+    again = SimClock(Pace(step=0.02), ClockFile(path).last)
     assert again.tick(0.0) == pytest.approx(7.52)
 
 
 def test_old_clocks_are_forgotten(tmp_path: Path) -> None:
-    for number in range(KEPT + 5):
-        Memory(str(tmp_path / f"clock-{number}"))
-    assert len(list(tmp_path.iterdir())) == KEPT
+    for number in range(MAX_FILES + 5):
+        ClockFile(str(tmp_path / f"clock-{number}"))
+    assert len(list(tmp_path.iterdir())) == MAX_FILES

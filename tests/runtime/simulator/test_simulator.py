@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
-from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator, window_at
+from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator, end_window
 from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
@@ -174,7 +174,7 @@ def test_time_units_are_not_seconds() -> None:
 
 @given(st.sampled_from(DELAYS), st.integers(), st.integers(1, 50))
 def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> None:
-    window = window_at(MODEL.automaton("bot"), "going_a_to_b")
+    window = end_window(MODEL.automaton("bot"), "going_a_to_b")
     drawn = Delays(choice, seed).draw(window, "bot", number)
     assert window == (ARRIVAL, "Cbot", 9, 10)
     assert 9 < drawn < 10
@@ -182,7 +182,7 @@ def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> Non
 
 
 def test_early_middle_and_late_are_in_that_order_and_seeds_differ() -> None:
-    window = window_at(MODEL.automaton("bot"), "going_a_to_b")
+    window = end_window(MODEL.automaton("bot"), "going_a_to_b")
     early, middle, late = (Delays(c).draw(window, "bot", 1) for c in ("early", "middle", "late"))
     assert early < middle < late
     assert len({Delays("random", seed).draw(window, "bot", 1) for seed in range(5)}) == 5

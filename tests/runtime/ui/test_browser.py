@@ -11,16 +11,16 @@ from typing import Any, Callable, Iterator
 import pytest
 
 from pursue_runtime.model import Model
-from pursue_runtime.ui.page import Facts, Page, Plan
+from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from tests.runtime.models import model_data, mover, state, worker
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 sys.path.append(str(Path(__file__).resolve().parents[2] / "ros"))
 from browser import Browser, browser, program
 
-from pursue_runtime.ui import board as ui_board
+from pursue_runtime.ui import page_server as ui_board
 from pursue_runtime.ui import web as ui_web
-from pursue_runtime.ui.board import STATIC
+from pursue_runtime.ui.page_server import STATIC
 from tests.waiting import until
 
 pytestmark = pytest.mark.skipif(program() is None, reason="there is no Chromium: apt install chromium, or ./run test")
@@ -38,12 +38,12 @@ class Node:
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        self.board = ui_board.Board(Page(model, Plan(places, ways)), self)
+        self.board = ui_board.PageServer(Page(model, FloorPlan(places, ways)), self)
 
     def serve(self, port: int = 0) -> Any:
         board = self.board
         board.web = ui_web.Web(
-            STATIC, "127.0.0.1", port, "", board.welcome, board.asked, board.moment
+            STATIC, "127.0.0.1", port, "", board.first_message, board.on_message, board.present
         )
         board.web.start()
         return board.web

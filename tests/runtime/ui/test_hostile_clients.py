@@ -16,7 +16,7 @@ from typing import Any, Iterator, List, Tuple
 
 import pytest
 
-from pursue_runtime.ui.board import STATIC
+from pursue_runtime.ui.page_server import STATIC
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 pytest.importorskip("tornado", reason="tornado is not installed")
@@ -27,7 +27,7 @@ from pursue_runtime.ui import web as page
 
 soft, longest = int(sys.argv[2]), float(sys.argv[3])
 resource.setrlimit(resource.RLIMIT_NOFILE, (soft, soft))
-page.PATIENCE = page.LONGEST = longest
+page.REQUEST_TIMEOUT = page.MAX_CONNECTION_TIME = longest
 web = page.Web(sys.argv[1], "127.0.0.1", 0, "a token", dict, str, lambda: None)
 web.start()
 print(web.port, flush=True)

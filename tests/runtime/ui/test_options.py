@@ -55,7 +55,7 @@ def test_whoever_has_a_page_starts_the_mission_there() -> None:
     ({"port": 80.5}, "port is 80.5; expected a whole number from 0"),
     ({"port": -1}, "port is -1; expected a number of at least 0"),
     ({"port": "http"}, "port is 'http'; expected a number"),
-    ({"token": "short"}, "token has 5 characters; expected 8 at least"),
+    ({"token": "short"}, "token has 5 characters; expected at least 8"),
     ({"web": "perhaps"}, "web is 'perhaps'; expected true or false"),
     ({"mode": "quick"}, "mode is 'quick'; expected one of ask, still, random, trace"),
     ({"mode": "trace"}, "needs a trace file"),

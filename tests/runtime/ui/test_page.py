@@ -10,14 +10,14 @@ import pytest
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.page import KEPT, Facts, Page, Plan, read_plan, read_request
+from pursue_runtime.ui.page import MAX_ENTRIES, Facts, FloorPlan, Page, read_floor_plan, read_request
 from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(
     model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent"))
 )
 PLACES = {"a": (0.0, 0.0), "b": (9.0, 0.0), "s": (3.0, 4.0)}
-PLAN = Plan(PLACES, (("a", "b", 9.0),))
+PLAN = FloorPlan(PLACES, (("a", "b", 9.0),))
 
 
 def page(**more: Any) -> Any:
@@ -58,12 +58,12 @@ def test_ends_are_buttons_only_on_request() -> None:
 
 def test_a_map_is_read_and_a_wrong_one_refused() -> None:
     poses = {"poses": {"a": [1, 2, 0, 0, 0, 0, 1], "b": [3, 4, 0, 0, 0, 0, 1]}}
-    plan = read_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
-    assert plan == Plan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
-    assert read_plan(poses, {}).ways == ()
+    plan = read_floor_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
+    assert plan == FloorPlan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
+    assert read_floor_plan(poses, {}).ways == ()
     for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}):
         with pytest.raises(DataError):
-            read_plan(wrong, {})
+            read_floor_plan(wrong, {})
 
 
 # Who does what
@@ -175,10 +175,10 @@ def test_the_log_tells_of_holding_of_lost_agents_and_of_new_plans() -> None:
 
 def test_the_log_keeps_what_is_new() -> None:
     shown = page()
-    for number in range(KEPT + 5):
+    for number in range(MAX_ENTRIES + 5):
         shown.note(float(number), "x")
-    assert len(shown.log) == KEPT
-    assert shown.log[-1]["n"] == KEPT + 5
+    assert len(shown.log) == MAX_ENTRIES
+    assert shown.log[-1]["n"] == MAX_ENTRIES + 5
 
 
 def test_states_of_strangers_do_no_harm() -> None:

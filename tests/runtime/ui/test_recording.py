@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pursue_runtime.model import Model
-from pursue_runtime.ui.recording import missing, reserve, topics
+from pursue_runtime.ui.recording import missing_connections, reserve_file, topics
 from tests.runtime.models import model_data, mover
 
 MODEL = Model(model_data(mover("bot", "robot", 3), mover("thief", "agent", 3)))
@@ -25,9 +25,9 @@ def test_topics_are_named_and_each_stands_once() -> None:
 
 
 def test_a_bag_goes_where_it_was_asked_for_else_to_the_folder(tmp_path: Path) -> None:
-    assert reserve("", str(tmp_path / "new")) == str(tmp_path / "new" / "mission.bag")
+    assert reserve_file("", str(tmp_path / "new")) == str(tmp_path / "new" / "mission.bag")
     asked = str(tmp_path / "other" / "my.bag")
-    assert reserve(asked, str(tmp_path / "new")) == asked
+    assert reserve_file(asked, str(tmp_path / "new")) == asked
     mode = stat.S_IMODE(os.stat(asked + ".active").st_mode)
     assert mode & 0o600 == 0o600
 
@@ -36,8 +36,8 @@ def test_nothing_is_ever_overwritten(tmp_path: Path) -> None:
     finished, begun = tmp_path / "mission.bag", tmp_path / "mission-2.bag.active"
     finished.write_text("a mission")
     begun.write_text("another one")
-    assert reserve("", str(tmp_path)) == str(tmp_path / "mission-3.bag")
-    assert reserve("", str(tmp_path)) == str(tmp_path / "mission-4.bag")
+    assert reserve_file("", str(tmp_path)) == str(tmp_path / "mission-3.bag")
+    assert reserve_file("", str(tmp_path)) == str(tmp_path / "mission-4.bag")
     assert (finished.read_text(), begun.read_text()) == ("a mission", "another one")
 
 
@@ -45,12 +45,12 @@ def test_nothing_is_ever_overwritten(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(OSError):
-        reserve("", str(tmp_path))
+        reserve_file("", str(tmp_path))
 
 
 def test_it_is_complete_when_it_hears_everybody() -> None:
     nodes, publishers = ["observer", "bot"], {"/e": {"/observer", "/bot"}, "/s": {"/observer"}, "/p": set()}
-    assert missing(nodes, publishers, {"/e": 2, "/s": 1}) == ""
-    assert missing(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
-    assert missing(nodes, publishers, {"/e": 2}) == "not connected to everybody on /s yet"
-    assert missing([*nodes, "UI"], publishers, {"/e": 2, "/s": 1}) == "nothing from UI yet"
+    assert missing_connections(nodes, publishers, {"/e": 2, "/s": 1}) == ""
+    assert missing_connections(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
+    assert missing_connections(nodes, publishers, {"/e": 2}) == "not connected to everybody on /s yet"
+    assert missing_connections([*nodes, "UI"], publishers, {"/e": 2, "/s": 1}) == "nothing from UI yet"

@@ -15,13 +15,13 @@ import pytest
 
 from pursue_runtime.ui import web as ui_web
 from pursue_runtime.ui.page import read_request
-from pursue_runtime.ui.web import JUNK, LARGEST, Web, WebError, is_loopback
+from pursue_runtime.ui.web import MAX_INVALID, MAX_MESSAGE, Web, WebError, is_loopback
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from pursue_runtime.ui.board import STATIC
+from pursue_runtime.ui.page_server import STATIC
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 FOLDER = STATIC
@@ -243,7 +243,7 @@ def test_junk_is_answered_and_too_much_of_it_ends_the_talk(serve: Serve, node: N
     async def script(there: Any) -> Any:
         await there.read_message()
         answers = []
-        for number in range(JUNK):
+        for number in range(MAX_INVALID):
             await there.write_message(b"\xff" if number % 2 else "{", binary=bool(number % 2))
             answers.append(await there.read_message())
         return answers
@@ -258,7 +258,7 @@ def test_junk_is_answered_and_too_much_of_it_ends_the_talk(serve: Serve, node: N
 def test_messages_that_are_too_long_end_the_talk(serve: Serve, node: Node) -> None:
     async def script(there: Any) -> Any:
         await there.read_message()
-        await there.write_message(json.dumps({"do": "say", "word": "x" * LARGEST}))
+        await there.write_message(json.dumps({"do": "say", "word": "x" * MAX_MESSAGE}))
         return await there.read_message()
 
     web = serve()
@@ -299,7 +299,7 @@ def test_every_page_hears_what_happens_and_what_time_it_is(serve: Serve, node: N
 
 
 def test_there_is_room_for_so_many_pages(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ui_web, "PAGES", 1)
+    monkeypatch.setattr(ui_web, "MAX_PAGES", 1)
     web = serve()
 
     async def second(there: Any) -> Any:
@@ -313,7 +313,7 @@ def test_there_is_room_for_so_many_pages(serve: Serve, monkeypatch: pytest.Monke
 def test_a_page_that_does_not_read_is_given_up_and_memory_with_it(
     serve: Serve, node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ui_web, "BEHIND", 1 << 16)
+    monkeypatch.setattr(ui_web, "MAX_BACKLOG", 1 << 16)
     web = serve()
     key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
     with connected(web.port) as there:

@@ -10,13 +10,13 @@ from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.options import OptionError, Options
-from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, Request, read_plan, read_request
+from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
 
 
-class Node(Protocol):
+class PageNode(Protocol):
     """The node that has a page."""
 
     lock: threading.RLock
@@ -24,14 +24,14 @@ class Node(Protocol):
     def facts(self) -> Facts:
         """How it is."""
 
-    def obey(self, request: Request) -> str:
+    def on_request(self, request: PageRequest) -> str:
         """Somebody at a page wants something; what to tell them ("" for nothing)."""
 
 
-class Board:
+class PageServer:
     """What there is to see; everything that is new goes to every page."""
 
-    def __init__(self, page: Page, node: Node) -> None:
+    def __init__(self, page: Page, node: PageNode) -> None:
         self._page, self._node = page, node
         self._shown = 0
         self.web: Any = None
@@ -53,28 +53,28 @@ class Board:
 
     # What the server asks, in its own thread --------------------------------------------------------------------------
 
-    def welcome(self) -> Dict[str, Any]:
+    def first_message(self) -> Dict[str, Any]:
         """What a page is told first."""
         with self._node.lock:
             view = self._page.view(self._node.facts())
             return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log}
 
-    def asked(self, message: Any) -> str:
+    def on_message(self, message: Any) -> str:
         """A page asks for something. Raises ValueError where that cannot be understood."""
         request = read_request(message)
         with self._node.lock:
-            return self._node.obey(request)
+            return self._node.on_request(request)
 
-    def moment(self) -> Optional[float]:
+    def present(self) -> Optional[float]:
         """The present in time units since the start; None while time does not count."""
         with self._node.lock:
             facts = self._node.facts()
         return facts.now if facts.live else None
 
 
-def open_board(
-    model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: Node
-) -> Optional[Board]:
+def open_page(
+    model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: PageNode
+) -> Optional[PageServer]:
     """Serves a page, where one is wanted. Raises OptionError and DataError."""
     if not options.web:
         return None
@@ -83,10 +83,10 @@ def open_board(
     except ImportError as problem:
         raise OptionError(f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out") from None
     poses = source.read("poses.yaml")
-    board = Board(Page(model, read_plan(poses, settings), options.ends), node)
+    board = PageServer(Page(model, read_floor_plan(poses, settings), options.ends), node)
     try:
         board.web = Web(
-            STATIC, options.host, options.port, options.token, board.welcome, board.asked, board.moment
+            STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present
         )
     except WebError as problem:
         raise OptionError(str(problem)) from None

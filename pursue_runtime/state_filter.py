@@ -10,7 +10,7 @@ from pursue_runtime.state import ENDED, LATE, SystemState, older
 OURS, OLD, OTHER, OVER = "ours", "old", "other", "over"
 
 
-class Hearing:
+class StateFilter:
     """What a state is to a node that has the data of `mission`; `own` is the workspace's, which states need not name.
 
     OURS: of its mission. OLD: published before one that was heard. OTHER: of another mission, which it must not take
@@ -25,23 +25,23 @@ class Hearing:
         self, mission: str, own: str, again: bool = False, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.mission = mission
-        self.known: Optional[SystemState] = None  # the newest state, of whatever mission
+        self.newest: Optional[SystemState] = None  # the newest state, of whatever mission
         self.joined = False  # a state has been OURS
-        self.anew = False  # the last state was the first one of an observer whose clock was set back
+        self.clock_set_back = False  # the last state was the first one of an observer whose clock was set back
         self._own, self._again, self._clock = own, again, clock
-        self._heard = clock()  # when the known state was said, or said again
+        self._received = clock()  # when the known state was said, or said again
 
-    def judge(self, state: SystemState) -> str:
+    def classify(self, state: SystemState) -> str:
         """OURS, OLD, OTHER or OVER."""
-        known, now = self.known, self._clock()
+        known, now = self.newest, self._clock()
         old = known is not None and older(state, known)
         same = known is not None and (state.mission, state.seq) == (known.mission, known.seq)
-        self.anew = old and not same and now >= self._heard + LATE
-        if same or not old or self.anew:
-            self._heard = now
-        if old and not self.anew:
+        self.clock_set_back = old and not same and now >= self._received + LATE
+        if same or not old or self.clock_set_back:
+            self._received = now
+        if old and not self.clock_set_back:
             return OLD
-        self.known = state
+        self.newest = state
         if (state.mission or self._own) != self.mission:
             return OTHER
         if state.status in ENDED and self._again and not self.joined:

@@ -37,17 +37,17 @@ class Settings(NamedTuple):
     simulated: bool = False
 
     @property
-    def answers(self) -> bool:
+    def uses_results(self) -> bool:
         """True where the results of move_base are listened to."""
         return self.goals == "action" or self.ends == "result"
 
     @property
-    def watches(self) -> bool:
+    def uses_position(self) -> bool:
         """True where it is for the controller to see that the robot has arrived."""
         return self.ends in ("pose", "tf")
 
 
-def settings_of(robot: str, given: Mapping[str, Any]) -> Settings:
+def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
     """The robot's settings among the node's parameters; those in the group of its name win. Raises DataError."""
     own = given.get(robot, {})
     if not isinstance(own, dict) or set(own) - set(Settings._fields):
@@ -79,7 +79,7 @@ def _checked(name: str, value: Any, default: Any) -> Any:
     raise DataError(f"~{name} is {value!r}; expected {wanted[kind]}")
 
 
-class Way(NamedTuple):
+class Movement(NamedTuple):
     """A movement: the location that the agent has meanwhile, and the point where it ends."""
 
     location: str
@@ -92,14 +92,14 @@ class Goal(NamedTuple):
     """What a robot is to be told: with an id of our own, which only action goals carry."""
 
     name: str
-    way: Way
+    movement: Movement
 
 
 @dataclass
-class Trip:
+class Progress:
     """One movement under way: `goals` is how many were sent for it, `goal` the one that the robot is after."""
 
-    way: Way
+    movement: Movement
     goal_at: Optional[float] = None
     goal: str = ""
     goals: int = 0
@@ -107,71 +107,71 @@ class Trip:
     report: str = ""
     reports: int = 0
     reported: float = 0.0
-    heard: bool = False
+    confirmed: bool = False
 
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
 
 
-class Robot:
+class Navigation:
     """What one robot was told, and what it has answered."""
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
         self.name = name
         self.settings = settings
         self._log = log
-        self._trip: Optional[Trip] = None
+        self._progress: Optional[Progress] = None
         self._running = True
         self._sent = self._earliest = -math.inf  # when its last goal was sent; the earliest stamp that it may have
         self._answered: Deque[str] = deque(maxlen=8)
 
     @property
-    def watching(self) -> bool:
+    def needs_position(self) -> bool:
         """True while its position is to be looked at."""
-        trip = self._trip
-        return self.settings.watches and trip is not None and trip.report != self._end(trip)
+        trip = self._progress
+        return self.settings.uses_position and trip is not None and trip.report != self._end_word(trip)
 
     @property
     def goal(self) -> str:
         """The id of the goal that it is after, "" if none."""
-        return self._trip.goal if self._trip else ""
+        return self._progress.goal if self._progress else ""
 
     # What happens -----------------------------------------------------------------------------------------------------
 
-    def follow(self, way: Optional[Way], running: bool, lost: bool) -> None:
+    def on_state(self, way: Optional[Movement], running: bool, lost: bool) -> None:
         """A state shows it on this way (None: on none). Goals are sent while the mission is `running` only."""
         self._running = running
-        if way is None or self._trip is None or self._trip.way != way:
-            self._trip = Trip(way) if way else None  # whoever began it: its end is an end
-        elif lost and self._trip.report == self._failure():
-            self._trip.heard = True
+        if way is None or self._progress is None or self._progress.movement != way:
+            self._progress = Progress(way) if way else None  # whoever began it: its end is an end
+        elif lost and self._progress.report == self._failure_word():
+            self._progress.confirmed = True
 
-    def order(self, way: Way, now: float) -> None:
+    def start(self, way: Movement, now: float) -> None:
         """It is to go there."""
-        self._trip = Trip(way, goal_at=now)
+        self._progress = Progress(way, goal_at=now)
 
-    def result(self, goal: str, stamp: float, status: int, now: float) -> None:
+    def on_result(self, goal: str, stamp: float, status: int, now: float) -> None:
         """move_base says how a goal has ended that it got at `stamp`."""
-        trip = self._trip
-        if trip is None or trip.report == self._end(trip) or not self._means(trip, goal, stamp, status):
+        trip = self._progress
+        if trip is None or trip.report == self._end_word(trip) or not self._is_current(trip, goal, stamp, status):
             return
         self._answered.append(goal)
         if status == SUCCEEDED:
             trip.goal = ""
             if self.settings.ends == "result":
-                self._say(trip, self._end(trip))
-            elif self.settings.watches and trip.near_since is None:
-                self._log("warn", f"{self.name} says that it is at {trip.way.poi}, but is not seen there yet")
+                self._report(trip, self._end_word(trip))
+            elif self.settings.uses_position and trip.near_since is None:
+                self._log("warn", f"{self.name} says that it is at {trip.movement.poi}, but is not seen there yet")
         else:
-            self._fails(trip, FAILURES[status], now)
+            self._on_failure(trip, FAILURES[status], now)
 
-    def position(self, x: float, y: float, now: float) -> None:
+    def on_position(self, x: float, y: float, now: float) -> None:
         """It is there now, on the map."""
-        trip = self._trip
-        if trip is None or not self.watching:
+        trip = self._progress
+        if trip is None or not self.needs_position:
             return
-        if math.hypot(x - trip.way.x, y - trip.way.y) > self.settings.end_tolerance:
+        if math.hypot(x - trip.movement.x, y - trip.movement.y) > self.settings.end_tolerance:
             trip.near_since = None
         elif trip.near_since is None:
             trip.near_since = now
@@ -180,40 +180,40 @@ class Robot:
 
     def due(self, now: float, real: float) -> Tuple[Optional[Goal], Optional[str]]:
         """The goal to send and the word to publish at this moment, if any."""
-        trip = self._trip
+        trip = self._progress
         if trip is None:
             return None, None
-        if trip.near_since is not None and now >= self._arrival(trip.near_since) and self.watching:
-            self._say(trip, self._end(trip))
+        if trip.near_since is not None and now >= self._arrival_at(trip.near_since) and self.needs_position:
+            self._report(trip, self._end_word(trip))
         goal, word = None, None
         if self._running and trip.goal_at is not None and now >= trip.goal_at:
             goal = self._next_goal(trip, now)
-        if trip.report and not trip.heard and (trip.reports == 0 or real >= self._repeat(trip)):
+        if trip.report and not trip.confirmed and (trip.reports == 0 or real >= self._resend_at(trip)):
             trip.reports, trip.reported, word = trip.reports + 1, real, trip.report
         return goal, word
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """When `due` should be asked again: in ROS time, and on the real clock; None: not before something happens."""
-        trip = self._trip
+        trip = self._progress
         if trip is None:
             return None, None
         moments: List[float] = [trip.goal_at] if self._running and trip.goal_at is not None else []
-        if trip.near_since is not None and self.watching:
-            moments.append(self._arrival(trip.near_since))
-        return min(moments, default=None), (self._repeat(trip) if trip.reports and not trip.heard else None)
+        if trip.near_since is not None and self.needs_position:
+            moments.append(self._arrival_at(trip.near_since))
+        return min(moments, default=None), (self._resend_at(trip) if trip.reports and not trip.confirmed else None)
 
     # How --------------------------------------------------------------------------------------------------------------
 
-    def _next_goal(self, trip: Trip, now: float) -> Goal:
+    def _next_goal(self, trip: Progress, now: float) -> Goal:
         # A simple goal gets its id and stamp from the robot, whose clock may be behind. The goal before may still be
         # answered (it is preempted by this one): what is nearer to that one is not taken for the answer to this.
         self._earliest = now - min(self.settings.clock_skew, (now - self._sent) / 2)
         self._sent = now
         trip.goals += 1
-        trip.goal, trip.goal_at = f"{self.name}-{trip.way.location}-{trip.goals}-{now:.6f}", None
-        return Goal(trip.goal, trip.way)
+        trip.goal, trip.goal_at = f"{self.name}-{trip.movement.location}-{trip.goals}-{now:.6f}", None
+        return Goal(trip.goal, trip.movement)
 
-    def _means(self, trip: Trip, goal: str, stamp: float, status: int) -> bool:
+    def _is_current(self, trip: Progress, goal: str, stamp: float, status: int) -> bool:
         """True if the result is that of the goal which the robot is after."""
         if not trip.goal or (status != SUCCEEDED and status not in FAILURES):
             return False
@@ -226,29 +226,29 @@ class Robot:
         self._log("info", f"{self.name}: a result of {self._sent - stamp:.1f} s before the present goal is left aside")
         return False
 
-    def _fails(self, trip: Trip, how: str, now: float) -> None:
+    def _on_failure(self, trip: Progress, how: str, now: float) -> None:
         trip.goal = ""
         if trip.goals <= self.settings.retries:
-            self._log("warn", f"{self.name} on its way to {trip.way.poi}: {how}; trying again")
+            self._log("warn", f"{self.name} on its way to {trip.movement.poi}: {how}; trying again")
             trip.goal_at = now + self.settings.retry_delay
         else:
-            self._log("err", f"{self.name} on its way to {trip.way.poi}: {how} {trip.goals} times; giving up")
-            self._say(trip, self._failure())
+            self._log("err", f"{self.name} on its way to {trip.movement.poi}: {how} {trip.goals} times; giving up")
+            self._report(trip, self._failure_word())
 
     @staticmethod
-    def _say(trip: Trip, word: str) -> None:
+    def _report(trip: Progress, word: str) -> None:
         """The word is reported until the state shows it; no goal is due any more."""
-        trip.report, trip.reports, trip.heard, trip.goal_at = word, 0, False, None
+        trip.report, trip.reports, trip.confirmed, trip.goal_at = word, 0, False, None
 
     @staticmethod
-    def _repeat(trip: Trip) -> float:
+    def _resend_at(trip: Progress) -> float:
         return trip.reported + resend_timeout(trip.reports)
 
-    def _arrival(self, near_since: float) -> float:
+    def _arrival_at(self, near_since: float) -> float:
         return near_since + self.settings.end_settle
 
-    def _end(self, trip: Trip) -> str:
-        return f"{self.name}_{trip.way.location}2{trip.way.poi}"
+    def _end_word(self, trip: Progress) -> str:
+        return f"{self.name}_{trip.movement.location}2{trip.movement.poi}"
 
-    def _failure(self) -> str:
+    def _failure_word(self) -> str:
         return format_word(Word(self.name, FAILED))

@@ -6,7 +6,7 @@ from typing import Any, List, Optional
 
 import pytest
 
-from pursue_runtime.controller.player import Player
+from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from tests.runtime.texts import read
@@ -27,7 +27,7 @@ strategy:
 
 
 def player(text: str = STRATEGY) -> Any:
-    return Player(Strategy(read(text)))
+    return CommandScheduler(Strategy(read(text)))
 
 
 def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running") -> Any:
@@ -37,60 +37,60 @@ def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str
 
 def test_it_waits_for_the_moment_and_speaks_for_the_state_it_knows() -> None:
     bot = player()
-    assert bot.see(state(1, 100.0), 100.0) == []
-    assert bot.wake() == (105.0, None)
-    assert bot.ring(104.9) is None and bot.wake() == (105.0, None)
-    assert bot.ring(105.0) == ("bot", "bot_c2b", 1)
+    assert bot.on_state(state(1, 100.0), 100.0) == []
+    assert bot.next_wakeup() == (105.0, None)
+    assert bot.on_timer(104.9) is None and bot.next_wakeup() == (105.0, None)
+    assert bot.on_timer(105.0) == ("bot", "bot_c2b", 1)
 
 
 def test_it_does_nothing_before_the_mission_runs_nor_after() -> None:
     for status in ("waiting", "won", "lost", "stopped"):
         bot = player()
-        assert bot.see(state(0, 100.0, bot="going_c_to_b", status=status), 100.0) == []
-        assert bot.wake() == (None, None) and bot.ring(105.0) is None
+        assert bot.on_state(state(0, 100.0, bot="going_c_to_b", status=status), 100.0) == []
+        assert bot.next_wakeup() == (None, None) and bot.on_timer(105.0) is None
 
 
 def test_a_new_state_replaces_what_was_planned() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    bot.see(state(2, 102.0, clock=1.0), 102.0)
-    assert bot.wake() == (106.0, None)
-    assert bot.ring(106.0).seq == 2
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_state(state(2, 102.0, clock=1.0), 102.0)
+    assert bot.next_wakeup() == (106.0, None)
+    assert bot.on_timer(106.0).seq == 2
 
 
 def test_a_word_that_is_not_answered_is_sent_again_ever_more_slowly() -> None:
     bot = player(STRATEGY.replace(" && Cbot <= 6", ""))
-    bot.see(state(1, 100.0), 100.0)
-    bot.ring(105.0)
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_timer(105.0)
     patience: List[Optional[float]] = []
     for step in range(6):
-        patience.append(bot.wake()[1])
-        assert bot.wake()[0] is None
-        assert bot.ring(106.0 + step) == ("bot", "bot_c2b", 1)
+        patience.append(bot.next_wakeup()[1])
+        assert bot.next_wakeup()[0] is None
+        assert bot.on_timer(106.0 + step) == ("bot", "bot_c2b", 1)
     assert patience == [0.5, 1.0, 2.0, 4.0, 4.0, 4.0]
     assert bot.counts["sent_again"] == 6
 
 
 def test_it_falls_silent_when_the_window_has_passed() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    bot.ring(105.0)
-    assert bot.ring(107.0) is None and bot.wake() == (None, None)
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_timer(105.0)
+    assert bot.on_timer(107.0) is None and bot.next_wakeup() == (None, None)
 
 
 def test_an_answered_word_is_not_repeated() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    bot.ring(105.0)
-    bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
-    assert bot.wake() == (None, None) and bot.ring(106.0) is None
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_timer(105.0)
+    bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    assert bot.next_wakeup() == (None, None) and bot.on_timer(106.0) is None
 
 
 def test_it_may_wake_late_within_the_reaction_and_not_later() -> None:
     for late, spoken in ((0.09, True), (0.19, True), (0.21, False)):
         bot = player(STRATEGY.replace("Cbot <= 6", "Cbot <= 5"))
-        bot.see(state(1, 100.0), 100.0)
-        assert (bot.ring(105.0 + late) is not None) is spoken
+        bot.on_state(state(1, 100.0), 100.0)
+        assert (bot.on_timer(105.0 + late) is not None) is spoken
         assert bot.counts["too_late"] == (not spoken)
 
 
@@ -115,50 +115,50 @@ def test_what_was_due_when_the_state_began_is_said_until_the_reaction_is_over(
     clock: float, late: float, event: str
 ) -> None:
     bot = player(TWO)
-    bot.see(state(1, 100.0, clock=clock), 100.0 + late)
-    assert bot.wake()[0] <= 100.0 + late
-    assert bot.ring(100.0 + late) == ("bot", event, 1)
+    bot.on_state(state(1, 100.0, clock=clock), 100.0 + late)
+    assert bot.next_wakeup()[0] <= 100.0 + late
+    assert bot.on_timer(100.0 + late) == ("bot", event, 1)
 
 
 def test_a_lost_word_is_said_again_before_another_one_that_is_due_meanwhile() -> None:
     bot = player(TWO.replace("reaction: 0.2", "reaction: 2"))
-    bot.see(state(1, 100.0, clock=5.9), 100.0)
-    assert [bot.ring(moment).event for moment in (100.0, 100.5, 101.5, 103.5)] == ["bot_c2b"] * 3 + ["bot_c2a"]
+    bot.on_state(state(1, 100.0, clock=5.9), 100.0)
+    assert [bot.on_timer(moment).event for moment in (100.0, 100.5, 101.5, 103.5)] == ["bot_c2b"] * 3 + ["bot_c2a"]
 
 
 def test_a_window_that_is_still_open_is_used_however_late() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    assert bot.ring(105.9) == ("bot", "bot_c2b", 1)
+    bot.on_state(state(1, 100.0), 100.0)
+    assert bot.on_timer(105.9) == ("bot", "bot_c2b", 1)
     assert bot.counts["too_late"] == 0
 
 
 def test_its_robot_moves_once_the_observer_has_taken_the_word() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    orders = bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    bot.on_state(state(1, 100.0), 100.0)
+    orders = bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
     assert orders == [("bot", "bot_c2b", "c", "going_c_to_b")]
-    assert bot.see(state(3, 114.0, bot="b", event="bot_going_c_to_b2b"), 114.0) == []
+    assert bot.on_state(state(3, 114.0, bot="b", event="bot_going_c_to_b2b"), 114.0) == []
 
 
 def test_an_instantaneous_action_goes_to_the_robot_too() -> None:
     bot = player()
-    bot.see(state(3, 114.0, bot="b"), 114.0)
-    assert bot.see(state(4, 116.0, bot="b", event="catch"), 116.0) == [("bot", "catch", "b", "b")]
+    bot.on_state(state(3, 114.0, bot="b"), 114.0)
+    assert bot.on_state(state(4, 116.0, bot="b", event="catch"), 116.0) == [("bot", "catch", "b", "b")]
 
 
 def test_what_others_do_moves_nobody() -> None:
     bot = player()
-    bot.see(state(1, 100.0, bot="b"), 100.0)
+    bot.on_state(state(1, 100.0, bot="b"), 100.0)
     other = state(2, 101.0, bot="b")._replace(event="catch", agent="dog")
-    assert bot.see(other, 101.0) == []
+    assert bot.on_state(other, 101.0) == []
 
 
 def test_the_answer_to_a_ping_changes_nothing() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    bot.see(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
-    assert bot.see(state(2, 107.0, bot="going_c_to_b", event="bot_c2b", clock=2.0), 107.0) == []
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
+    assert bot.on_state(state(2, 107.0, bot="going_c_to_b", event="bot_c2b", clock=2.0), 107.0) == []
 
 
 @pytest.mark.parametrize(
@@ -166,16 +166,16 @@ def test_the_answer_to_a_ping_changes_nothing() -> None:
 )
 def test_one_that_comes_late_or_missed_states_tells_the_robot_where_it_should_be(place: str, trigger: str) -> None:
     fresh = player()
-    assert fresh.see(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "", place)]
+    assert fresh.on_state(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "", place)]
     missed = player()
-    missed.see(state(1, 90.0), 90.0)
-    assert missed.see(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "c", place)]
+    missed.on_state(state(1, 90.0), 90.0)
+    assert missed.on_state(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "c", place)]
 
 
 def test_a_robot_gets_no_order_that_the_strategy_does_not_hold() -> None:
     bot = player()
-    bot.see(state(1, 100.0), 100.0)
-    assert bot.see(state(2, 102.0, bot="going_c_to_a", event="bot_c2a"), 102.0) == []
+    bot.on_state(state(1, 100.0), 100.0)
+    assert bot.on_state(state(2, 102.0, bot="going_c_to_a", event="bot_c2a"), 102.0) == []
     assert bot.counts["not_ours"] == 1
 
 
@@ -183,50 +183,50 @@ def test_a_burst_of_late_states_changes_nothing() -> None:
     """After a cut the newest state may come first, and what was sent before it last."""
     history = [state(1, 100.0), state(2, 105.0, "going_c_to_b", event="bot_c2b"), state(3, 110.0, "b", clock=0.0)]
     bot = player()
-    bot.see(history[2], 110.2)
-    wake = bot.wake()
+    bot.on_state(history[2], 110.2)
+    wake = bot.next_wakeup()
     for late in (*history, *reversed(history)):
-        assert bot.see(late, 112.0) == [], "no robot moves on it"
-        assert bot.state == history[2] and bot.wake() == wake
-    assert bot.ring(wake[0]) == ("bot", "catch", 3)
+        assert bot.on_state(late, 112.0) == [], "no robot moves on it"
+        assert bot.state == history[2] and bot.next_wakeup() == wake
+    assert bot.on_timer(wake[0]) == ("bot", "catch", 3)
     assert bot.counts["old"] == 4
 
 
 def test_an_observer_that_starts_anew_is_believed_and_so_is_one_whose_clock_was_set_back() -> None:
     bot = player()
-    bot.see(state(7, 100.0, "b"), 100.0)
-    bot.see(state(1, 200.0), 200.0)
+    bot.on_state(state(7, 100.0, "b"), 100.0)
+    bot.on_state(state(1, 200.0), 200.0)
     assert bot.state.seq == 1
-    bot.see(state(2, 150.0, "going_c_to_b", event="bot_c2b"), 150.0)
+    bot.on_state(state(2, 150.0, "going_c_to_b", event="bot_c2b"), 150.0)
     assert bot.state.seq == 2
 
 
 def test_an_end_after_a_state_that_was_missed_is_no_order() -> None:
     bot = player()
-    bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
-    assert bot.see(state(3, 106.0, bot="b", event="workDONE"), 106.0) == []
-    assert bot.see(state(5, 109.0, bot="b", event="catch"), 109.0) == [("bot", "catch", "b", "b")]
+    bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
+    assert bot.on_state(state(3, 106.0, bot="b", event="workDONE"), 106.0) == []
+    assert bot.on_state(state(5, 109.0, bot="b", event="catch"), 109.0) == [("bot", "catch", "b", "b")]
 
 
 def test_a_state_that_is_said_again_is_no_news() -> None:
     bot = player()
     for current, news in ((state(1, 100.0), True), (state(1, 101.0, clock=1.0), False), (state(2, 102.0), True),
                           (state(1, 101.5, clock=1.5), False)):  # fmt: skip
-        bot.see(current, 102.0)
-        assert bot.news is news
+        bot.on_state(current, 102.0)
+        assert bot.is_new is news
 
 
 def test_a_state_that_takes_the_whole_reaction_is_not_too_late() -> None:
     bot = player()
-    bot.see(state(1, 100.0, clock=6.0), 100.2 + 1e-7)
-    assert bot.ring(100.2 + 1e-7) == ("bot", "bot_c2b", 1)
+    bot.on_state(state(1, 100.0, clock=6.0), 100.2 + 1e-7)
+    assert bot.on_timer(100.2 + 1e-7) == ("bot", "bot_c2b", 1)
 
 
 def test_the_robot_does_what_wins_the_mission_where_that_is_done_at_once() -> None:
     bot = player()
-    bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
-    assert bot.see(state(2, 101.0, bot="b", event="catch", status="won"), 101.0) == [("bot", "catch", "b", "b")]
+    bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
+    assert bot.on_state(state(2, 101.0, bot="b", event="catch", status="won"), 101.0) == [("bot", "catch", "b", "b")]
     for status in ("lost", "stopped"):
         bot = player()
-        bot.see(state(1, 100.0, bot="b", clock=0.5), 100.0)
-        assert bot.see(state(2, 101.0, bot="b", event="catch", status=status), 101.0) == []
+        bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
+        assert bot.on_state(state(2, 101.0, bot="b", event="catch", status=status), 101.0) == []

@@ -26,7 +26,7 @@ class AutomatonMachine:
             self._machine.add_transition(edge.word, edge.source, edge.target)
 
     @property
-    def state(self) -> str:
+    def location(self) -> str:
         """The location."""
         return str(self._model.state)
 
@@ -36,12 +36,12 @@ class AutomatonMachine:
         Several edges of a location may have one word, and the model has chosen between them by their guards: so the
         machine is set to the target. Its own way there, by trigger and conditions, took a quarter of a reaction.
         """
-        if edge.word not in self._machine.get_triggers(self.state):
-            raise AssertionError(f"{edge.word} does not start at {self.state}")
+        if edge.word not in self._machine.get_triggers(self.location):
+            raise AssertionError(f"{edge.word} does not start at {self.location}")
         self._machine.set_state(edge.target, self._model)
 
 
-class Board:
+class Automata:
     """The automata, the variables and the clocks. `unit` is the length of a time unit in seconds."""
 
     def __init__(self, model: Model, unit: float) -> None:
@@ -55,17 +55,17 @@ class Board:
         """Every clock is zero."""
         self._zeros = dict.fromkeys(self.model.clocks, now)
 
-    def place(self, name: str) -> str:
+    def location_of(self, name: str) -> str:
         """The location of an automaton, "" if there is none of this name."""
-        return self._machines[name].state if name in self._machines else ""
+        return self._machines[name].location if name in self._machines else ""
 
     def is_at(self, place: Optional[Tuple[str, str]]) -> bool:
         """True where the automaton is at this location (never at None)."""
-        return place is not None and self.place(place[0]) == place[1]
+        return place is not None and self.location_of(place[0]) == place[1]
 
     def position(self, now: float) -> Position:
         """Locations, variables and the clocks of this moment."""
-        locations = {name: machine.state for name, machine in self._machines.items()}
+        locations = {name: machine.location for name, machine in self._machines.items()}
         clocks = {clock: (now - self._zeros.get(clock, now)) / self.unit for clock in self.model.clocks}
         return Position(locations, dict(self._values), clocks)
 
@@ -87,19 +87,19 @@ class Board:
             for bound in automaton.invariants[position.locations[automaton.name]]
         ]
 
-    def own_delays(self, position: Position) -> List[float]:
+    def internal_delays(self, position: Position) -> List[float]:
         """How far the steps are that objectives take by themselves, if only time passes."""
-        delays = (due([edge.when], position.clocks) for _, edge in self._own_edges(position))
+        delays = (due([edge.when], position.clocks) for _, edge in self._internal_edges(position))
         return [delay for delay in delays if delay is not None]
 
-    def own_move(self, position: Position) -> Optional[Tuple[Move, ...]]:
+    def internal_move(self, position: Position) -> Optional[Tuple[Move, ...]]:
         """The step that an objective takes by itself now (`never_with`)."""
-        for automaton, edge in self._own_edges(position):
+        for automaton, edge in self._internal_edges(position):
             if holds(edge.when, position.clocks):
                 return (Move(automaton.name, edge),)
         return None
 
-    def _own_edges(self, position: Position) -> List[Tuple[Automaton, Edge]]:
+    def _internal_edges(self, position: Position) -> List[Tuple[Automaton, Edge]]:
         return [
             (automaton, edge)
             for automaton in self.model.of_kind("safety")

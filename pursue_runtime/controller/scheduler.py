@@ -12,7 +12,7 @@ from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
 
 
-class Order(NamedTuple):
+class StartedActivity(NamedTuple):
     """What an agent has begun, for the exeggutor."""
 
     agent: str
@@ -21,14 +21,14 @@ class Order(NamedTuple):
     target: str
 
 
-class Player:
+class CommandScheduler:
     """Looks from state to state when the next command of its strategy is due, and what its agents have begun."""
 
     def __init__(self, strategy: Strategy, name: str = "") -> None:
         """`name`: the controller's, by which the observer knows who has a new plan."""
         self.state: Optional[SystemState] = None
         self.planned: Optional[Tuple[float, Command]] = None
-        self.news = False  # the last state was a new one
+        self.is_new = False  # the last state was a new one
         self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
         self._name = name
         self._agents = strategy.agents
@@ -38,19 +38,19 @@ class Player:
         self._unanswered = 0
         self._patience: Optional[float] = None
 
-    def wake(self) -> Tuple[Optional[float], Optional[float]]:
+    def next_wakeup(self) -> Tuple[Optional[float], Optional[float]]:
         """When to call `ring`: a moment, or the seconds of real time from now after which a word counts as lost."""
         return (self.planned[0] if self.planned else None), self._patience
 
-    def learn(self, plan: int, strategy: Strategy, now: float) -> Word:
+    def add_plan(self, plan: int, strategy: Strategy, now: float) -> Word:
         """A new plan came, for the states that name it; the word that says so to the observer."""
-        self._plans.learn(plan, strategy)
+        self._plans.add(plan, strategy)
         self._newest = max(plan, self._newest)
         if self.state is not None and self.state.plan == plan and self.planned is None:
             self._plan(self.state, now)
         return self._receipt(plan)
 
-    def receipt(self) -> Optional[Word]:
+    def repeated_receipt(self) -> Optional[Word]:
         """Says again which plan came last, while the mission may be waiting for that."""
         waits = self.state is not None and self.state.status == HOLDING and self.state.plan < self._newest
         return self._receipt(self._newest) if waits else None
@@ -58,10 +58,10 @@ class Player:
     def _receipt(self, plan: int) -> Word:
         return Word(self._name, PLANNED, plan)
 
-    def see(self, state: SystemState, now: float) -> List[Order]:
+    def on_state(self, state: SystemState, now: float) -> List[StartedActivity]:
         """A state was published: what has our agents begun? The next command is planned."""
         before = self.state
-        self.news = False
+        self.is_new = False
         if before is not None and older(state, before):
             self.counts["old"] += 1
             return []
@@ -70,7 +70,7 @@ class Player:
             self._plans, self._newest = Plans(self._own), 0
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
             return []  # the answer to a ping, or the observer says only that it is there
-        self.news = True
+        self.is_new = True
         self.planned, self._patience, self._unanswered = None, None, 0
         if state.status == WON:  # what won it, if that is done at once
             return [order for order in self._begun(before, state) if order.origin == order.target]
@@ -81,13 +81,13 @@ class Player:
         self.counts["taken"] += len(orders)
         return orders
 
-    def ring(self, now: float) -> Optional[Word]:
+    def on_timer(self, now: float) -> Optional[Word]:
         """A command is due, or was not answered: the word to publish, if any."""
         state = self.state
         if state is None or state.status != RUNNING:
             return None
         self._patience = None
-        strategy = self._plans.at(state)
+        strategy = self._plans.strategy_for(state)
         if strategy is None:
             return None
         if self.planned is None:  # the last word was not answered
@@ -106,12 +106,12 @@ class Player:
 
     def _plan(self, state: SystemState, now: float) -> None:
         """Looks for the next command: there is none while the mission holds, or before the plan in force came."""
-        strategy = self._plans.at(state) if state.status == RUNNING else None
+        strategy = self._plans.strategy_for(state) if state.status == RUNNING else None
         self.planned = strategy.decided(state, now) if strategy else None
 
-    def _begun(self, before: Optional[SystemState], state: SystemState) -> List[Order]:
+    def _begun(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
         """What our agents have begun since the state before, even where states in between (or all) were missed."""
-        orders: List[Order] = []
+        orders: List[StartedActivity] = []
         for agent in self._agents:
             target = state.locations.get(agent, "")
             origin = before.locations.get(agent, "") if before else ""
@@ -120,19 +120,19 @@ class Player:
             if own and before is not None and not self._holds(before, state):
                 self.counts["not_ours"] += 1  # somebody reports it, or did it by hand: the robot gets no order from us
             elif begins or (own and origin == target and self._instant(state, target)):
-                orders.append(Order(agent, state.event if own else action_of(target), origin, target))
+                orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))
         return orders
 
     def _instant(self, state: SystemState, location: str) -> bool:
         """True for a command that is done at once; after states that were missed it may be the end of another one."""
-        strategy = self._plans.at(state)
+        strategy = self._plans.strategy_for(state)
         return strategy is not None and strategy.instant(state.agent, state.event, location)
 
     def _holds(self, before: SystemState, state: SystemState) -> bool:
         """True if what led to the state is a command of the strategy, or cannot be known: states were missed."""
         if before.status == HOLDING and state.seq == before.seq + 1:
             return False
-        strategy = self._plans.at(before)
+        strategy = self._plans.strategy_for(before)
         if state.seq != before.seq + 1 or strategy is None:
             return True
         commands = strategy.commands(before)

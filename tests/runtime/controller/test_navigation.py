@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.controller.robot import ENDS, GOALS, Robot, Way, settings_of
+from pursue_runtime.controller.navigation import ENDS, GOALS, Movement, Navigation, read_settings
 from pursue_runtime.data import DataError
 
-WAY = Way("going_c_to_b", "b", 3.0, 4.0)
-BACK = Way("going_b_to_c", "c", 0.0, 0.0)
+WAY = Movement("going_c_to_b", "b", 3.0, 4.0)
+BACK = Movement("going_b_to_c", "c", 0.0, 0.0)
 END, FAILED = "bot1_going_c_to_b2b", "bot1:_failed_"
 PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 2, 3, 4, 5, 8, 9
 
@@ -24,8 +24,8 @@ class World:
     def __init__(self, **settings: object) -> None:
         self.now = 100.0
         self.said: List[Tuple[str, str]] = []
-        self.robot = Robot(
-            "bot1", settings_of("bot1", settings), lambda level, text: self.said.append((level, text))
+        self.robot = Navigation(
+            "bot1", read_settings("bot1", settings), lambda level, text: self.said.append((level, text))
         )
         self.goals: List[Any] = []
         self.words: List[str] = []
@@ -37,21 +37,21 @@ class World:
 
     def go(self, way: Any = WAY) -> None:
         self.state(way)
-        self.robot.order(way, self.now)
+        self.robot.start(way, self.now)
         self.act()
 
     def state(self, way: Any = WAY, running: bool = True, lost: bool = False) -> None:
-        self.robot.follow(way, running, lost)
+        self.robot.on_state(way, running, lost)
         self.act()
 
     def result(self, status: int, goal: Optional[str] = None, stamp: Optional[float] = None) -> None:
         """The answer to the last goal, unless another is named."""
         name = self.goals[-1].name if goal is None else goal
-        self.robot.result(name, self.now if stamp is None else stamp, status, self.now)
+        self.robot.on_result(name, self.now if stamp is None else stamp, status, self.now)
         self.act()
 
     def at(self, x: float, y: float) -> None:
-        self.robot.position(x, y, self.now)
+        self.robot.on_position(x, y, self.now)
         self.act()
 
     def wait(self, seconds: float) -> List[float]:
@@ -176,7 +176,7 @@ def test_after_a_failure_the_goal_is_sent_again_and_may_succeed(results: World, 
     results.wait(0.99)
     assert len(results.goals) == 1
     results.wait(0.02)
-    assert len(results.goals) == 2 and results.goals[1].way == WAY
+    assert len(results.goals) == 2 and results.goals[1].movement == WAY
     assert results.goals[0].name != results.goals[1].name
     results.result(SUCCEEDED)
     assert results.words == [END]
@@ -244,11 +244,11 @@ def test_an_end_counts_while_the_mission_holds(results: World) -> None:
 def test_a_goal_waits_while_the_mission_holds() -> None:
     world = World()
     world.state(running=False)
-    world.robot.order(WAY, world.now)
+    world.robot.start(WAY, world.now)
     world.wait(5.0)
     assert world.goals == []
     world.state(running=True)
-    assert [goal.way for goal in world.goals] == [WAY]
+    assert [goal.movement for goal in world.goals] == [WAY]
 
 
 def test_who_left_for_elsewhere_is_not_sent_on_the_old_way(results: World) -> None:
@@ -327,10 +327,10 @@ def test_positions_of_a_robot_that_is_not_under_way_say_nothing(seen: World) -> 
     seen.at(3.0, 4.0)
     seen.wait(1.0)
     seen.state(None)
-    assert not seen.robot.watching
+    assert not seen.robot.needs_position
     seen.at(0.0, 0.0)
     seen.go(BACK)
-    assert seen.wait(5.0) == [] and seen.robot.watching, "what was seen before the goal does not count"
+    assert seen.wait(5.0) == [] and seen.robot.needs_position, "what was seen before the goal does not count"
     assert seen.words == [END, END]
 
 
@@ -397,7 +397,7 @@ def test_whatever_comes_it_speaks_of_the_present_way_alone(goals: str, ends: str
         elif kind == "wait":
             world.wait(value)
         sent += len(world.goals) - before
-        assert all(goal.way == way for goal in world.goals[before:]) and sent <= 3
+        assert all(goal.movement == way for goal in world.goals[before:]) and sent <= 3
         assert running or len(world.goals) == before
         expected = {FAILED, f"bot1_{way.location}2{way.poi}"} if way else set()
         assert set(world.words[told:]) <= expected
@@ -410,7 +410,7 @@ def test_whatever_comes_it_speaks_of_the_present_way_alone(goals: str, ends: str
 def test_a_robots_own_settings_win_over_the_nodes() -> None:
     own_ones = {"ends": "tf", "base_frame": "{robot}/base"}
     given_here = {"config": "", "ends": "pose", "end_tolerance": 1, "bot1": own_ones}
-    own, other = (settings_of(robot, given_here) for robot in ("bot1", "bot2"))
+    own, other = (read_settings(robot, given_here) for robot in ("bot1", "bot2"))
     assert (own.ends, own.end_tolerance, own.base_frame) == ("tf", 1.0, "bot1/base")
     assert (other.ends, other.base_frame, other.goals) == ("pose", "bot2/base_link", "simple")
 
@@ -434,5 +434,5 @@ def test_a_robots_own_settings_win_over_the_nodes() -> None:
 )
 def test_settings_that_cannot_be_are_told(given_here: Any, message: str) -> None:
     with pytest.raises(DataError) as told:
-        settings_of("bot1", given_here)
+        read_settings("bot1", given_here)
     assert message in str(told.value)

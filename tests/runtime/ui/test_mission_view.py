@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from pursue_runtime.model import Model, Position
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.mission import Mission, Opening, Readiness, answer, menu, openings, tasks
-from pursue_runtime.ui.players import AGAIN, AtRandom, Scripted, StandStill, Step
+from pursue_runtime.ui.environment import MIN_PAUSE, IdleEnvironment, RandomEnvironment, TraceEnvironment, TraceStep
+from pursue_runtime.ui.mission_view import MissionView, PossibleWord, Readiness, menu, possible_words, read_line, tasks
 from tests.runtime.models import model_data, mover, state, worker
 
 DATA = model_data(
@@ -27,11 +27,11 @@ def at(seq: int, stamp: float, **more):
 
 
 def offers(current, now: float, **more):
-    return openings(MODEL, current, current.clocks_at(now), **more)
+    return possible_words(MODEL, current, current.clocks_at(now), **more)
 
 
 def mission(player=None, orders=None):
-    return Mission(MODEL, player or StandStill(), orders)
+    return MissionView(MODEL, player or IdleEnvironment(), orders)
 
 
 def orders(*commands: dict):
@@ -72,7 +72,7 @@ def test_a_window_that_has_closed_is_no_offer() -> None:
 # Who plays them
 
 def test_standing_still_says_nothing() -> None:
-    played = mission(StandStill())
+    played = mission(IdleEnvironment())
     played.on_state(at(1, 100.0, event="_start_"), 100.0)
     assert played.due(500.0, 1.0) == []
     assert played.next_moments(500.0) == (None, None)
@@ -80,7 +80,7 @@ def test_standing_still_says_nothing() -> None:
 
 @given(st.integers(), st.floats(0.1, 50.0), st.floats(0.0, 30.0))
 def test_chance_says_only_what_is_possible_then(seed: int, pace: float, since: float) -> None:
-    player = AtRandom(MODEL, seed, pace)
+    player = RandomEnvironment(MODEL, seed, pace)
     current = at(1, 100.0)
     player.on_state(current, 100.0, 100.0 + since)
     moment = player.next_moment()
@@ -93,7 +93,7 @@ def test_chance_says_only_what_is_possible_then(seed: int, pace: float, since: f
 
 def test_chance_is_the_same_for_the_same_seed_and_other_for_another() -> None:
     def first(seed: int):
-        player = AtRandom(MODEL, seed)
+        player = RandomEnvironment(MODEL, seed)
         player.on_state(at(1, 100.0), 100.0, 100.0)
         return player.next_moment()
 
@@ -102,15 +102,15 @@ def test_chance_is_the_same_for_the_same_seed_and_other_for_another() -> None:
 
 
 def test_chance_does_not_repeat_itself_before_an_answer_can_come() -> None:
-    player = AtRandom(MODEL, 1)
+    player = RandomEnvironment(MODEL, 1)
     player.on_state(at(1, 100.0), 100.0, 110.0)
     moment = player.next_moment()
     assert player.due(moment)
-    assert player.next_moment() >= moment + AGAIN
+    assert player.next_moment() >= moment + MIN_PAUSE
 
 
 def test_chance_waits_while_nothing_is_possible() -> None:
-    player = AtRandom(MODEL, 1)
+    player = RandomEnvironment(MODEL, 1)
     player.on_state(at(1, 100.0, thief="going_a_to_b", values={"Prule": 1}), 100.0, 100.0)
     assert player.next_moment() is None
     assert player.due(900.0) == []
@@ -118,15 +118,15 @@ def test_chance_waits_while_nothing_is_possible() -> None:
 
 def test_a_wrong_pace_is_refused() -> None:
     with pytest.raises(ValueError, match="~pace"):
-        AtRandom(MODEL, 1, pace=0.0)
+        RandomEnvironment(MODEL, 1, pace=0.0)
 
 
 def steps(*pairs):
-    return [Step(moment, word) for moment, word in pairs]
+    return [TraceStep(moment, word) for moment, word in pairs]
 
 
 def test_a_trace_is_said_at_its_moments_after_the_start() -> None:
-    player = Scripted(steps((3.5, "thief_a2b"), (9.0, "boy:screw"), (9.0, "_ping_")))
+    player = TraceEnvironment(steps((3.5, "thief_a2b"), (9.0, "boy:screw"), (9.0, "_ping_")))
     assert player.next_moment() is None, "not before the start"
     player.on_state(at(1, 100.0)._replace(unit=0.5), 100.0, 100.0)
     assert player.next_moment() == 101.75
@@ -138,7 +138,7 @@ def test_a_trace_is_said_at_its_moments_after_the_start() -> None:
 
 
 def test_a_restart_does_not_play_the_past_again() -> None:
-    player = Scripted(steps((3.0, "thief_a2b"), (40.0, "thief_b2a")))
+    player = TraceEnvironment(steps((3.0, "thief_a2b"), (40.0, "thief_b2a")))
     player.on_state(at(7, 120.0), 100.0, 120.0)
     assert player.due(120.0) == []
     assert player.next_moment() == 140.0
@@ -167,7 +167,7 @@ def test_no_order_after_its_zone() -> None:
 
 def test_people_are_told_in_words_once_it_is_taken() -> None:
     walker = Model(model_data(mover("nurse", "human", 9)))
-    told = Mission(walker, StandStill())
+    told = MissionView(walker, IdleEnvironment())
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
     lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
     assert [line.strip() for line in lines] == ["4.0  nurse_a2b", "nurse: go from a to b now"]
@@ -221,7 +221,7 @@ def test_the_end_and_its_reason_are_told(status: str, reason: str, code: int, sa
 
 def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
     safe = Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
-    told = Mission(safe, StandStill())
+    told = MissionView(safe, IdleEnvironment())
     told.on_state(at(5, 131.5, status="won"), 131.5)
     assert told.verdict() == (0, "The objective was kept to the end, after 31.5 time units.")
 
@@ -237,17 +237,17 @@ def test_progress_says_where_everybody_is() -> None:
 
 def test_the_missing_are_named_until_they_are_ready() -> None:
     nodes = Readiness(["observer", "/controller_bot", "simulator"])
-    nodes.heard("/observer", True)
-    nodes.heard("stranger", True)
+    nodes.update("/observer", True)
+    nodes.update("stranger", True)
     assert nodes.missing() == ["controller_bot", "simulator"]
-    nodes.heard("controller_bot", True)
-    nodes.heard("observer", False)
+    nodes.update("controller_bot", True)
+    nodes.update("observer", False)
     assert nodes.missing() == ["observer", "simulator"]
 
 
 # What is typed
 
-OFFERS = [Opening("thief_a2b", 0.0, float("inf")), Opening("boy:screw", 2.5, 4.0)]
+OFFERS = [PossibleWord("thief_a2b", 0.0, float("inf")), PossibleWord("boy:screw", 2.5, 4.0)]
 
 
 @pytest.mark.parametrize("text, word, remark", [
@@ -263,7 +263,7 @@ OFFERS = [Opening("thief_a2b", 0.0, float("inf")), Opening("boy:screw", 2.5, 4.0
     ("", "", ""),
 ])
 def test_what_is_typed_becomes_a_word(text: str, word: str, remark: str) -> None:
-    assert answer(text, OFFERS, {"screw", "thief_a2b"}) == (word, remark)
+    assert read_line(text, OFFERS, {"screw", "thief_a2b"}) == (word, remark)
 
 
 def test_the_menu_lists_by_number() -> None:
@@ -281,12 +281,12 @@ def test_people_report_the_end_of_what_they_are_told() -> None:
     given = tasks(crew, busy)
     assert [(task.agent, task.text) for task in given] == [("nurse", "go from a to b"), ("cook", "do screw, at s")]
     assert tasks(crew, state(crew, 1, 100.0, {})) == []
-    assert answer("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
-    assert answer("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
-    assert answer("done", [], set(), given) == ("", "who? expected done nurse or done cook")
-    assert answer("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
-    assert answer("done boy", [], set(), given) == ("", "boy has nothing to do now")
-    assert answer("done", [], set(), []) == ("", "there is nothing to do now")
+    assert read_line("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
+    assert read_line("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
+    assert read_line("done", [], set(), given) == ("", "who? expected done nurse or done cook")
+    assert read_line("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
+    assert read_line("done boy", [], set(), given) == ("", "boy has nothing to do now")
+    assert read_line("done", [], set(), []) == ("", "there is nothing to do now")
 
 
 def test_a_state_that_comes_late_is_no_news() -> None:

@@ -9,17 +9,17 @@ from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Seque
 
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
-from pursue_runtime.simulator.simulator import spoken
+from pursue_runtime.simulator.simulator import report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older
 from pursue_runtime.strategy import Plans, Strategy
 from pursue_runtime.words import START, Word, format_word
 from pursue_runtime.zones import due
 
-RECEIPT = 0.5  # real seconds without a new state after which an order counts as lost
-SURE = 0.05  # time units: how far inside an open bound something counts as possible
+ORDER_TIMEOUT = 0.5  # real seconds without a new state after which an order counts as lost
+MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
 
 
-class Opening(NamedTuple):
+class PossibleWord(NamedTuple):
     """`word` can be said from `opens` to `closes`, time units from now, unless something else happens first."""
 
     word: str
@@ -36,22 +36,22 @@ class Task(NamedTuple):
     word: str
 
 
-def openings(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
-             ends: bool = False) -> List[Opening]:
+def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
+             ends: bool = False) -> List[PossibleWord]:
     """What agents of these kinds can start (and with `ends` also end) in this state, in system order."""
-    found: Dict[str, Opening] = {}
+    found: Dict[str, PossibleWord] = {}
     for automaton in model.of_kind(*kinds):
         location = state.locations.get(automaton.name, "")
         for edge in automaton.edges_from(location):
             if edge.sync == "receive" or (is_end(edge.source, edge.target) and not ends):
                 continue
             zone = edge.when + automaton.invariants[location]
-            opens = due([zone], clocks, SURE) if edge.allowed(state.values) else None
+            opens = due([zone], clocks, MARGIN) if edge.allowed(state.values) else None
             if opens is None:
                 continue
             closes = min([bound.bound - clocks[bound.left] for bound in zone if bound.left], default=float("inf"))
-            word = spoken(model, automaton.name, edge.word)
-            found.setdefault(word, Opening(word, opens, closes, automaton.name))
+            word = report_word(model, automaton.name, edge.word)
+            found.setdefault(word, PossibleWord(word, opens, closes, automaton.name))
     return list(found.values())
 
 
@@ -63,8 +63,8 @@ def tasks(model: Model, state: SystemState) -> List[Task]:
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
         end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
         if begin is not None and end is not None:
-            text = _told(begin, automaton.edges)
-            found.append(Task(automaton.name, text, spoken(model, automaton.name, end.word)))
+            text = _instruction_text(begin, automaton.edges)
+            found.append(Task(automaton.name, text, report_word(model, automaton.name, end.word)))
     return found
 
 
@@ -74,7 +74,7 @@ class Readiness:
     def __init__(self, nodes: Sequence[str]) -> None:
         self._ready = {node.strip("/"): False for node in nodes}
 
-    def heard(self, node: str, ready: bool) -> None:
+    def update(self, node: str, ready: bool) -> None:
         """A node's diagnostics came."""
         if node.strip("/") in self._ready:
             self._ready[node.strip("/")] = ready
@@ -84,7 +84,7 @@ class Readiness:
         return [node for node, ready in self._ready.items() if not ready]
 
 
-class Player(Protocol):
+class Environment(Protocol):
     """Plays the agents that nobody controls."""
 
     def on_state(self, state: SystemState, start: float, now: float) -> None:
@@ -97,15 +97,15 @@ class Player(Protocol):
         """When `due` has something to say, if no other state comes."""
 
 
-class Mission:
+class MissionView:
     """One mission, from its states: what to say, what to print, and how it ends."""
 
-    def __init__(self, model: Model, player: Player, orders: Optional[Strategy] = None) -> None:
+    def __init__(self, model: Model, player: Environment, orders: Optional[Strategy] = None) -> None:
         """`orders`: the part of the strategy that people carry out."""
         self.state: Optional[SystemState] = None
         self.start: Optional[float] = None
         self._model = model
-        self._player = player
+        self._environment = player
         self._orders = None if orders is None else Plans(orders)
         self._ordered: Tuple[int, float] = (-1, 0.0)  # the state an order was given in, and when (real)
         self._people = {automaton.name for automaton in model.of_kind("human")}
@@ -116,10 +116,10 @@ class Mission:
             return 0.0
         return max(0.0, now - self.start) / self.state.unit
 
-    def learn(self, plan: int, orders: Strategy) -> None:
+    def add_plan(self, plan: int, orders: Strategy) -> None:
         """What people do by a new plan."""
         if self._orders is not None:
-            self._orders.learn(plan, orders)
+            self._orders.add(plan, orders)
 
     def on_state(self, state: SystemState, now: float) -> List[str]:
         """A state came; the lines to print."""
@@ -134,15 +134,15 @@ class Mission:
         if self.start is None or not news:
             return []
         if state.status in LIVE:
-            self._player.on_state(state, self.start, now)
-        return self._news(state)
+            self._environment.on_state(state, self.start, now)
+        return self._lines(state)
 
     def due(self, now: float, real: float) -> List[str]:
         """The words to publish at this moment."""
         if self.state is None or self.state.status not in LIVE:
             return []
-        words = self._player.due(now)
-        order = self._next_order(now) if real >= self._silent_until() else None
+        words = self._environment.due(now)
+        order = self._next_order(now) if real >= self._resend_at() else None
         if order is not None and order[0] <= now + 1e-6:
             self._ordered = (self.state.seq, real)
             words.append(format_word(order[1]))
@@ -152,14 +152,14 @@ class Mission:
         """When to ask `due` again: in ROS time, and on the real clock; None: not before the next state."""
         if self.state is None or self.state.status not in LIVE:
             return None, None
-        moments = [self._player.next_moment()]
+        moments = [self._environment.next_moment()]
         order = self._next_order(now)
         given = self._ordered[0] == self.state.seq
         if order is not None and not given:
             moments.append(order[0])
         return (
             min((moment for moment in moments if moment is not None), default=None),
-            self._silent_until() if order is not None and given else None,
+            self._resend_at() if order is not None and given else None,
         )
 
     def verdict(self) -> Optional[Tuple[int, str]]:
@@ -185,21 +185,21 @@ class Mission:
         ]
         return f"{self.elapsed(now):8.1f}  " + "  ".join(places)
 
-    def _silent_until(self) -> float:
+    def _resend_at(self) -> float:
         """The real moment before which the last order may still be on its way."""
         given, real = self._ordered
-        return real + RECEIPT if self.state is not None and given == self.state.seq else float("-inf")
+        return real + ORDER_TIMEOUT if self.state is not None and given == self.state.seq else float("-inf")
 
     def _next_order(self, now: float) -> Optional[Tuple[float, Word]]:
         if self._orders is None or self.state is None or self.state.status != RUNNING:
             return None
-        orders = self._orders.at(self.state)
+        orders = self._orders.strategy_for(self.state)
         order = orders.decided(self.state, now) if orders else None
         if order is None:
             return None
         return order[0], Word(order[1].agent, order[1].event, self.state.seq)
 
-    def _news(self, state: SystemState) -> List[str]:
+    def _lines(self, state: SystemState) -> List[str]:
         lines = []
         if state.event:
             who = f"  ({state.agent})" if state.agent and not state.event.startswith(state.agent) else ""
@@ -216,12 +216,12 @@ class Mission:
         automaton = self._model.automaton(state.agent)
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == state.locations.get(state.agent):
-                told = "" if is_end(edge.source, edge.target) else _told(edge, automaton.edges, " now")
+                told = "" if is_end(edge.source, edge.target) else _instruction_text(edge, automaton.edges, " now")
                 return told and f"{state.agent}: {told}"
         return ""
 
 
-def _told(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
+def _instruction_text(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
     """What a person does who takes this edge."""
     if is_movement(edge.target):
         return f"go from {edge.source} to {_arrival(edges, edge)}{when}"
@@ -233,17 +233,17 @@ def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
     return next(edge.target for edge in edges if edge.source == departure.target != edge.target)
 
 
-def menu(offers: Sequence[Opening]) -> List[str]:
+def menu(offers: Sequence[PossibleWord]) -> List[str]:
     """What the person at the terminal can say now."""
     lines = []
     for number, (word, opens, closes, _) in enumerate(offers, start=1):
         until = f", for {closes - opens:.1f} time units" if closes != float("inf") else ""
-        lines.append(f"  {number:2}  {word}" + (f"  (in {opens:.1f} time units{until})" if opens > SURE else ""))
+        lines.append(f"  {number:2}  {word}" + (f"  (in {opens:.1f} time units{until})" if opens > MARGIN else ""))
     lines.append("  a number, a word for pursue/events, done, ping or stop; Enter shows this again")
     return lines
 
 
-def done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
+def read_done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
     """Somebody ("": the only one at work) says that the task is done: the word to publish, and what to tell them."""
     meant = [task for task in given if who in ("", task.agent)]
     if len(meant) == 1:
@@ -253,21 +253,21 @@ def done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
     return "", f"who? expected {' or '.join(f'done {task.agent}' for task in meant)}"
 
 
-def answer(
-    text: str, offers: Sequence[Opening], words: Collection[str], given: Sequence[Task] = ()
+def read_line(
+    text: str, offers: Sequence[PossibleWord], words: Collection[str], given: Sequence[Task] = ()
 ) -> Tuple[str, str]:
     """What the person typed: the word to publish ("" for none) and what to tell them ("" for nothing)."""
     text = text.strip()
     if text in ("ping", "stop"):
         return f"_{text}_", ""
     if text.split(None, 1)[:1] == ["done"] and "done" not in words:
-        return done(text[len("done"):].strip(), given)
+        return read_done(text[len("done"):].strip(), given)
     if text.isdigit():
         number = int(text)
         if not 1 <= number <= len(offers):
             return "", f"there is no number {number}" + (f"; expected 1 to {len(offers)}" if offers else " now")
         offer = offers[number - 1]
-        if offer.opens > SURE:
+        if offer.opens > MARGIN:
             return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
         return offer.word, ""
     event = text.partition("@")[0].rpartition(":")[2]

@@ -7,14 +7,14 @@ from typing import List, Optional, Sequence, Tuple
 
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.mission import SURE, openings
-from pursue_runtime.ui.trace import Step
+from pursue_runtime.ui.mission_view import MARGIN, possible_words
+from pursue_runtime.ui.trace import TraceStep
 
-AGAIN = 1.0  # time units after which something that was said without effect may be followed by something else
+MIN_PAUSE = 1.0  # time units after which something that was said without effect may be followed by something else
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
 
 
-class StandStill:
+class IdleEnvironment:
     """Does nothing."""
 
     def on_state(self, state: SystemState, start: float, now: float) -> None:
@@ -29,7 +29,7 @@ class StandStill:
         return None
 
 
-class AtRandom:
+class RandomEnvironment:
     """Starts something possible at random moments, `pace` time units apart on average; the same for the same seed
     and the same states."""
 
@@ -53,7 +53,7 @@ class AtRandom:
         if self._plan is None or now < self._plan[0] - 1e-6:
             return []
         word = self._plan[1]
-        self._choose(now, pause=AGAIN)
+        self._choose(now, pause=MIN_PAUSE)
         return [word]
 
     def next_moment(self) -> Optional[float]:
@@ -65,8 +65,8 @@ class AtRandom:
         if self._state is None:
             return
         delay = pause + self._random.expovariate(1.0 / self._pace)
-        offers = openings(self._model, self._state, self._state.clocks_at(now))
-        then = [offer for offer in offers if offer.opens <= delay and delay <= offer.closes - SURE]
+        offers = possible_words(self._model, self._state, self._state.clocks_at(now))
+        then = [offer for offer in offers if offer.opens <= delay and delay <= offer.closes - MARGIN]
         if then:
             self._plan = (now + delay * self._state.unit, self._random.choice(then).word)
             return
@@ -76,10 +76,10 @@ class AtRandom:
             self._plan = (now + first.opens * self._state.unit, first.word)
 
 
-class Scripted:
+class TraceEnvironment:
     """Says the words of a trace at their moments, possible or not."""
 
-    def __init__(self, steps: Sequence[Step]) -> None:
+    def __init__(self, steps: Sequence[TraceStep]) -> None:
         self._steps = tuple(steps)
         self._unit = 1.0
         self._next = 0
