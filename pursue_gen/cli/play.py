@@ -45,7 +45,7 @@ def play(
     """
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.language import load
-    from pursue_gen.play.counter import Robots
+    from pursue_gen.play.counter import CounterPlay
     from pursue_gen.play.games import session_of
     from pursue_gen.play.session import answer, farewell, opening
     from pursue_gen.tga import translate
@@ -54,7 +54,7 @@ def play(
     rules = request.rules(translate(read))
     with progress_line() as progress:
         session = session_of(read, rules, seed, request.options.limits, progress)
-    is_robots = isinstance(session.game, Robots)
+    is_robots = isinstance(session.game, CounterPlay)
     if side is not None and (side is Side.ROBOTS) != is_robots:
         can, whom = ("cannot", "robots") if is_robots else ("can", "others")
         message = f"with these rules the objective {can} be met, so you can only play the {whom}"
@@ -69,7 +69,7 @@ def play(
         except KeyboardInterrupt:
             line = ""
         if not line:
-            if not session.table.over:  # else the table has been printed
+            if not session.play.over:  # else the table has been printed
                 print(("\n" if interactive else "") + farewell(session))
             return
         if not interactive:

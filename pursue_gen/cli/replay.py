@@ -13,7 +13,7 @@ from pursue_gen.cli.options import JSON, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 
 if TYPE_CHECKING:
-    from pursue_gen.replay import Findings, Game, Record
+    from pursue_gen.replay import Findings, Game, MissionRecord
     from pursue_gen.solving.request import SolveRequest
 
 
@@ -44,7 +44,7 @@ def replay(
     """
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.replay import check, game_of, read_recording
-    from pursue_gen.replay.journal import Journal, worked_out
+    from pursue_gen.replay.journal import Journal, reconstruct
     from pursue_gen.replay.moves import Moves
     from pursue_gen.replay.source import source_of
     from pursue_gen.report.animation import check_name
@@ -55,7 +55,7 @@ def replay(
     source = source_of(found, recording, scenario, workspace, request)
     with progress_line(as_json_) as progress:
         game = game_of(source, request.options.limits, progress)
-    record = worked_out(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
+    record = reconstruct(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
     if timeline is not None:
         _draw(record, game, recording, timeline)
     findings = check(record, game, tolerance)
@@ -64,7 +64,7 @@ def replay(
         raise typer.Exit(1)
 
 
-def _draw(record: Record, game: Game, recording: Path, timeline: Path) -> None:
+def _draw(record: MissionRecord, game: Game, recording: Path, timeline: Path) -> None:
     from pursue_gen.report.animation import write
     from pursue_gen.report.recording import from_record
 
@@ -75,7 +75,7 @@ def _draw(record: Record, game: Game, recording: Path, timeline: Path) -> None:
     info(f"{timeline} shows the mission")
 
 
-def _print(findings: Findings, record: Record, recording: Path, quiet: bool, as_json_: bool) -> None:
+def _print(findings: Findings, record: MissionRecord, recording: Path, quiet: bool, as_json_: bool) -> None:
     from pursue_gen.replay.summary import as_json, listed, summary, verdict
 
     if as_json_:

@@ -114,7 +114,7 @@ def _draw(case: Case, seed: int, timeline: Path) -> None:
 
 
 def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
-    from pursue_gen.simulation.words import as_json, failure, table
+    from pursue_gen.simulation.outcome_texts import as_json, failure, table
 
     if as_json_:
         print(json.dumps(as_json(summary, facts), indent=1))

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.allowance import Clock
+from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.limits import Limits, Listener
@@ -85,7 +85,7 @@ def findings(
     scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
 ) -> Findings:
     """Tries all that is small, for a scenario that is lost under these rules; takes about the time at most."""
-    clock = Clock(limits, progress)
+    clock = TimeBudget(limits, progress)
     knobs = list(_knobs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
@@ -123,7 +123,7 @@ class _Win:
     strategy: Strategy
 
 
-def _least(knob: _Knob, clock: Clock) -> Optional[_Win]:
+def _least(knob: _Knob, clock: TimeBudget) -> Optional[_Win]:
     """The smallest change that wins, between two that have been tried; None: the largest does not.
 
     When the time is up, the smallest that is known. Raises PursueError (exit status 5) when none is.
@@ -155,7 +155,7 @@ def _change(knob: _Knob, win: _Win) -> Change:
     return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
 
 
-def _strategy(variant: Variant, clock: Clock) -> Optional[Strategy]:
+def _strategy(variant: Variant, clock: TimeBudget) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises PursueError (status 5: not decided)."""
     scenario, rules = variant
     network = played(translate(scenario), rules)

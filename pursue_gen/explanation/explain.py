@@ -14,7 +14,7 @@ from typing import Any, Dict, List, Optional, Tuple
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.play import counter_play
-from pursue_gen.explanation.words import Line, in_words, time_text
+from pursue_gen.explanation.texts import TimedLine, describe, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import Limits, Listener
@@ -38,7 +38,7 @@ class Explanation:
     changes: Tuple[Change, ...]
     lost: Tuple[str, ...]
     undecided: Tuple[str, ...]
-    play: Tuple[Line, ...]
+    play: Tuple[TimedLine, ...]
 
 
 def explain(
@@ -56,7 +56,7 @@ def explain(
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     left = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
     try:
-        play = in_words(scenario, counter_play(network, objective, rules.reaction, left, found.helpful, progress))
+        play = describe(scenario, counter_play(network, objective, rules.reaction, left, found.helpful, progress))
     except PursueError as problem:
         if problem.exit_status != 5:
             raise

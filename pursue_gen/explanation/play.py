@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.allowance import Clock
+from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
-from pursue_gen.explanation.position import Oracle, Position
+from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
@@ -27,7 +27,7 @@ _FINE = Fraction(1, 1000)
 
 
 @dataclass(frozen=True)
-class Step:
+class CounterStep:
     """A joint move, `at` in time units since the start; `edges` are indices into the game's, the owner's first."""
 
     at: Fraction
@@ -45,7 +45,7 @@ class Play:
     """
 
     game: Game
-    steps: Tuple[Step, ...]
+    steps: Tuple[CounterStep, ...]
     end: str
     at: Fraction
     position: Position
@@ -66,12 +66,12 @@ def counter_play(
     `helpful` are strategies for games that differ in numbers only, for the controller to go by. Raises PursueError with
     exit status 5 if the play is not found within the time.
     """
-    clock = Clock(limits, progress)
+    clock = TimeBudget(limits, progress)
     spared = _spared(network, objective, reaction, clock)
-    return _Player(network, spared, objective, reaction, clock, helpful).play()
+    return _CounterPlayer(network, spared, objective, reaction, clock, helpful).play()
 
 
-def _spared(network: Network, objective: Objective, reaction: Fraction, clock: Clock) -> Network:
+def _spared(network: Network, objective: Objective, reaction: Fraction, clock: TimeBudget) -> Network:
     """The network without what the environment can do without, so that the play has less of what does not matter.
 
     It only loses moves that it need not make (no invariant drives them), so what is lost there is lost in the whole.
@@ -96,19 +96,19 @@ def _without(network: Network, name: str, edges: Sequence[Edge]) -> Network:
     return replace(network, automata=tuple(automata))
 
 
-class _Player:
+class _CounterPlayer:
     def __init__(
         self,
         whole: Network,
         spared: Network,
         objective: Objective,
         reaction: Fraction,
-        clock: Clock,
+        clock: TimeBudget,
         helpful: Sequence[Strategy],
     ) -> None:
         self._game = game = compile_game(whole, objective)
         self._reaction = reaction
-        self._oracle = Oracle(spared, objective, reaction, clock)
+        self._oracle = PositionSolver(spared, objective, reaction, clock)
         self._controller = Controller(game, helpful)
         self._kept = _kept(whole, spared)
         self._robots = {edge.automaton for edge in game.edges if edge.controllable}
@@ -122,7 +122,7 @@ class _Player:
         here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
         if self._game.kind is Kind.SAFETY:
             self._horizon = self._least_horizon(here)
-        steps: List[Step] = []
+        steps: List[CounterStep] = []
         while len(steps) < _MOST_STEPS:
             if self._is_broken(here):
                 return self._end("bad", steps, here)
@@ -139,11 +139,11 @@ class _Player:
                 return self._finish(steps, here)
             move, delay = choice
             self._now += delay
-            steps.append(Step(self._now, move.owner, move.edges))
+            steps.append(CounterStep(self._now, move.owner, move.edges))
             here = _after(here, move, delay)
         return self._end("open", steps, here)
 
-    def _finish(self, steps: Sequence[Step], here: Position) -> Play:
+    def _finish(self, steps: Sequence[CounterStep], here: Position) -> Play:
         room = longest(self._game, here)
         if room is None:
             return self._end("idle" if self._horizon is None else "open", steps, here)
@@ -154,7 +154,7 @@ class _Player:
         there = Position(here.state, tuple(value + room for value in here.clocks))
         return replace(self._end("overdue", steps, there), overdue=overdue)
 
-    def _end(self, end: str, steps: Sequence[Step], here: Position) -> Play:
+    def _end(self, end: str, steps: Sequence[CounterStep], here: Position) -> Play:
         return Play(self._game, tuple(steps), end, self._now, here)
 
     def _least_horizon(self, start: Position) -> int:

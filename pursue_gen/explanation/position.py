@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.explanation.allowance import Clock
+from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.synthesis.game import State
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.zones.scale import common_denominator
@@ -28,10 +28,10 @@ class Position:
     clocks: Tuple[Fraction, ...]
 
 
-class Oracle:
+class PositionSolver:
     """Tells of positions of one game whether they are lost for the controller; answers are remembered."""
 
-    def __init__(self, network: Network, objective: Objective, reaction: Fraction, clock: Clock) -> None:
+    def __init__(self, network: Network, objective: Objective, reaction: Fraction, clock: TimeBudget) -> None:
         self._network, self._objective, self._reaction, self._clock = network, objective, reaction, clock
         self._largest = _largest_constants(network)
         self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}

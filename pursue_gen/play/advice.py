@@ -1,4 +1,4 @@
-"""What a strategy says at a table: what it does next, when, and which of its blocks holds."""
+"""What a strategy says at a play: what it does next, when, and which of its blocks holds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
-from pursue_gen.play.table import GRAIN, Board, Table
+from pursue_gen.play.state import GRAIN, PlayState, Setup
 from pursue_gen.synthesis.game import JointMove, State, joint_moves
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.network import Edge
@@ -36,20 +36,20 @@ class Holding:
 
 
 class Advisor:
-    """Reads one strategy for one board."""
+    """Reads one strategy for one setup."""
 
-    def __init__(self, board: Board, strategy: Strategy) -> None:
-        self._board, self.size = board, len(strategy.blocks)
+    def __init__(self, setup: Setup, strategy: Strategy) -> None:
+        self._setup, self.size = setup, len(strategy.blocks)
         self._book: Dict[DiscreteState, Tuple[int, Block]] = {
             block.state: (number, block) for number, block in enumerate(strategy.blocks, start=1)
         }
 
-    def decision(self, table: Table) -> Optional[Decision]:
+    def decision(self, play: PlayState) -> Optional[Decision]:
         """What the strategy decides first after the last move; None: it waits for what others do."""
-        found = self._book.get(self._named(table.entry.state))
+        found = self._book.get(self._named(play.entry.state))
         if found is None:
             return None
-        game, entry = self._board.game, table.entry
+        game, entry = self._setup.game, play.entry
         clocks = dict(zip(game.clocks, entry.clocks))
         moves = {self._keys(move): move for move in joint_moves(game, entry.state) if move.controllable}
         best: Optional[Tuple[Fraction, JointMove]] = None
@@ -63,15 +63,15 @@ class Advisor:
                 delay = None if within is None else _both(within, open_).earliest(GRAIN)
                 if delay is not None and (best is None or delay < best[0]):
                     best = delay, move
-        return None if best is None else Decision(best[1], table.since + best[0])
+        return None if best is None else Decision(best[1], play.since + best[0])
 
-    def holding(self, table: Table) -> Optional[Holding]:
+    def holding(self, play: PlayState) -> Optional[Holding]:
         """What the strategy says now; None: it has no block for this state."""
-        found = self._book.get(self._named(table.entry.state))
+        found = self._book.get(self._named(play.entry.state))
         if found is None:
             return None
         number, block = found
-        clocks = dict(zip(self._board.game.clocks, table.here.clocks))
+        clocks = dict(zip(self._setup.game.clocks, play.position.clocks))
         zones: List[Tuple[Optional[Command], Zone]] = [(None, zone) for zone in block.wait]
         zones += [(command, zone) for command in block.commands for zone in command.zones]
         for command, zone in zones:
@@ -81,7 +81,7 @@ class Advisor:
         return Holding(number, block, None, None)
 
     def _named(self, state: State) -> DiscreteState:
-        game = self._board.game
+        game = self._setup.game
         places = zip(game.automata, state.locations)
         return DiscreteState(
             tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
@@ -89,7 +89,7 @@ class Advisor:
         )
 
     def _keys(self, move: JointMove) -> Tuple[Tuple[str, ...], ...]:
-        game = self._board.game
+        game = self._setup.game
         first, *others = (
             _key(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges
         )

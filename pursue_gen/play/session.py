@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.words import time_text
+from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.wording import objective_words
-from pursue_gen.play.counter import Robots
+from pursue_gen.play.counter import CounterPlay
 from pursue_gen.play.saving import save
-from pursue_gen.play.table import RUNNING, Board, Plan, Table, taken
-from pursue_gen.play.words import (
-    Words,
+from pursue_gen.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
+from pursue_gen.play.texts import (
+    EventTexts,
     deed_text,
     ending,
     move_text,
@@ -26,9 +26,9 @@ from pursue_gen.play.words import (
     situation,
     window_text,
 )
-from pursue_gen.play.world import Offer, World
+from pursue_gen.play.world import Offer, StrategyPlay
 
-GameOf = Union[World, Robots]
+GameOf = Union[StrategyPlay, CounterPlay]
 
 _MOMENT = r"(\d{1,6}(?:\.\d{0,3})?)"
 _NUMBER = re.compile(rf"(\d{{1,4}})(?:\s*(?:@|at)\s*{_MOMENT})?")
@@ -52,18 +52,18 @@ HELP = (
 
 @dataclass(frozen=True)
 class Session:
-    """A game in progress; `past` and `future` are for undo and redo, the nearest table last."""
+    """A game in progress; `past` and `future` are for undo and redo, the nearest play last."""
 
     game: GameOf
-    words: Words
-    table: Table
-    past: Tuple[Table, ...] = ()
-    future: Tuple[Table, ...] = ()
+    words: EventTexts
+    play: PlayState
+    past: Tuple[PlayState, ...] = ()
+    future: Tuple[PlayState, ...] = ()
 
     @property
-    def board(self) -> Board:
-        """The board."""
-        return self.game.board
+    def setup(self) -> Setup:
+        """The setup."""
+        return self.game.setup
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ class Reply:
 
 def opening(session: Session) -> Tuple[str, ...]:
     """What is told first."""
-    board = session.board
-    wants = (f"{board.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(board.scenario)))
-    if isinstance(session.game, World):
+    setup = session.setup
+    wants = (f"{setup.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(setup.scenario)))
+    if isinstance(session.game, StrategyPlay):
         plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
         first = ("The robots can see to it, whatever others do.", f"You play everybody else, {plays}")
     else:
@@ -93,14 +93,14 @@ def opening(session: Session) -> Tuple[str, ...]:
 
 def shown(session: Session) -> Tuple[str, ...]:
     """Where everything stands, what comes next, and what the person can do."""
-    board, table = session.board, session.table
-    if table.over:
-        return (ending(board, session.words, table),)
-    lines = [f"Time {time_text(table.now)}", *situation(board, session.words, table)]
-    if isinstance(session.game, World):
+    setup, play = session.setup, session.play
+    if play.over:
+        return (ending(setup, session.words, play),)
+    lines = [f"Time {time_text(play.now)}", *situation(setup, session.words, play)]
+    if isinstance(session.game, StrategyPlay):
         lines.append(_intention(session, session.game))
     lines += _planned(session)
-    offers = session.game.offers(table)
+    offers = session.game.offers(play)
     lines.append("You can do:" if offers else "There is nothing for you to do here but to wait.")
     said = [_offered(session, offer) for offer in offers]
     widest = max((len(what) for what, _ in said), default=0)
@@ -109,27 +109,27 @@ def shown(session: Session) -> Tuple[str, ...]:
 
 
 def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
-    edge = session.board.game.origins[offer.move.edges[0]]
+    edge = session.setup.game.origins[offer.move.edges[0]]
     what = f"{offer.agent}: {session.words.order(offer.agent, edge)}"
-    when = window_text(session.table.now, offer.open_)
+    when = window_text(session.play.now, offer.open_)
     return what, when if offer.drawn is None else f"{when} (comes at {time_text(offer.drawn)} if you say nothing)"
 
 
-def _intention(session: Session, world: World) -> str:
-    table, event = session.table, world.strategy_event(session.table)
-    while event is not None and session.board.owner(event.move) not in session.board.agents:
-        table = taken(session.board, table, event.move, event.at, event.by)  # nobody would notice
-        event = None if table.over else world.strategy_event(table)
+def _intention(session: Session, world: StrategyPlay) -> str:
+    play, event = session.play, world.strategy_event(session.play)
+    while event is not None and session.setup.owner(event.move) not in session.setup.agents:
+        play = taken(session.setup, play, event.move, event.at, event.by)  # nobody would notice
+        event = None if play.over else world.strategy_event(play)
     if event is None:
         return "The strategy waits for what others do."
-    what = move_text(session.board, session.words, event.move)
+    what = move_text(session.setup, session.words, event.move)
     return f"The strategy: {what} at {time_text(event.at)}, if nothing else happens before."
 
 
 def _planned(session: Session) -> List[str]:
     """What the person has said for later."""
-    known = {(offer.agent, offer.word): _offered(session, offer)[0] for offer in session.game.offers(session.table)}
-    plans = [plan for plan in session.table.plans if (plan.agent, plan.word) in known]
+    known = {(offer.agent, offer.word): _offered(session, offer)[0] for offer in session.game.offers(session.play)}
+    plans = [plan for plan in session.play.plans if (plan.agent, plan.word) in known]
     return [f"Planned: {known[plan.agent, plan.word]} at {time_text(plan.at)}." for plan in plans]
 
 
@@ -146,10 +146,10 @@ def answer(session: Session, text: str) -> Reply:
         "?": lambda s: Reply(s, HELP),
         "undo": _undo,
         "redo": _redo,
-        "map": lambda s: Reply(s, tuple(overview(s.board, s.words, s.table))),
+        "map": lambda s: Reply(s, tuple(overview(s.setup, s.words, s.play))),
         "why": lambda s: Reply(s, tuple(_why(s))),
-        "log": lambda s: Reply(s, tuple(_told(s, 0)) or ("nothing has happened yet",)),
-        "cancel": lambda s: _moved(s, replace(s.table, plans=())),
+        "log": lambda s: Reply(s, tuple(_described(s, 0)) or ("nothing has happened yet",)),
+        "cancel": lambda s: _moved(s, replace(s.play, plans=())),
         "quit": lambda s: Reply(s, (farewell(s),), True),
     }
     simple["exit"] = simple["quit"]
@@ -158,7 +158,7 @@ def answer(session: Session, text: str) -> Reply:
     if word.lower() == "save":
         return _save(session, rest)
     number, wait = _NUMBER.fullmatch(line), _WAIT.fullmatch(line.lower())
-    if session.table.over and (number or wait):
+    if session.play.over and (number or wait):
         return Reply(session, ("The game is over: undo takes a step back, quit ends.",))
     if number:
         return _do(session, int(number.group(1)), number.group(2))
@@ -177,7 +177,7 @@ def answer(session: Session, text: str) -> Reply:
 
 
 def _do(session: Session, number: int, moment: Optional[str]) -> Reply:
-    table, offers = session.table, session.game.offers(session.table)
+    play, offers = session.play, session.game.offers(session.play)
     if not 1 <= number <= len(offers):
         some = f"the list has 1 to {len(offers)}" if offers else "there is nothing to do but to wait"
         return Reply(session, (f"There is no number {number}: {some}.",))
@@ -186,67 +186,67 @@ def _do(session: Session, number: int, moment: Optional[str]) -> Reply:
     if moment is None:
         delay = offer.open_.earliest(Fraction(1, 1000))
         assert delay is not None, "what is offered can be done"
-        at = table.now + delay
+        at = play.now + delay
     else:
         at = Fraction(moment)
-        if at < table.now:
-            return Reply(session, (f"It is {time_text(table.now)} already: name a later time, or undo.",))
-        if not offer.open_.holds(at - table.now):
-            return Reply(session, (f"Not at {moment}: '{what}' is possible {window_text(table.now, offer.open_)}.",))
-    planned = session.game.planned(table, Plan(offer.agent, offer.word, at))
+        if at < play.now:
+            return Reply(session, (f"It is {time_text(play.now)} already: name a later time, or undo.",))
+        if not offer.open_.holds(at - play.now):
+            return Reply(session, (f"Not at {moment}: '{what}' is possible {window_text(play.now, offer.open_)}.",))
+    planned = session.game.planned(play, PlannedMove(offer.agent, offer.word, at))
     return _moved(session, _advanced(session, planned))
 
 
 def _wait(session: Session, absolute: bool, amount: Optional[str]) -> Reply:
-    table = session.table
+    play = session.play
     if amount is None:
-        after = _advanced(session, table)
-        if after == table:
+        after = _advanced(session, play)
+        if after == play:
             return Reply(session, ("Nothing will ever happen if you only wait.", *_hopeless(session)))
         return _moved(session, after)
-    until = Fraction(amount) if absolute else table.now + Fraction(amount)
-    if until < table.now:
-        return Reply(session, (f"It is {time_text(table.now)} already.",))
-    return _moved(session, _advanced(session, table, until))
+    until = Fraction(amount) if absolute else play.now + Fraction(amount)
+    if until < play.now:
+        return Reply(session, (f"It is {time_text(play.now)} already.",))
+    return _moved(session, _advanced(session, play, until))
 
 
-def _advanced(session: Session, table: Table, until: Optional[Fraction] = None) -> Table:
-    """The table when something has happened that somebody would notice, or at the time `until`."""
+def _advanced(session: Session, play: PlayState, until: Optional[Fraction] = None) -> PlayState:
+    """The play when something has happened that somebody would notice, or at the time `until`."""
     while True:
-        before, table = table, session.game.advance(table, until)
-        silent = len(table.deeds) > len(before.deeds) and table.deeds[-1].agent not in session.board.agents
-        if table.over or not silent:
-            return table
+        before, play = play, session.game.advance(play, until)
+        silent = len(play.deeds) > len(before.deeds) and play.deeds[-1].agent not in session.setup.agents
+        if play.over or not silent:
+            return play
 
 
 def _hopeless(session: Session) -> Tuple[str, ...]:
-    if isinstance(session.game, Robots):
+    if isinstance(session.game, CounterPlay):
         return ("The others need not do anything: do something, or quit.",)
     return ("The strategy has nothing to do as long as nobody else does: do something, or quit.",)
 
 
-def _moved(session: Session, table: Table) -> Reply:
-    """The session at another table, with what has happened in between."""
-    fresh = replace(session, table=table, past=(*session.past, session.table), future=())
-    lines = _told(fresh, len(session.table.deeds)) + _missed(session, table)
+def _moved(session: Session, play: PlayState) -> Reply:
+    """The session at another play, with what has happened in between."""
+    fresh = replace(session, play=play, past=(*session.past, session.play), future=())
+    lines = _described(fresh, len(session.play.deeds)) + _missed(session, play)
     return Reply(fresh, (*lines, *_again(fresh, session), *shown(fresh)))
 
 
-def _told(session: Session, first: int) -> List[str]:
+def _described(session: Session, first: int) -> List[str]:
     """What has happened, from that step on."""
     lines = []
-    for deed in session.table.deeds[first:]:
-        if deed.agent in session.board.agents:
-            lines.append(f"{time_text(deed.at):>9}  {deed_text(session.board, session.words, deed)}")
+    for deed in session.play.deeds[first:]:
+        if deed.agent in session.setup.agents:
+            lines.append(f"{time_text(deed.at):>9}  {deed_text(session.setup, session.words, deed)}")
     return lines
 
 
-def _missed(before: Session, table: Table) -> List[str]:
+def _missed(before: Session, play: PlayState) -> List[str]:
     """Plans that came to nothing: something else was faster, and now they are not possible any more."""
-    done = {(deed.agent, deed.word) for deed in table.deeds[len(before.table.deeds) :]}
-    kept = {(plan.agent, plan.word) for plan in table.plans}
-    known = {(offer.agent, offer.word): _offered(before, offer)[0] for offer in before.game.offers(before.table)}
-    gone = [plan for plan in before.table.plans if (plan.agent, plan.word) not in done | kept]
+    done = {(deed.agent, deed.word) for deed in play.deeds[len(before.play.deeds) :]}
+    kept = {(plan.agent, plan.word) for plan in play.plans}
+    known = {(offer.agent, offer.word): _offered(before, offer)[0] for offer in before.game.offers(before.play)}
+    gone = [plan for plan in before.play.plans if (plan.agent, plan.word) not in done | kept]
     return [
         f"           {known[plan.agent, plan.word]}: not possible any more"
         for plan in gone
@@ -256,9 +256,9 @@ def _missed(before: Session, table: Table) -> List[str]:
 
 def _again(session: Session, before: Session) -> List[str]:
     """In a game that need not end: that it goes round in circles."""
-    if not isinstance(session.game, Robots) or len(session.table.deeds) == len(before.table.deeds):
+    if not isinstance(session.game, CounterPlay) or len(session.play.deeds) == len(before.play.deeds):
         return []
-    since = session.game.repeats(session.table)
+    since = session.game.repeats(session.play)
     if since is None:
         return []
     return [f"Everything is as it was at {time_text(since)}: like this it goes on for ever, without the goal."]
@@ -267,25 +267,25 @@ def _again(session: Session, before: Session) -> List[str]:
 def _undo(session: Session) -> Reply:
     if not session.past:
         return Reply(session, ("This is where it began.",))
-    fresh = replace(session, table=session.past[-1], past=session.past[:-1], future=(*session.future, session.table))
+    fresh = replace(session, play=session.past[-1], past=session.past[:-1], future=(*session.future, session.play))
     return Reply(fresh, shown(fresh))
 
 
 def _redo(session: Session) -> Reply:
     if not session.future:
         return Reply(session, ("There is nothing to do again.",))
-    fresh = replace(session, table=session.future[-1], past=(*session.past, session.table), future=session.future[:-1])
+    fresh = replace(session, play=session.future[-1], past=(*session.past, session.play), future=session.future[:-1])
     return Reply(fresh, shown(fresh))
 
 
 def _why(session: Session) -> Sequence[str]:
-    game, board = session.game, session.board
-    if isinstance(game, Robots):
+    game, setup = session.game, session.setup
+    if isinstance(game, CounterPlay):
         text = "There is no strategy for the robots: whatever they do, the others can answer."
         if game.horizon is not None:
             return (text, f"They will have lost by {game.horizon} at the latest.")
         return (text, "After each step of the others the solver still finds the game lost for the robots.")
-    holding = game.advisor.holding(session.table)
+    holding = game.advisor.holding(session.play)
     if holding is None or holding.zone is None:
         return ("The game is over here: the strategy has nothing more to say.",)
     lines = [f"Block {holding.number} of {game.advisor.size} of the strategy holds here."]
@@ -293,7 +293,7 @@ def _why(session: Session) -> Sequence[str]:
     if holding.command is not None:
         first = holding.command.moves[0]
         said = session.words.order(first.automaton, first.edge)
-        says = said if first.automaton not in board.agents else f"{first.automaton}: {said}"
+        says = said if first.automaton not in setup.agents else f"{first.automaton}: {said}"
     when = f": {session.words.network.when(holding.zone)}" if holding.zone else " nothing else happens"
     lines.append(f"It says {says}, as long as{when}.")
     for command in holding.block.commands:
@@ -311,19 +311,19 @@ def _save(session: Session, name: str) -> Reply:
     if Path(name).exists():
         return Reply(session, (f"{name} is there already: name another file.",))
     try:
-        return Reply(session, (save(session.board, session.table, Path(name)),))
+        return Reply(session, (save(session.setup, session.play, Path(name)),))
     except PursueError as problem:
         return Reply(session, tuple(finding.message for finding in problem.diagnostics))
 
 
 def farewell(session: Session) -> str:
     """How it stood when somebody left."""
-    table, board = session.table, session.board
-    if table.status != RUNNING:
-        return ending(board, session.words, table)
-    at = time_text(table.now)
-    if isinstance(session.game, Robots):
+    play, setup = session.play, session.setup
+    if play.status != RUNNING:
+        return ending(setup, session.words, play)
+    at = time_text(play.now)
+    if isinstance(session.game, CounterPlay):
         return f"You have left at {at}: the robots have not done it, and could not have been sure of it."
-    if board.safety:
+    if setup.safety:
         return f"You have left at {at}: so far the robots have kept it."
     return f"You have left at {at}, before the goal was reached; the robots would have reached it."

@@ -14,14 +14,14 @@ from typing import List, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window
 from pursue_gen.play.advice import Advisor
-from pursue_gen.play.table import (
+from pursue_gen.play.state import (
     CHANCE,
     GRAIN,
     OTHERS,
     ROBOTS,
-    Board,
-    Plan,
-    Table,
+    PlannedMove,
+    PlayState,
+    Setup,
     ended,
     last_moment,
     open_moves,
@@ -59,95 +59,95 @@ class Offer:
 
 
 @dataclass(frozen=True)
-class World:
-    """One game of this kind: the board, the strategy and the seed."""
+class StrategyPlay:
+    """One game of this kind: the setup, the strategy and the seed."""
 
-    board: Board
+    setup: Setup
     advisor: Advisor
     seed: int = 1
 
-    def offers(self, table: Table) -> Tuple[Offer, ...]:
+    def offers(self, play: PlayState) -> Tuple[Offer, ...]:
         """What the person can do now or later, in the order of the agents; ends come last."""
-        if table.over:
+        if play.over:
             return ()
-        agents = self.board.agents
+        agents = self.setup.agents
         found: List[Offer] = []
-        for move, _ in open_moves(self.board, table, False):
-            owner = self.board.owner(move)
+        for move, _ in open_moves(self.setup, play, False):
+            owner = self.setup.owner(move)
             if owner in agents:
-                drawn = self._drawn(table, move) if self.board.is_end(move) else None
-                found.append(Offer(owner, self.board.word(move), move, own_window(self.board, table, move), drawn))
+                drawn = self._drawn(play, move) if self.setup.is_end(move) else None
+                found.append(Offer(owner, self.setup.word(move), move, own_window(self.setup, play, move), drawn))
         return tuple(sorted(found, key=lambda offer: (offer.drawn is not None, agents.index(offer.agent))))
 
-    def planned(self, table: Table, plan: Plan) -> Table:
-        """The table with one more thing to be done; it takes the place of what that agent was to do."""
-        return replace(table, plans=(*(other for other in table.plans if other.agent != plan.agent), plan))
+    def planned(self, play: PlayState, plan: PlannedMove) -> PlayState:
+        """The play with one more thing to be done; it takes the place of what that agent was to do."""
+        return replace(play, plans=(*(other for other in play.plans if other.agent != plan.agent), plan))
 
-    def next_event(self, table: Table) -> Optional[Event]:
+    def next_event(self, play: PlayState) -> Optional[Event]:
         """What happens first, if anything does. The others win ties, as in the game that was solved."""
-        events = [*self._theirs(table), *self._strategy(table)]
+        events = [*self._theirs(play), *self._strategy(play)]
         return min(events, key=lambda event: event.at, default=None)
 
-    def advance(self, table: Table, until: Optional[Fraction] = None) -> Table:
-        """The table after what happens next; or at the time `until`, if that comes first.
+    def advance(self, play: PlayState, until: Optional[Fraction] = None) -> PlayState:
+        """The play after what happens next; or at the time `until`, if that comes first.
 
-        Where nothing would ever happen (and no time is named), the table itself.
+        Where nothing would ever happen (and no time is named), the play itself.
         """
-        event, last = self.next_event(table), last_moment(self.board, table)
+        event, last = self.next_event(play), last_moment(self.setup, play)
         if event is not None and (until is None or event.at <= until):
-            return taken(self.board, table, event.move, event.at, event.by)
+            return taken(self.setup, play, event.move, event.at, event.by)
         if last is not None and (until is None or until > last):
-            return ended(self.board, passed(table, last))
-        return table if until is None else passed(table, until)
+            return ended(self.setup, passed(play, last))
+        return play if until is None else passed(play, until)
 
-    def strategy_event(self, table: Table) -> Optional[Event]:
+    def strategy_event(self, play: PlayState) -> Optional[Event]:
         """What the strategy does next, if nothing else happens before."""
-        return next(iter(self._strategy(table)), None)
+        return next(iter(self._strategy(play)), None)
 
-    def _strategy(self, table: Table) -> List[Event]:
-        decision = self.advisor.decision(table)
+    def _strategy(self, play: PlayState) -> List[Event]:
+        decision = self.advisor.decision(play)
         if decision is None:
             return []
-        late = self.board.rules.reaction * self._share("command", len(table.deeds))
-        moment = max(_short(decision.at + late, decision.at, decision.at + self.board.rules.reaction), table.now)
+        late = self.setup.rules.reaction * self._share("command", len(play.deeds))
+        moment = max(_short(decision.at + late, decision.at, decision.at + self.setup.rules.reaction), play.now)
         return [Event(moment, decision.move, ROBOTS)]
 
-    def _theirs(self, table: Table) -> List[Event]:
+    def _theirs(self, play: PlayState) -> List[Event]:
         """What the person has planned; ends without a plan; and what needs no agent and comes at once."""
-        plans = {(plan.agent, plan.word): plan.at for plan in table.plans}
+        plans = {(plan.agent, plan.word): plan.at for plan in play.plans}
         events: List[Event] = []
-        for move, open_ in open_moves(self.board, table, False):
-            key = self.board.owner(move), self.board.word(move)
+        for move, open_ in open_moves(self.setup, play, False):
+            key = self.setup.owner(move), self.setup.word(move)
             moment: Optional[Fraction] = None
             by = OTHERS
             if key in plans:
                 moment = plans[key]
-            elif self.board.is_end(move):
-                moment, by = self._drawn(table, move), CHANCE
-            elif key[0] not in self.board.agents:
+            elif self.setup.is_end(move):
+                moment, by = self._drawn(play, move), CHANCE
+            elif key[0] not in self.setup.agents:
                 delay = open_.earliest(GRAIN)
-                moment, by = None if delay is None else table.now + delay, CHANCE
-            if moment is not None and open_.holds(moment - table.now):
+                moment, by = None if delay is None else play.now + delay, CHANCE
+            if moment is not None and open_.holds(moment - play.now):
                 events.append(Event(moment, move, by))
         return events
 
-    def _drawn(self, table: Table, move: JointMove) -> Optional[Fraction]:
+    def _drawn(self, play: PlayState, move: JointMove) -> Optional[Fraction]:
         """When the end of a movement or an action comes by itself; None: it need not come.
 
         It is drawn when the movement or action begins, and stays so whatever happens meanwhile.
         """
-        game, here = self.board.game, table.here
+        game, here = self.setup.game, play.position
         bounds = game.automata[move.owner].invariants[here.state.locations[move.owner]]
         if not bounds:
             return None
-        high = min(table.now + (bound >> 1) - here.clocks[clock - 1] for clock, bound in bounds)
-        lows = [table.now - (bound >> 1) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
+        high = min(play.now + (bound >> 1) - here.clocks[clock - 1] for clock, bound in bounds)
+        lows = [play.now - (bound >> 1) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
         low = max([*lows, Fraction(0)])
-        name = self.board.owner(move)
-        number = sum(deed.agent == name for deed in table.deeds)
+        name = self.setup.owner(move)
+        number = sum(deed.agent == name for deed in play.deeds)
         moment = _short(low + (high - low) * self._share(name, number), low, high)
         moment = max(moment, min(low + GRAIN, high))
-        return min(max(moment, table.now), high)
+        return min(max(moment, play.now), high)
 
     def _share(self, name: str, number: int) -> Fraction:
         """Where in a window: each end of it with probability 1/4."""

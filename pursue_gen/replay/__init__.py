@@ -5,6 +5,6 @@ from __future__ import annotations
 from pursue_gen.replay.check import Findings, check
 from pursue_gen.replay.game import Game, game_of
 from pursue_gen.replay.read import read_recording
-from pursue_gen.replay.record import Record
+from pursue_gen.replay.record import MissionRecord
 
-__all__ = ["Findings", "Game", "Record", "check", "game_of", "read_recording"]
+__all__ = ["Findings", "Game", "MissionRecord", "check", "game_of", "read_recording"]

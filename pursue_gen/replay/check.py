@@ -7,25 +7,25 @@ from typing import Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
-from pursue_gen.replay.moves import Move, Moves, Place, after
+from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.orders import Orders, in_time, of_plan
-from pursue_gen.replay.record import ENDED, HOLDING, RUNNING, WAITING, WON, Record, State, Word
+from pursue_gen.replay.record import ENDED, HOLDING, RUNNING, WAITING, WON, MissionRecord, RecordedState, RecordedWord
 from pursue_gen.replay.robots import check_robots
-from pursue_gen.replay.words import Said, dropped, who_said
+from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 
 DRIFT = 0.001
 """Seconds by which a clock may be beside the stamps."""
 
 
 @dataclass(frozen=True)
-class Step:
+class ReplayedStep:
     """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
     recorded)."""
 
-    before: State
-    state: State
+    before: RecordedState
+    state: RecordedState
     move: Move
-    word: Optional[Word] = None
+    word: Optional[RecordedWord] = None
 
     @property
     def is_command(self) -> bool:
@@ -37,7 +37,7 @@ class Step:
 class Findings:
     """What was found: steps in order, findings in order of their states, how it ended."""
 
-    steps: Tuple[Step, ...]
+    steps: Tuple[ReplayedStep, ...]
     findings: Tuple[Finding, ...]
     status: str
     reason: str
@@ -56,15 +56,15 @@ class Findings:
         return self.status == WON
 
 
-def check(record: Record, game: Game, tolerance: float = 0.1) -> Findings:
+def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings:
     """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
     checker = _Checker(record, game, tolerance)
     checker.run()
     steps = checker.steps
-    said = who_said(record, [(step.before, step.state) for step in steps])
-    steps = [Step(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
+    said = match_words(record, [(step.before, step.state) for step in steps])
+    steps = [ReplayedStep(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
     findings = [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
-    findings += dropped(record, said, checker.moves)
+    findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
         ordered = [(s.before, s.state, s.move[0][0], s.is_command) for s in steps]
         findings += check_robots(record, game, ordered, checker.orders)
@@ -77,7 +77,7 @@ def check(record: Record, game: Game, tolerance: float = 0.1) -> Findings:
         "steps": len(steps),
         "commands": sum(step.is_command for step in steps),
         "reports": sum(step.word is not None and not step.is_command for step in steps),
-        "dropped": len(said.left),
+        "dropped": len(said.unmatched),
         "plans": last.plan,
         "holds": checker.holds,
     }
@@ -87,10 +87,10 @@ def check(record: Record, game: Game, tolerance: float = 0.1) -> Findings:
 
 
 class _Checker:
-    def __init__(self, record: Record, game: Game, tolerance: float) -> None:
+    def __init__(self, record: MissionRecord, game: Game, tolerance: float) -> None:
         self.moves = Moves(game.network)
         self.findings: List[Finding] = []
-        self.steps: List[Step] = []
+        self.steps: List[ReplayedStep] = []
         self.orders: Dict[int, Orders] = {}
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
@@ -99,17 +99,17 @@ class _Checker:
     def run(self) -> None:
         """The states one by one."""
         self._read_orders()
-        before: Optional[State] = None
+        before: Optional[RecordedState] = None
         for state in self._record.states:
             if not self.moves.knows(_place(state)):
-                self._tell(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
+                self._report(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
                 return
             if before is None:
                 self._first(state)
             elif state.seq == before.seq:
                 self._again(before, state)
             elif state.seq > before.seq + 1:
-                self._tell(FAULT, "gap", state, f"states after {before.seq} are missing: what led here?")
+                self._report(FAULT, "gap", state, f"states after {before.seq} are missing: what led here?")
                 self._resume(state)
             else:
                 self._next(before, state)
@@ -117,7 +117,7 @@ class _Checker:
         if before is not None:
             self._end(before)
 
-    def _tell(self, level: str, kind: str, state: State, text: str) -> None:
+    def _report(self, level: str, kind: str, state: RecordedState, text: str) -> None:
         self.findings.append(Finding(level, kind, state.seq, text))
 
     def _read_orders(self) -> None:
@@ -134,56 +134,56 @@ class _Checker:
 
     # One state after the other ----------------------------------------------------------------------------------------
 
-    def _first(self, state: State) -> None:
+    def _first(self, state: RecordedState) -> None:
         if state.seq > 1:
-            self._tell(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
+            self._report(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
         elif _place(state) != self.moves.initial:
-            self._tell(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+            self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
         self._resume(state)
         if state.seq == 1:
             self._started(state)
 
-    def _resume(self, state: State) -> None:
+    def _resume(self, state: RecordedState) -> None:
         """Clocks are believed as they are here."""
         self._zeros = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
 
-    def _started(self, state: State) -> None:
+    def _started(self, state: RecordedState) -> None:
         self._zeros = dict.fromkeys(self.moves.network.clocks, state.stamp)
         self._clocks(state)
 
-    def _again(self, before: State, state: State) -> None:
+    def _again(self, before: RecordedState, state: RecordedState) -> None:
         """The same number: a heartbeat, the answer to a ping, or an end."""
         if not state.same_place(before):
-            self._tell(FAULT, "number", state, f"two different states have number {state.seq}")
+            self._report(FAULT, "number", state, f"two different states have number {state.seq}")
         elif state.status != before.status:
             self._status(before, state)
         if state.seq and state.status not in ENDED:
             self._clocks(state)
 
-    def _next(self, before: State, state: State) -> None:
+    def _next(self, before: RecordedState, state: RecordedState) -> None:
         if before.status == WAITING:
             if _place(state) != self.moves.initial:
-                self._tell(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+                self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
             self._started(state)
             return
         if before.status in ENDED:
-            self._tell(FAULT, "end", state, f"the mission went on after it was {before.status}")
+            self._report(FAULT, "end", state, f"the mission went on after it was {before.status}")
         if state.stamp < before.stamp - DRIFT:
-            self._tell(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
+            self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
         move = self._move(before, state)
         if move is not None:
-            self.steps.append(Step(before, state, move))
+            self.steps.append(ReplayedStep(before, state, move))
             self._zeros.update(dict.fromkeys(after(move, _place(before))[1], state.stamp))
         elif not state.same_place(before):
             could = ", ".join(self.moves.possible(_place(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
             changed = _change(before, state)
-            self._tell(FAULT, "step", state, f"{what} is no step of the model ({changed}); possible: {could}")
+            self._report(FAULT, "step", state, f"{what} is no step of the model ({changed}); possible: {could}")
             self._resume(state)
         self._clocks(state)
         self._status(before, state)
 
-    def _move(self, before: State, state: State) -> Optional[Move]:
+    def _move(self, before: RecordedState, state: RecordedState) -> Optional[Move]:
         """The joint move that leads from one to the other, the one that fits the clocks best."""
         if not state.event:
             return None
@@ -191,10 +191,10 @@ class _Checker:
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == _place(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
 
-    def _clocks_at(self, state: State) -> Dict[str, float]:
+    def _clocks_at(self, state: RecordedState) -> Dict[str, float]:
         return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}
 
-    def _clocks(self, state: State) -> None:
+    def _clocks(self, state: RecordedState) -> None:
         """The clocks that are told, against the stamps of their last resets."""
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
@@ -203,41 +203,41 @@ class _Checker:
         }
         if wrong:
             told = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
-            self._tell(FAULT, "clock", state, f"clocks are not what the stamps say: {told} time units")
+            self._report(FAULT, "clock", state, f"clocks are not what the stamps say: {told} time units")
             self._resume(state)
 
-    def _status(self, before: State, state: State) -> None:
+    def _status(self, before: RecordedState, state: RecordedState) -> None:
         """Holds, new plans, lost agents."""
         for agent in sorted(set(state.lost) - set(before.lost)):
-            self._tell(WORLD, "lost", state, f"{agent} counts as lost: nothing is expected of it any more")
+            self._report(WORLD, "lost", state, f"{agent} counts as lost: nothing is expected of it any more")
         for agent in sorted(set(before.lost) - set(state.lost)):
-            self._tell(NOTE, "back", state, f"{agent} is back")
+            self._report(NOTE, "back", state, f"{agent} is back")
         if state.plan != before.plan:
-            self._tell(NOTE, "plan", state, f"plan {state.plan} is in force")
+            self._report(NOTE, "plan", state, f"plan {state.plan} is in force")
             if state.plan not in self.orders and not self._game.why_not:
-                self._tell(FAULT, "plan", state, f"plan {state.plan} is not in the recording")
+                self._report(FAULT, "plan", state, f"plan {state.plan} is not in the recording")
         if state.status == HOLDING and before.status != HOLDING:
             self.holds += 1
-            self._tell(NOTE, "hold", state, f"the mission holds: {state.reason or 'no reason is given'}")
+            self._report(NOTE, "hold", state, f"the mission holds: {state.reason or 'no reason is given'}")
         elif before.status == HOLDING and state.status == RUNNING:
-            self._tell(NOTE, "hold", state, "the mission goes on")
+            self._report(NOTE, "hold", state, "the mission goes on")
 
-    def _end(self, last: State) -> None:
+    def _end(self, last: RecordedState) -> None:
         goal, bad = self._game.objective.goal, self._game.objective.bad
         if last.status == WON and goal is not None and last.locations[goal[0]] != goal[1]:
-            self._tell(FAULT, "end", last, f"it is said to be won, but {goal[0]} is not {goal[1]}")
+            self._report(FAULT, "end", last, f"it is said to be won, but {goal[0]} is not {goal[1]}")
         if last.status == WON and bad is not None and last.locations[bad[0]] == bad[1]:
-            self._tell(FAULT, "end", last, f"it is said to be won, but {bad[0]} is {bad[1]}")
+            self._report(FAULT, "end", last, f"it is said to be won, but {bad[0]} is {bad[1]}")
         if last.status not in (*ENDED, WAITING):
             overdue = self.moves.overdue(_place(last), self._clocks_at(last))
             for agent, late in overdue.items():
                 if late > self._tolerance:
                     text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
-                    self._tell(WORLD, "late", last, text)
+                    self._report(WORLD, "late", last, text)
 
     # What was done, by whom -------------------------------------------------------------------------------------------
 
-    def timing(self, steps: List[Step]) -> List[Finding]:
+    def timing(self, steps: List[ReplayedStep]) -> List[Finding]:
         """Steps that come at a time which the model does not know, and states that the strategy does not."""
         found: List[Finding] = []
         for step in steps:
@@ -252,14 +252,14 @@ class _Checker:
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING:
                 continue
-            cover = orders.cover.at(_place(state))
+            cover = orders.cover.find(_place(state))
             if not in_time((zone for zones in cover for zone in zones), state.clocks, 0.0, self._tolerance):
                 what = "at these clocks" if cover else "in this state"
-                told = f"the strategy does not know what to do {what}: {_where(state)}{self._doubt()}"
+                told = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
                 found.append(Finding(WORLD, "uncovered", state.seq, told))
         return found
 
-    def commands(self, steps: List[Step], said: Said) -> List[Finding]:
+    def commands(self, steps: List[ReplayedStep], said: WordMatches) -> List[Finding]:
         """Whether commands were the strategy's, given by those who may, and while the mission ran."""
         found: List[Finding] = []
         controllers = {node for orders in self.orders.values() for nodes in orders.owners.values() for node in nodes}
@@ -289,42 +289,42 @@ class _Checker:
                 found.append(Finding(FAULT, "owner", state.seq, told))
             if not self._wanted(orders, step):
                 told = f"{state.event} by {agent} is not what the strategy says in state {before.seq}"
-                told += f"; it was said by {word.node}" if by_hand else self._doubt()
+                told += f"; it was said by {word.node}" if by_hand else self._is_reliable()
                 found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, told))
         return found
 
-    def _wanted(self, orders: Orders, step: Step) -> bool:
+    def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction."""
         before, state = step.before, step.state
         zones = [
             zone
-            for command in orders.commands.at(_place(before))
+            for command in orders.commands.find(_place(before))
             if (command.agent, command.event) == (step.move[0][0], state.event)
             for zone in command.zones
         ]
         back = min(orders.reaction + self._tolerance, (state.stamp - before.stamp) / state.unit)
         return in_time(zones, _aged(before, state), back, self._tolerance)
 
-    def _doubt(self) -> str:
+    def _is_reliable(self) -> str:
         """What else could be the reason for a strategy that does not fit."""
         return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
 
 
-def _place(state: State) -> Place:
-    return Place(dict(state.locations), dict(state.values))
+def _place(state: RecordedState) -> DiscreteState:
+    return DiscreteState(dict(state.locations), dict(state.values))
 
 
-def _aged(before: State, state: State) -> Dict[str, float]:
+def _aged(before: RecordedState, state: RecordedState) -> Dict[str, float]:
     """The clocks of the state before, at the moment of this one."""
     passed = (state.stamp - before.stamp) / state.unit
     return {clock: value + passed for clock, value in before.clocks.items()}
 
 
-def _where(state: State) -> str:
+def _where(state: RecordedState) -> str:
     return " ".join(f"{name}={location}" for name, location in state.locations.items())
 
 
-def _change(before: State, state: State) -> str:
+def _change(before: RecordedState, state: RecordedState) -> str:
     old: Dict[str, object] = {**before.locations, **before.values}
     new: Dict[str, object] = {**state.locations, **state.values}
     return ", ".join(f"{name}: {old[name]} to {new[name]}" for name in old if old[name] != new.get(name))

@@ -9,7 +9,7 @@ import json
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
-from pursue_gen.replay.moves import Move, Moves, Place, after
+from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.record import (
     FINISH,
     LOST,
@@ -20,15 +20,15 @@ from pursue_gen.replay.record import (
     STOPPED,
     WAITING,
     WON,
-    Record,
-    State,
-    Word,
+    MissionRecord,
+    RecordedState,
+    RecordedWord,
     read_word,
 )
 from pursue_gen.tga.network import Objective
 
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
-TOLD = "told"
+END = "told"
 """Closes a journal: everybody knows how the mission ended."""
 
 MOST = 1000
@@ -74,7 +74,7 @@ def read_journal(content: bytes) -> Union[Journal, str]:
         entry = _entry(line)
         if entry is not None:
             entries.append(entry)
-        elif line.strip() and (_object(line) or {}).get("call") != TOLD:
+        elif line.strip() and (_object(line) or {}).get("call") != END:
             problems.append(f"line {number} cannot be read, what follows was not read: {line[:60]!r}")
             break
     if not entries:
@@ -109,20 +109,20 @@ def _entry(line: str) -> Optional[Entry]:
     return Entry(float(at), str(call), tuple(args), seq, str(data.get("status", "")))
 
 
-def worked_out(journal: Journal, moves: Moves, objective: Objective) -> Record:
+def reconstruct(journal: Journal, moves: Moves, objective: Objective) -> MissionRecord:
     """The journal as a record: the states that its words lead to."""
     walk = _Walk(journal, moves, objective)
     for entry in journal.entries:
         walk.follow(entry)
-    return Record(
+    return MissionRecord(
         tuple(walk.states), tuple(walk.words), plans=walk.plans, problems=tuple(walk.problems), by_words=True
     )
 
 
 class _Walk:
     def __init__(self, journal: Journal, moves: Moves, objective: Objective) -> None:
-        self.states: List[State] = []
-        self.words: List[Word] = []
+        self.states: List[RecordedState] = []
+        self.words: List[RecordedWord] = []
         self.plans: Dict[int, Mapping[str, Any]] = {}
         self.problems = list(journal.problems)
         self._unit, self._moves, self._objective = journal.unit, moves, objective
@@ -149,7 +149,7 @@ class _Walk:
             self._event = self._agent = ""
             self._show(entry.at)
 
-    def _steps(self, entry: Entry, word: Optional[Word]) -> None:
+    def _steps(self, entry: Entry, word: Optional[RecordedWord]) -> None:
         while self._seq < entry.seq:
             self._seq += 1
             if self._status == WAITING:
@@ -169,14 +169,14 @@ class _Walk:
                 self._status = entry.status
             self._show(entry.at)
 
-    def _next(self, at: float, word: Optional[Word]) -> Optional[Move]:
+    def _next(self, at: float, word: Optional[RecordedWord]) -> Optional[Move]:
         """The move of the word, else one that an objective makes by itself; None: the status has changed."""
         clocks = self._clocks(at)
         if word is not None and not word.event.startswith("_"):
             found = list(self._moves.of(self._place, word.event, word.agent))
             if found:
                 return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
-        return next(self._moves.own(self._place, self._objective), None)
+        return next(self._moves.internal(self._place, self._objective), None)
 
     def _take(self, move: Move, at: float) -> None:
         self._place, resets = after(move, self._place)
@@ -187,7 +187,7 @@ class _Walk:
         elif _at(self._place, self._objective.bad):
             self._status = LOST
 
-    def _ending(self, entry: Entry, word: Optional[Word]) -> str:
+    def _ending(self, entry: Entry, word: Optional[RecordedWord]) -> str:
         """won or stopped, where this very call ends the mission without a step."""
         if self._status in (WON, LOST):
             return ""
@@ -200,7 +200,7 @@ class _Walk:
 
     def _show(self, at: float) -> None:
         self.states.append(
-            State(
+            RecordedState(
                 seq=self._seq,
                 stamp=at,
                 locations=self._place.locations,
@@ -215,5 +215,5 @@ class _Walk:
         )
 
 
-def _at(place: Place, where: Optional[Tuple[str, str]]) -> bool:
+def _at(place: DiscreteState, where: Optional[Tuple[str, str]]) -> bool:
     return where is not None and place.locations.get(where[0]) == where[1]

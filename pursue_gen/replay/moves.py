@@ -15,7 +15,7 @@ Move = Tuple[Part, ...]
 """The mover's part, then each receiver's."""
 
 
-class Place(NamedTuple):
+class DiscreteState(NamedTuple):
     """Where every automaton is, and the variables."""
 
     locations: Mapping[str, str]
@@ -34,7 +34,7 @@ class Moves:
 
     def __init__(self, network: Network) -> None:
         self.network = network
-        self.initial = Place(
+        self.initial = DiscreteState(
             {automaton.name: automaton.initial for automaton in network.automata}, dict(network.variables)
         )
         self._edges: Dict[Tuple[str, str], List[Edge]] = {}
@@ -51,7 +51,7 @@ class Moves:
         """What the step is called on the topics."""
         return event_word(automaton, edge)
 
-    def knows(self, place: Place) -> bool:
+    def knows(self, place: DiscreteState) -> bool:
         """True where the place names these automata with locations of theirs, and these variables."""
         return (
             set(place.locations) == set(self._names)
@@ -59,7 +59,7 @@ class Moves:
             and all(part in self._invariants for part in place.locations.items())
         )
 
-    def of(self, place: Place, word: str, agent: str = "") -> Iterator[Move]:
+    def of(self, place: DiscreteState, word: str, agent: str = "") -> Iterator[Move]:
         """What the word (of this agent, or of anybody) can do there, whatever the clocks."""
         for name in self._names:
             if agent and name != agent:
@@ -69,7 +69,7 @@ class Moves:
                 if not receives and event_word(name, edge) == word:
                     yield from self._joint(name, edge, place)
 
-    def own(self, place: Place, objective: Objective) -> Iterator[Move]:
+    def internal(self, place: DiscreteState, objective: Objective) -> Iterator[Move]:
         """The steps that the safety objective makes by itself."""
         if objective.bad is None:
             return
@@ -78,7 +78,7 @@ class Moves:
             if edge.sync is None:
                 yield ((name, edge),)
 
-    def possible(self, place: Place) -> List[str]:
+    def possible(self, place: DiscreteState) -> List[str]:
         """The words that can happen there, whatever the clocks."""
         words = {
             event_word(name, edge): None
@@ -88,7 +88,7 @@ class Moves:
         }
         return list(words)
 
-    def untimely(self, move: Move, place: Place, clocks: Mapping[str, float]) -> Untimely:
+    def untimely(self, move: Move, place: DiscreteState, clocks: Mapping[str, float]) -> Untimely:
         """How far the clocks are from the mover's guard and from the invariant of the place that it leaves."""
         name, edge = move[0]
         bounds = (*edge.guard.clocks, *self._invariants[name, edge.source])
@@ -101,7 +101,7 @@ class Moves:
                 worst = Untimely(misses, misses == late)
         return worst
 
-    def overdue(self, place: Place, clocks: Mapping[str, float]) -> Dict[str, float]:
+    def overdue(self, place: DiscreteState, clocks: Mapping[str, float]) -> Dict[str, float]:
         """Who should have moved already, and the time units since then."""
         late: Dict[str, float] = {}
         for part in place.locations.items():
@@ -111,29 +111,30 @@ class Moves:
                     late[part[0]] = over
         return late
 
-    def _enabled(self, name: str, place: Place) -> Iterator[Edge]:
+    def _enabled(self, name: str, place: DiscreteState) -> Iterator[Edge]:
         for edge in self._edges.get((name, place.locations.get(name, "")), ()):
             if all(any(place.values.get(t.variable) == t.value for t in clause) for clause in edge.guard.integers):
                 yield edge
 
-    def _joint(self, mover: str, edge: Edge, place: Place) -> Iterator[Move]:
+    def _joint(self, mover: str, edge: Edge, place: DiscreteState) -> Iterator[Move]:
         """The edge with every choice of one receiving edge for each automaton that has one."""
         answers: List[Sequence[Part]] = []
         if edge.sync is not None:
             for name in self._names:
                 channel = edge.sync.channel
-                heard = [(name, e) for e in self._enabled(name, place) if _hears(e, channel)] if name != mover else []
-                if heard:
-                    answers.append(heard)
+                enabled = self._enabled(name, place) if name != mover else []
+                receiving = [(name, e) for e in enabled if _receives(e, channel)]
+                if receiving:
+                    answers.append(receiving)
         for chosen in itertools.product(*answers):
             yield ((mover, edge), *chosen)
 
 
-def _hears(edge: Edge, channel: str) -> bool:
+def _receives(edge: Edge, channel: str) -> bool:
     return edge.sync is not None and not edge.sync.sends and edge.sync.channel == channel
 
 
-def after(move: Move, place: Place) -> Tuple[Place, Tuple[str, ...]]:
+def after(move: Move, place: DiscreteState) -> Tuple[DiscreteState, Tuple[str, ...]]:
     """Where the move leads, and the clocks that it resets."""
     locations, values = dict(place.locations), dict(place.values)
     resets: Dict[str, Optional[str]] = {}
@@ -141,4 +142,4 @@ def after(move: Move, place: Place) -> Tuple[Place, Tuple[str, ...]]:
         locations[name] = edge.target
         values.update(edge.assign)
         resets.update(dict.fromkeys(edge.resets))
-    return Place(locations, values), tuple(resets)
+    return DiscreteState(locations, values), tuple(resets)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Sequence, Tuple, TypeVar
 
 from pursue_gen.partition import SubStrategy
-from pursue_gen.replay.moves import Place
+from pursue_gen.replay.moves import DiscreteState
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.words import event_word
@@ -25,18 +25,18 @@ class Command:
     zones: Tuple[Zone, ...]
 
 
-class Table(Generic[Payload]):
+class PlanTable(Generic[Payload]):
     """Payloads by state; an entry may leave out automata and variables."""
 
     def __init__(self) -> None:
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
 
-    def put(self, state: Mapping[str, object], payload: Payload) -> None:
+    def add(self, state: Mapping[str, object], payload: Payload) -> None:
         """Adds an entry."""
         names = tuple(sorted(state))
         self._tables.setdefault(names, {}).setdefault(tuple(str(state[name]) for name in names), []).append(payload)
 
-    def at(self, place: Place) -> List[Payload]:
+    def find(self, place: DiscreteState) -> List[Payload]:
         """What was put there."""
         everything = {**place.locations, **{name: str(value) for name, value in place.values.items()}}
         return [
@@ -51,8 +51,8 @@ class Orders:
     """A strategy by state. `owners`: the nodes that command an agent; `reaction`: how late a command may come, in time
     units."""
 
-    commands: Table[Command] = field(default_factory=Table)
-    cover: Table[Tuple[Zone, ...]] = field(default_factory=Table)
+    commands: PlanTable[Command] = field(default_factory=PlanTable)
+    cover: PlanTable[Tuple[Zone, ...]] = field(default_factory=PlanTable)
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
 
@@ -64,8 +64,8 @@ def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fract
         state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}
         for command in block.commands:
             first = command.moves[0]
-            orders.commands.put(state, Command(first.automaton, event_word(first.automaton, first.edge), command.zones))
-        orders.cover.put(state, (*block.wait, *(zone for command in block.commands for zone in command.zones)))
+            orders.commands.add(state, Command(first.automaton, event_word(first.automaton, first.edge), command.zones))
+        orders.cover.add(state, (*block.wait, *(zone for command in block.commands for zone in command.zones)))
     return orders
 
 
@@ -80,9 +80,9 @@ def of_plan(data: Mapping[str, Any]) -> Orders:
             for entry in part["strategy"]:
                 for command in entry["commands"]:
                     zones = tuple(read_zone(zone) for zone in command["when"])
-                    orders.commands.put(entry["state"], Command(str(command["agent"]), str(command["do"]), zones))
+                    orders.commands.add(entry["state"], Command(str(command["agent"]), str(command["do"]), zones))
         for entry in data["cover"]["cover"]:
-            orders.cover.put(entry["state"], tuple(read_zone(zone) for zone in entry["zones"]))
+            orders.cover.add(entry["state"], tuple(read_zone(zone) for zone in entry["zones"]))
     except (KeyError, TypeError, AttributeError, ZeroDivisionError) as problem:
         raise ValueError(f"it lacks or misspells something: {problem!r}") from None
     return orders

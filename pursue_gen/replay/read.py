@@ -10,7 +10,15 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.replay.journal import Journal, read_journal
-from pursue_gen.replay.record import Order, Record, State, Word, ordered, read_state, read_word
+from pursue_gen.replay.record import (
+    MissionRecord,
+    RecordedState,
+    RecordedWord,
+    RobotOrder,
+    ordered,
+    read_state,
+    read_word,
+)
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
 
@@ -18,7 +26,7 @@ _ORDERS = ("/move_base_simple/goal", "/pursue/actions", "/move_base/goal")
 """Topics of a robot, below its name."""
 
 
-def read_recording(file: Path) -> Union[Record, Journal]:
+def read_recording(file: Path) -> Union[MissionRecord, Journal]:
     """What is in the file. Raises PursueError (exit status 2) where that is nothing to check."""
     try:
         content = file.read_bytes()
@@ -34,7 +42,7 @@ def read_recording(file: Path) -> Union[Record, Journal]:
     raise _unreadable(f"{file} is neither a bag nor a journal", "RPL002")
 
 
-def _bag(file: Path, content: bytes) -> Record:
+def _bag(file: Path, content: bytes) -> MissionRecord:
     try:
         messages, problems = read_bag(content)
     except Damage as damage:
@@ -48,11 +56,11 @@ def _bag(file: Path, content: bytes) -> Record:
     return record
 
 
-def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> Record:
+def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
     """What the messages of a bag say; those that are not ours are passed over."""
-    states: List[State] = []
-    words: List[Word] = []
-    orders: List[Order] = []
+    states: List[RecordedState] = []
+    words: List[RecordedWord] = []
+    orders: List[RobotOrder] = []
     plans: Dict[int, Mapping[str, Any]] = {}
     game: Optional[Mapping[str, Any]] = None
     strange = 0
@@ -75,17 +83,17 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
             else:
                 strange += 1
     found = [*problems, *([f"{strange} messages on our topics could not be read"] if strange else [])]
-    return Record(ordered(iter(states)), tuple(words), tuple(orders), plans, game, tuple(found))
+    return MissionRecord(ordered(iter(states)), tuple(words), tuple(orders), plans, game, tuple(found))
 
 
-def _order(message: Message, topic: str) -> Order:
+def _order(message: Message, topic: str) -> RobotOrder:
     """What a robot was told; the robot's name stands first in the topic's last parts."""
     kind = next(kind for kind in _ORDERS if topic.endswith(kind))
     robot = topic[: -len(kind)].rpartition("/")[2]
     if kind == "/pursue/actions":
-        return Order(message.at, robot, message.node, action=_text(message.data).strip() or "?")
+        return RobotOrder(message.at, robot, message.node, action=_text(message.data).strip() or "?")
     goal = _position(message.data) if kind == "/move_base_simple/goal" else None
-    return Order(message.at, robot, message.node, goal)
+    return RobotOrder(message.at, robot, message.node, goal)
 
 
 def _text(data: bytes) -> str:

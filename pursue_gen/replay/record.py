@@ -16,7 +16,7 @@ PLANNED, FAILED = "_plan_", "_failed_"
 
 
 @dataclass(frozen=True)
-class State:
+class RecordedState:
     """One published state: `stamp` in seconds of ROS time, clocks in time units of `unit` seconds."""
 
     seq: int
@@ -32,13 +32,13 @@ class State:
     status: str = RUNNING
     reason: str = ""
 
-    def same_place(self, other: State) -> bool:
+    def same_place(self, other: RecordedState) -> bool:
         """True where everybody is where they are in the other, whatever the clocks."""
         return self.locations == other.locations and self.values == other.values
 
 
 @dataclass(frozen=True)
-class Word:
+class RecordedWord:
     """A word on pursue/events: when it was heard (seconds), by which node it was said ("": not known)."""
 
     at: float
@@ -50,7 +50,7 @@ class Word:
 
 
 @dataclass(frozen=True)
-class Order:
+class RobotOrder:
     """What a robot was told: a goal (x, y, z, or None where it was not read) or an action."""
 
     at: float
@@ -66,7 +66,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Record:
+class MissionRecord:
     """A recording: `states` by number (those of one number as they came), words and orders as they came.
 
     `plans` holds what was on pursue/plan by number, `game` the scenario and rules where the recording has them.
@@ -74,9 +74,9 @@ class Record:
     does not say who said what.
     """
 
-    states: Tuple[State, ...]
-    words: Tuple[Word, ...] = ()
-    orders: Tuple[Order, ...] = ()
+    states: Tuple[RecordedState, ...]
+    words: Tuple[RecordedWord, ...] = ()
+    orders: Tuple[RobotOrder, ...] = ()
     plans: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)
     game: Optional[Mapping[str, Any]] = None
     problems: Tuple[str, ...] = ()
@@ -88,19 +88,19 @@ _INTEGER = re.compile(r"-?\d{1,18}", re.ASCII)
 _DECIMAL = re.compile(r"-?\d{1,18}(\.\d{1,30})?", re.ASCII)
 
 
-def read_word(at: float, text: str, node: str = "") -> Word:
+def read_word(at: float, text: str, node: str = "") -> RecordedWord:
     """The word in a text; one without an event where it is none."""
     bare = text.strip()
     if bare == FINISH:
-        return Word(at, bare, node, event=FINISH)
+        return RecordedWord(at, bare, node, event=FINISH)
     match = _WORD.fullmatch(bare)
     if match is None:
-        return Word(at, bare, node)
+        return RecordedWord(at, bare, node)
     agent, event, seq = match.groups()
-    return Word(at, bare, node, agent or "", event, None if seq is None else int(seq))
+    return RecordedWord(at, bare, node, agent or "", event, None if seq is None else int(seq))
 
 
-def read_state(text: str) -> Optional[State]:
+def read_state(text: str) -> Optional[RecordedState]:
     """The state in a text; None where it is none."""
     discrete, _, continuous = text.strip().partition("\n\n")
     head, _, discrete = discrete.partition("\n")
@@ -114,7 +114,7 @@ def read_state(text: str) -> Optional[State]:
     if unit <= 0 or seq < 0:
         return None
     pairs = dict(_pairs(discrete))
-    return State(
+    return RecordedState(
         seq=seq,
         stamp=stamp,
         locations={name: value for name, value in pairs.items() if not _INTEGER.fullmatch(value)},
@@ -145,7 +145,7 @@ def _pairs(text: str) -> Iterator[Tuple[str, str]]:
             yield name, value
 
 
-def ordered(states: Iterator[State]) -> Tuple[State, ...]:
+def ordered(states: Iterator[RecordedState]) -> Tuple[RecordedState, ...]:
     """The states by number: a bag has them in the order of their receipt."""
     return tuple(sorted(states, key=lambda state: state.seq))
 

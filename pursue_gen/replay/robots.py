@@ -9,7 +9,7 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.replay.finding import FAULT, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
-from pursue_gen.replay.record import Order, Record, State
+from pursue_gen.replay.record import MissionRecord, RecordedState, RobotOrder
 from pursue_gen.tga.names import going, is_doing, is_going
 
 LATE = 2.0
@@ -20,20 +20,22 @@ NEAR = 0.011  # metres: computed poses are rounded to centimetres
 
 Point = Tuple[float, float, float]
 
-Done = Tuple[State, State, str, bool]
+Done = Tuple[RecordedState, RecordedState, str, bool]
 """The state before a step and after it, its mover, and whether it was a command."""
 
-Activity = Tuple[State, float, str, str]
+Activity = Tuple[RecordedState, float, str, str]
 """The state in which it begins, its end (seconds), the robot, where it goes ("" for an action)."""
 
 
-def check_robots(record: Record, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]) -> List[Finding]:
+def check_robots(
+    record: MissionRecord, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]
+) -> List[Finding]:
     """Goals and actions that no state asked for, those that were never sent, goals that lead elsewhere."""
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots)
     where = {name: (pose.x, pose.y, pose.z) for name, pose in poses(game.scenario)[0].items()}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
-    diary = _Diary(activities)
+    diary = _ActivityIndex(activities)
     found: List[Finding] = []
     told: Set[int] = set()
     places: Dict[str, Point] = {}
@@ -86,7 +88,7 @@ def _activities(steps: Sequence[Done], robots: Sequence[str]) -> List[Activity]:
     return begun
 
 
-class _Diary:
+class _ActivityIndex:
     """The activities of each robot by their beginnings, goals and actions apart."""
 
     def __init__(self, activities: Sequence[Activity]) -> None:
@@ -95,7 +97,7 @@ class _Diary:
         for place, (state, _, robot, location) in enumerate(activities):
             self._places.setdefault((robot, bool(location)), []).append((state.stamp, place))
 
-    def activity(self, order: Order) -> Optional[int]:
+    def activity(self, order: RobotOrder) -> Optional[int]:
         """Which activity the order is for: of those of its kind that go on, the one that begins nearest to it."""
         places = self._places.get((order.robot, order.is_goal), [])
         number = bisect.bisect(places, (order.at + EARLY, len(self._activities)))
@@ -122,6 +124,6 @@ def _far(one: Point, other: Point) -> bool:
     return any(not abs(a - b) <= NEAR for a, b in zip(one, other))
 
 
-def _number_at(record: Record, at: float) -> int:
+def _number_at(record: MissionRecord, at: float) -> int:
     earlier = [state.seq for state in record.states if state.stamp <= at]
     return earlier[-1] if earlier else record.states[0].seq

@@ -10,13 +10,13 @@ from pursue_gen.files import read_text
 from pursue_gen.language import load
 from pursue_gen.replay.game import Source, from_data, from_workspace
 from pursue_gen.replay.journal import Journal
-from pursue_gen.replay.record import Record
+from pursue_gen.replay.record import MissionRecord
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.tga import translate
 
 
 def source_of(
-    found: Union[Record, Journal],
+    found: Union[MissionRecord, Journal],
     file: Path,
     scenario: Optional[Path],
     workspace: Optional[Path],

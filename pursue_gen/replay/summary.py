@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List
 
-from pursue_gen.replay.check import Findings, Step
+from pursue_gen.replay.check import Findings, ReplayedStep
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
-from pursue_gen.replay.record import Record
+from pursue_gen.replay.record import MissionRecord
 
 _MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: "}
 
@@ -55,7 +55,7 @@ def verdict(findings: Findings) -> str:
     return f"The mission {' and '.join(what)}, and {end}. First: state {first.seq}, {first.text}."
 
 
-def as_json(findings: Findings, record: Record, file: str) -> Dict[str, Any]:
+def as_json(findings: Findings, record: MissionRecord, file: str) -> Dict[str, Any]:
     """Everything, as a JSON object."""
     return {
         "file": file,
@@ -85,12 +85,12 @@ def as_json(findings: Findings, record: Record, file: str) -> Dict[str, Any]:
     }
 
 
-def _at(findings: Findings, step: Step) -> float:
+def _at(findings: Findings, step: ReplayedStep) -> float:
     """Time units since the start."""
     return (step.state.stamp - findings.start) / step.state.unit
 
 
-def _step(step: Step) -> str:
+def _step(step: ReplayedStep) -> str:
     state, word = step.state, step.word
     what = state.event if state.event.startswith(state.agent) else f"{state.event} ({state.agent})"
     if word is None:

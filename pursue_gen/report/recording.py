@@ -6,8 +6,19 @@ from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay.record import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, Record, State, read_state
-from pursue_gen.simulation.mission import Play, Settings
+from pursue_gen.replay.record import (
+    ENDED,
+    HOLDING,
+    LOST,
+    RUNNING,
+    STOPPED,
+    WAITING,
+    WON,
+    MissionRecord,
+    RecordedState,
+    read_state,
+)
+from pursue_gen.simulation.mission import Settings, SimulatedMission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.runs import Case
 from pursue_gen.simulation.stage import Stage, stage_of
@@ -90,13 +101,13 @@ def lasting(recording: Recording, told: Iterable[Tuple[float, str]]) -> Tuple[St
 # Where recordings come from -------------------------------------------------------------------------------------------
 
 
-def from_record(record: Record, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
+def from_record(record: MissionRecord, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
     """What a bag or a journal holds; None where the mission never started in it."""
     return from_states(record.states, scenario, network, source)
 
 
 def from_states(
-    states: Iterable[State], scenario: Scenario, network: Network, source: str, until: float = 0.0
+    states: Iterable[RecordedState], scenario: Scenario, network: Network, source: str, until: float = 0.0
 ) -> Optional[Recording]:
     """The mission that these published states tell, at least until so many time units."""
     steps: List[Step] = []
@@ -127,12 +138,12 @@ def simulated(case: Case, seed: int) -> Recording:
     return found
 
 
-class _Recorded(Play):
+class _Recorded(SimulatedMission):
     """A simulated mission that keeps what its observer publishes."""
 
     def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
         super().__init__(stage, settings, seed, remaining)
-        self.states: List[State] = []
+        self.states: List[RecordedState] = []
 
     def publish(self, state: SystemState) -> None:
         """A state of the mission."""

@@ -13,8 +13,8 @@ from pursue_gen.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.thesis_figures import Times, thesis_times
 from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome_texts import END_TEXTS
 from pursue_gen.simulation.runs import Case, Summary, case_of, simulate
-from pursue_gen.simulation.words import WORDS
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options
@@ -62,7 +62,7 @@ def measured(
     for shape in (CENTRALIZED, DISTRIBUTED):
         before = len(result) * runs
         case = case_for(scenario, won, reach_obj, shape)
-        result.append(Measured(shape, simulate(case, range(FIRST, FIRST + runs), told=_from(before, told))))
+        result.append(Measured(shape, simulate(case, range(FIRST, FIRST + runs), progress=_from(before, told))))
     return tuple(result)
 
 
@@ -137,7 +137,7 @@ def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times])
 
 def _safety(missions: Sequence[Measured]) -> str:
     rows = [
-        [one.controllers, WORDS[row.end], row.missions, _number(row.worst)]
+        [one.controllers, END_TEXTS[row.end], row.missions, _number(row.worst)]
         for one in missions
         for row in one.summary.rows
     ]

@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.look import safe
 from pursue_gen.explanation.explain import Explanation
-from pursue_gen.explanation.words import time_text
+from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, speed_words, units
 from pursue_gen.report.html import Section, table

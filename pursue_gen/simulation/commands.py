@@ -21,7 +21,7 @@ class Limit(NamedTuple):
     bound: float
 
 
-class Held(NamedTuple):
+class ZonedCommand(NamedTuple):
     """In these zones, the agent does the event."""
 
     agent: str
@@ -36,16 +36,16 @@ class Held(NamedTuple):
 class Commands:
     """The commands of one plan, by discrete state (names of automata and variables to locations and values)."""
 
-    def __init__(self, entries: Iterable[Tuple[Mapping[str, str], Held]]) -> None:
-        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Held]]] = {}
+    def __init__(self, entries: Iterable[Tuple[Mapping[str, str], ZonedCommand]]) -> None:
+        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[ZonedCommand]]] = {}
         for state, held in entries:
             names = tuple(sorted(state))
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(state[name] for name in names), []).append(held)
 
-    def find(self, state: Mapping[str, str], agent: str, event: str) -> List[Held]:
+    def find(self, state: Mapping[str, str], agent: str, event: str) -> List[ZonedCommand]:
         """The commands by which the agent does the event in this state."""
-        found: List[Held] = []
+        found: List[ZonedCommand] = []
         for names, table in self._tables.items():
             found += table.get(tuple(state.get(name, "") for name in names), [])
         return [held for held in found if (held.agent, held.event) == (agent, event)]
@@ -60,7 +60,7 @@ def commands_of(strategy: Strategy) -> Commands:
         for command in block.commands:
             first = command.moves[0]
             zones = tuple(tuple(Limit(c.left, c.right, float(c.bound)) for c in zone) for zone in command.zones)
-            entries.append((state, Held(first.automaton, event_word(first.automaton, first.edge), zones)))
+            entries.append((state, ZonedCommand(first.automaton, event_word(first.automaton, first.edge), zones)))
     return Commands(entries)
 
 
@@ -72,7 +72,7 @@ def commands_in(strategies: Iterable[Mapping[str, Any]]) -> Commands:
             state = {str(name): str(value) for name, value in entry["state"].items()}
             for command in entry["commands"]:
                 zones = tuple(_zone(text) for text in command["when"])
-                entries.append((state, Held(str(command["agent"]), str(command["do"]), zones)))
+                entries.append((state, ZonedCommand(str(command["agent"]), str(command["do"]), zones)))
     return Commands(entries)
 
 

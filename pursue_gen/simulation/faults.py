@@ -47,7 +47,7 @@ def read_faults(text: str) -> Tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Death:
+class Crash:
     """A node dies at the moment and is started again after so many seconds."""
 
     moment: float
@@ -63,11 +63,11 @@ class Breakdown:
     robot: str
     number: int
     share: float
-    says: bool
+    reported: bool
     back: Optional[float] = None
 
 
-class Trouble:
+class FaultPlan:
     """The faults of one mission: which kinds there are in it, and each case, drawn one after the other."""
 
     def __init__(self, kinds: Sequence[str], seed: str, start: float, span: float, controllers: Sequence[str],
@@ -83,7 +83,7 @@ class Trouble:
         self.offsets = dict.fromkeys(controllers, 0.0)
         if "clocks" in self.kinds:
             self.offsets = {name: self._count("clocks", draw.uniform(-0.5, 0.5)) for name in controllers}
-        self.deaths = self._deaths(start, span, controllers)
+        self.crashes = self._draw_crashes(start, span, controllers)
         self.cut: Optional[Tuple[str, float, float]] = None
         if "cut" in self.kinds and controllers:
             begin = start + draw.uniform(0.0, span)
@@ -93,7 +93,7 @@ class Trouble:
         self.junk: List[float] = sorted(start + draw.uniform(0.0, span) for _ in range(junk))
 
     @property
-    def excuses(self) -> bool:
+    def voids_guarantees(self) -> bool:
         """True once something has gone wrong that breaks what the strategy was promised."""
         return any(kind not in HARMLESS for kind in self.happened)
 
@@ -102,19 +102,19 @@ class Trouble:
         """By how much a clock may be wrong, in seconds."""
         return 0.5 if "clocks" in self.kinds else 0.0
 
-    def lost(self) -> bool:
+    def is_lost(self) -> bool:
         """Is this message lost?"""
         return self._chance("loss", 0.05)
 
-    def late(self) -> float:
+    def delay(self) -> float:
         """Seconds by which this message is late, and holds up those behind it."""
         return self._draw.uniform(0.0, 5.0) if self._chance("delay", 0.1) else 0.0
 
-    def overtaken(self) -> float:
+    def reorder_delay(self) -> float:
         """Seconds by which this message, and no other, is late."""
         return self._draw.uniform(0.0, 2.0) if self._chance("reorder", 0.1) else 0.0
 
-    def again(self) -> Optional[float]:
+    def duplicate_delay(self) -> Optional[float]:
         """Seconds after which this message comes again."""
         return self._draw.uniform(0.0, 2.0) if self._chance("duplicates", 0.1) else None
 
@@ -140,13 +140,13 @@ class Trouble:
         self.count(kind)
         return True
 
-    def _deaths(self, start: float, span: float, controllers: Sequence[str]) -> List[Death]:
+    def _draw_crashes(self, start: float, span: float, controllers: Sequence[str]) -> List[Crash]:
         if "deaths" not in self.kinds:
             return []
         nodes = ["observer", *controllers]
         draw = self._draw
         moments = [start + draw.uniform(0.0, span) for _ in range(draw.randint(1, 3))]
-        return [Death(moment, draw.choice(nodes), draw.uniform(0.3, 3.0)) for moment in moments]
+        return [Crash(moment, draw.choice(nodes), draw.uniform(0.3, 3.0)) for moment in moments]
 
     def _breakdown(self, robots: Sequence[str]) -> Optional[Breakdown]:
         kinds = sorted(self.kinds & {"failed", "silent"})

@@ -19,7 +19,7 @@ from pursue_gen.zones.dbm import INF, Dbm, constant
 from pursue_runtime.state import SystemState
 
 
-class Step(NamedTuple):
+class TakenStep(NamedTuple):
     """What led to the state of this number, and whether the strategy commanded it."""
 
     seq: int
@@ -37,7 +37,7 @@ class Judge:
         """`reaction` in time units; `offset`: by how much (time units) the clock of a controller may be wrong."""
         self.problems: List[str] = []
         self.off_model = 0
-        self.steps: List[Step] = []
+        self.steps: List[TakenStep] = []
         self._arena, self._bad = arena, bad
         self._names = [automaton.name for automaton in arena.network.automata]
         self._plans: Dict[int, Commands] = {0: commands}
@@ -45,21 +45,21 @@ class Judge:
         self._before: Optional[SystemState] = None
         self._entered = 0.0
         self._zeros: Dict[str, float] = {}
-        self._told: Set[Tuple[str, int]] = set()
+        self._ordered: Set[Tuple[str, int]] = set()
 
-    def planned(self, number: int, strategies: Mapping[str, Any], people: Optional[Mapping[str, Any]]) -> None:
+    def on_plan(self, number: int, strategies: Mapping[str, Any], people: Optional[Mapping[str, Any]]) -> None:
         """A new plan has been announced under this number."""
         parts = [*strategies.values(), *([people] if people else [])]
         self._plans[number] = commands_in(parts)
 
     # States -----------------------------------------------------------------------------------------------------------
 
-    def saw(self, state: SystemState, now: float) -> None:
+    def on_state(self, state: SystemState, now: float) -> None:
         """The observer publishes a state, at this moment (seconds)."""
         before, self._before = self._before, state
         if before is None or before.seq == 0:
             if state.seq > 0:
-                self._starts(state, now)
+                self._check_start(state, now)
             return
         if state.seq == before.seq:
             if (state.locations, state.values) != (before.locations, before.values):
@@ -67,20 +67,20 @@ class Judge:
         elif state.seq != before.seq + 1:
             self._problem(f"state {state.seq} follows state {before.seq}")
         elif state.event:
-            self._stepped(before, state, now)
+            self._check_step(before, state, now)
         elif (state.locations, state.values) != (before.locations, before.values):
             self._problem(f"state {state.seq} differs from the one before, but nothing has happened")
         if state.status != "waiting":
             self._check_clocks(state, now)
 
-    def _starts(self, state: SystemState, now: float) -> None:
+    def _check_start(self, state: SystemState, now: float) -> None:
         self._zeros = dict.fromkeys(self._arena.network.clocks, now)
         self._entered = now
         if (state.seq, self._key(state)) != (1, self._arena.initial):
             self._problem(f"the mission starts with state {state.seq}, not where the network starts")
         self._check_clocks(state, now)
 
-    def _stepped(self, before: SystemState, state: SystemState, now: float) -> None:
+    def _check_step(self, before: SystemState, state: SystemState, now: float) -> None:
         clocks = {clock: (now - zero) / state.unit for clock, zero in self._zeros.items()}
         what = f"{state.event} by {state.agent} (state {state.seq})"
         matching = [
@@ -95,11 +95,11 @@ class Judge:
         if move is None:
             move = matching[0]
             self._off_model(move, clocks, what)
-        commanded = move.controllable and not self._gives_up(move)
+        commanded = move.controllable and not self._is_deadline(move)
         if commanded:
             self._check_command(before, state, clocks, what, now)
         target = move.moves[0].edge.target
-        self.steps.append(Step(state.seq, state.agent, state.event, target, commanded))
+        self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
         self._entered = now
 
@@ -111,7 +111,7 @@ class Judge:
             self._problem(f"{what} is a command at clocks that its guard forbids")
         self.off_model += 1
 
-    def _gives_up(self, move: JointMove) -> bool:
+    def _is_deadline(self, move: JointMove) -> bool:
         """True for the step that tells that a deadline has passed: no command, though nobody else owns it."""
         first = move.moves[0]
         return self._bad == (first.automaton, first.edge.target)
@@ -143,7 +143,7 @@ class Judge:
 
     # Orders -----------------------------------------------------------------------------------------------------------
 
-    def told(self, agent: str, trigger: str, target: str, seq: int, newest: int, again: bool) -> None:
+    def on_order(self, agent: str, trigger: str, target: str, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do, because of state `seq`, when `newest` is the last that it knows.
 
         `again`: it was started again, and may say it once more, while the news that it is done is on its way.
@@ -158,10 +158,10 @@ class Judge:
             here = self._before.locations.get(agent) if self._before is not None else None
             if here != target and not again:
                 self._problem(f"wrong order: {what}, which is over already")
-        elif (agent, last.seq) in self._told:
+        elif (agent, last.seq) in self._ordered:
             self._problem(f"wrong order: {what}, for the second time")
         if last is not None:
-            self._told.add((agent, last.seq))
+            self._ordered.add((agent, last.seq))
 
     # What they need ---------------------------------------------------------------------------------------------------
 

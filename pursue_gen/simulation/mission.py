@@ -1,21 +1,21 @@
-"""One simulated mission, from `_start_` to its end: nodes, wires, world and judge on one clockwork."""
+"""One simulated mission, from `_start_` to its end: nodes, connections, world and judge on one event queue."""
 
 from __future__ import annotations
 
 import random
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
-from pursue_gen.simulation.clockwork import Act, Alarm, Clockwork
-from pursue_gen.simulation.faults import Death, Trouble
+from pursue_gen.simulation.connections import Connections
+from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
+from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
 from pursue_gen.simulation.opponents import OPPONENTS, Opponent
-from pursue_gen.simulation.planner import Planner
+from pursue_gen.simulation.planner import SimulatedPlanner
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.simulation.wires import Wires
-from pursue_gen.simulation.world import Mover
+from pursue_gen.simulation.world import SimulatedAgent
 from pursue_gen.tga.network import Kind
 from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.observer.mission import Mission
@@ -76,33 +76,33 @@ class Outcome:
     play: Tuple[str, ...] = ()
 
 
-class Play:
+class SimulatedMission:
     """A mission in progress; it is what the nodes see as `Outside`."""
 
     def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining],
                  record: bool = False) -> None:
         name = str(seed)
-        self.clockwork = Clockwork(START)
-        self.trouble = Trouble(settings.faults, name, START, settings.span, tuple(stage.strategies), stage.robots)
-        self.faulty = bool(self.trouble.kinds)
+        self.events = EventQueue(START)
+        self.fault_plan = FaultPlan(settings.faults, name, START, settings.span, tuple(stage.strategies), stage.robots)
+        self.faulty = bool(self.fault_plan.kinds)
         self.lines: List[str] = []
         self._stage, self._settings, self._seed, self._record = stage, settings, seed, record
         bad = stage.solution.objective.bad
-        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.trouble.offset)
-        self._wires = Wires(self.clockwork, self.trouble, name)
+        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.fault_plan.offset)
+        self._connections = Connections(self.events, self.fault_plan, name)
         self._kind = _opponent(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)
-        self._deed = Alarm(self.clockwork, self._act)
+        self._move_timer = Timer(self.events, self._act)
         self._word = ""
-        self._said: List[str] = []
+        self._published: List[str] = []
         self._complaints: List[str] = []
         self._observer = ObserverNode(stage, self, self._log)
-        self._planner = Planner(stage, self.clockwork, name, self._answered)
-        offsets = self.trouble.offsets
+        self._planner = SimulatedPlanner(stage, self.events, name, self._on_planner)
+        offsets = self.fault_plan.offsets
         self._controllers = {node: ControllerNode(stage, node, self, offsets[node]) for node in stage.strategies}
         self._people = PeopleNode(stage, self) if stage.people is not None else None
-        self._movers = {
-            agent: Mover(stage, agent, self.clockwork, self.trouble, name, self._report, stage.reaction)
+        self._agents = {
+            agent: SimulatedAgent(stage, agent, self.events, self.fault_plan, name, self._report, stage.reaction)
             for agent in stage.reports
         }
         self._latched: Optional[SystemState] = None
@@ -114,40 +114,40 @@ class Play:
 
     def run(self) -> Outcome:
         """Plays it to its end."""
-        clockwork, end = self.clockwork, START + self._settings.until
-        self._observer.beat()
-        self._trouble_ahead()
-        clockwork.at(START, lambda: self._observer.call("hear", "_start_"))
+        events, end = self.events, START + self._settings.until
+        self._observer.heartbeat()
+        self._schedule_faults()
+        events.schedule(START, lambda: self._observer.call("hear", "_start_"))
         while self._observer.mission.status not in ENDED and not (self._judge.problems or self._complaints):
-            moment = clockwork.next()
+            moment = events.next_time()
             if moment is None or moment > end:
-                clockwork.now = end
+                events.now = end
                 break
-            clockwork.step()
+            events.step()
         return self._outcome()
 
-    def _trouble_ahead(self) -> None:
+    def _schedule_faults(self) -> None:
         """Sets what faults there will be, and what faults make necessary."""
-        trouble, clockwork = self.trouble, self.clockwork
+        fault_plan, events = self.fault_plan, self.events
         if not self.faulty:
             return
-        clockwork.at(START + HEARTBEAT, self._beat)
-        for death in trouble.deaths:
-            clockwork.at(death.moment, lambda death=death: self._die(death))  # type: ignore[misc]
+        events.schedule(START + HEARTBEAT, self._heartbeat)
+        for crash in fault_plan.crashes:
+            events.schedule(crash.moment, lambda crash=crash: self._crash(crash))  # type: ignore[misc]
         draw = random.Random(f"{self._seed}/junk")
-        for moment in trouble.junk:
-            clockwork.at(moment, lambda: self._junk(draw))
+        for moment in fault_plan.junk:
+            events.schedule(moment, lambda: self._junk(draw))
 
     def _outcome(self) -> Outcome:
         mission, problems = self._observer.mission, [*self._judge.problems, *self._complaints]
         end, reason = self._end(mission)
-        time = self.clockwork.now - START
+        time = self.events.now - START
         bound = self._settings.bound
-        if not self.trouble.excuses and end == GOAL and bound is not None and time > bound + 1e-3:
+        if not self.fault_plan.voids_guarantees and end == GOAL and bound is not None and time > bound + 1e-3:
             end, reason = FAILED, f"it took {time:.3f} time units, more than the guaranteed {bound:.3f}"
         if problems:
             end, reason = FAILED, problems[0]
-        happened = dict(sorted(self.trouble.happened.items()))
+        happened = dict(sorted(self.fault_plan.happened.items()))
         return Outcome(
             self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
             tuple(problems), happened, tuple(self.lines),
@@ -159,7 +159,7 @@ class Play:
         ends = {STOPPED: STOPPED, LOST: LOST, HOLDING: HELD}
         if mission.status == WON:
             return GOAL, ""
-        if mission.status in ends and self.trouble.excuses:
+        if mission.status in ends and self.fault_plan.voids_guarantees:
             return ends[mission.status], mission.reason
         if mission.status == RUNNING and safety:
             return SAFE, ""
@@ -175,137 +175,140 @@ class Play:
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:
-            self._note(_told(state))
-        self._judge.saw(state, self.clockwork.now)
+            self._note(_described(state))
+        self._judge.on_state(state, self.events.now)
         for node in self._controllers.values():
-            self._tell(node, state, self._stage.reaction)
+            self._send_state(node, state, self._stage.reaction)
         if news:
-            for mover in self._movers.values():
-                mover.see(state)
-            self._look(state)
+            for mover in self._agents.values():
+                mover.on_state(state)
+            self._choose_move(state)
         if self._people is not None:
-            self._people.see(state)
+            self._people.on_state(state)
 
-    def _tell(self, node: ControllerNode, state: SystemState, latest: float) -> None:
+    def _send_state(self, node: ControllerNode, state: SystemState, latest: float) -> None:
         """Sends a state to a controller: to the process that listens now."""
-        self._wires.send(f"state:{node.name}", latest, _to(node, lambda: node.see(state)), node.name)
+        self._connections.send(f"state:{node.name}", latest, _to(node, lambda: node.on_state(state)), node.name)
 
-    def _teach(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
-        self._wires.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.learn(plan)), node.name)
+    def _send_plan(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
+        self._connections.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.on_plan(plan)), node.name)
 
-    def _hear(self, connection: str, text: str, latest: float, machine: str) -> None:
+    def _send_word(self, connection: str, text: str, latest: float, machine: str) -> None:
         """Sends a word to the observer."""
-        self._wires.send(connection, latest, _to(self._observer, lambda: self._observer.call("hear", text)), machine)
+        deliver = _to(self._observer, lambda: self._observer.call("hear", text))
+        self._connections.send(connection, latest, deliver, machine)
 
-    def propose(self, plan: Dict[str, Any]) -> None:
+    def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer has another plan for everybody."""
         self._plan = plan
-        self._judge.planned(plan["plan"], plan["strategies"], plan["people"])
+        self._judge.on_plan(plan["plan"], plan["strategies"], plan["people"])
         self._note(f"plan {plan['plan']} is published")
         for node in self._controllers.values():
-            self._teach(node, plan)
+            self._send_plan(node, plan)
         if self._people is not None:
-            self._people.learn(plan)
+            self._people.on_plan(plan)
 
-    def want(self, request: Optional[PlanRequest]) -> None:
+    def request_plan(self, request: Optional[PlanRequest]) -> None:
         """The observer wants another plan, or none any longer."""
-        self._planner.want(request)
+        self._planner.request_plan(request)
 
-    def say(self, node: str, word: Word, latest: float) -> None:
+    def publish_word(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI says a word."""
         text = format_word(word)
         self._note(f"{node} says {text}")
-        self._said.append(text)
-        self._hear(f"word:{node}", text, max(0.0, latest - self.clockwork.now), node)
+        self._published.append(text)
+        self._send_word(f"word:{node}", text, max(0.0, latest - self.events.now), node)
 
-    def order(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
+    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do."""
         self._note(f"{node} tells {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
-        self._judge.told(order.agent, order.trigger, order.target, seq, newest, again)
-        mover = self._movers.get(order.agent)
+        self._judge.on_order(order.agent, order.trigger, order.target, seq, newest, again)
+        mover = self._agents.get(order.agent)
         if mover is not None:
-            self._wires.send(f"order:{order.agent}", 0.0, mover.order)
+            self._connections.send(f"order:{order.agent}", 0.0, mover.on_order)
 
     # What the world does ----------------------------------------------------------------------------------------------
 
     def _report(self, agent: str, text: str) -> None:
         self._note(f"{agent} reports {text}")
         machine = self._stage.controller_of(agent) or ""
-        self._hear(f"report:{agent}", text, 0.0, machine)
+        self._send_word(f"report:{agent}", text, 0.0, machine)
 
-    def _look(self, state: SystemState) -> None:
+    def _choose_move(self, state: SystemState) -> None:
         """The agents that nobody controls look at the state."""
         deed = None
         if state.status in LIVE:
-            network, clocks = self._stage.arena.network, state.clocks_at(self.clockwork.now)
+            network, clocks = self._stage.arena.network, state.clocks_at(self.events.now)
             locations = tuple(state.locations[automaton.name] for automaton in network.automata)
             key = locations, tuple(state.values[name] for name, _ in network.variables)
             deed = self._opponent.next(key, (0.0, *(clocks[clock] for clock in network.clocks)))
         self._word = deed.word if deed else ""
-        self._deed.set(self.clockwork.now + deed.delay if deed else None)
+        self._move_timer.set(self.events.now + deed.delay if deed else None)
 
     def _act(self) -> None:
         if self._word:
             self._report(self._word.partition(":")[0], self._word)
         elif self._latched is not None:
-            self._look(self._latched)
+            self._choose_move(self._latched)
 
     # Faults -----------------------------------------------------------------------------------------------------------
 
-    def _beat(self) -> None:
+    def _heartbeat(self) -> None:
         """Once a second: the observer says its state again, and notices who is silent."""
-        clockwork, observer = self.clockwork, self._observer
+        events, observer = self.events, self._observer
         live = observer.mission.status in LIVE
-        clockwork.at(clockwork.now + HEARTBEAT, self._beat)
-        observer.beat()
+        events.schedule(events.now + HEARTBEAT, self._heartbeat)
+        observer.heartbeat()
         for name, node in self._controllers.items():
-            if node.alive and not self._wires.is_cut(name):
-                self._reachable[name] = clockwork.now
+            if node.alive and not self._connections.is_cut(name):
+                self._reachable[name] = events.now
             if not observer.alive:
                 continue
             away = name in observer.mission.silent
-            if away and self._reachable[name] == clockwork.now:
+            if away and self._reachable[name] == events.now:
                 self._note(f"{name} is heard again")
                 observer.call("back", name)
-            elif not away and live and clockwork.now > self._reachable[name] + SILENCE:
+            elif not away and live and events.now > self._reachable[name] + SILENCE:
                 self._note(f"{name} is silent")
                 observer.call("silent", name)
 
-    def _die(self, death: Death) -> None:
-        node: Any = self._observer if death.node == "observer" else self._controllers[death.node]
+    def _crash(self, crash: Crash) -> None:
+        node: Union[ObserverNode, ControllerNode] = self._observer
+        if crash.node != "observer":
+            node = self._controllers[crash.node]
         if not node.alive:
             return
-        self.trouble.count("deaths")
-        self._note(f"{death.node} dies")
-        node.die()
-        self.clockwork.at(self.clockwork.now + death.seconds, lambda: self._respawn(death.node, node))
+        self.fault_plan.count("deaths")
+        self._note(f"{crash.node} dies")
+        node.kill()
+        self.events.schedule(self.events.now + crash.seconds, lambda: self._restart(crash.node, node))
 
-    def _respawn(self, name: str, node: Any) -> None:
+    def _restart(self, name: str, node: Union[ObserverNode, ControllerNode]) -> None:
         self._note(f"{name} is started again")
-        node.start_again()
-        if name == "observer":
+        node.restart()
+        if isinstance(node, ObserverNode):
             return
         if self._observer.alive and self._latched is not None:  # what is latched comes at once
-            self._tell(node, self._latched, 0.3)
+            self._send_state(node, self._latched, 0.3)
             if self._plan is not None:
-                self._teach(node, self._plan)
+                self._send_plan(node, self._plan)
 
     def _junk(self, draw: random.Random) -> None:
         """A word that must change nothing."""
         mission = self._observer.mission
         words = [*JUNK, "x" * 3000]
-        words += [text for text in self._said if not text.endswith(f"@{mission.seq}")]
-        possible = set(mission.model.possible(mission.position(self.clockwork.now), timed=False))
+        words += [text for text in self._published if not text.endswith(f"@{mission.seq}")]
+        possible = set(mission.model.possible(mission.position(self.events.now), timed=False))
         words += [e.word for a in mission.model.automata for e in a.edges if e.word not in possible]
         text = draw.choice(words)
         word = parse_word(text)
         if word is not None and word.seq == mission.seq:
             return
-        self.trouble.count("junk")
+        self.fault_plan.count("junk")
         self._note(f"somebody says {text[:40]!r}")
         self._observer.call("hear", text)
 
-    def _answered(self, name: str, *args: Any) -> None:
+    def _on_planner(self, name: str, *args: Any) -> None:
         self._note(f"the planner: {name} {args[0]}")
         self._observer.call(name, *args)
 
@@ -313,7 +316,7 @@ class Play:
 
     def _note(self, text: str) -> None:
         if self._record:
-            self.lines.append(f"{self.clockwork.now - START:9.3f}  {text}")
+            self.lines.append(f"{self.events.now - START:9.3f}  {text}")
 
     def _log(self, level: str, text: str) -> None:
         if level != "info":
@@ -322,13 +325,13 @@ class Play:
                 self._complaints.append(f"the observer complains: {text}")
 
 
-def play(stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining] = None,
+def simulate_mission(stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining] = None,
          record: bool = False) -> Outcome:
     """One mission: the same for the same stage, settings and seed. `record`: with its play, a line for each event."""
-    return Play(stage, settings, seed, remaining, record).run()
+    return SimulatedMission(stage, settings, seed, remaining, record).run()
 
 
-def _to(node: Any, deliver: Act) -> Act:
+def _to(node: Union[ObserverNode, ControllerNode], deliver: Action) -> Action:
     """Delivers to the process that the node is now: what is on its way when that dies is lost."""
     life = node.life
 
@@ -349,7 +352,7 @@ def _opponent(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
     return "random" if rare else chosen
 
 
-def _told(state: SystemState) -> str:
+def _described(state: SystemState) -> str:
     """A state as a line of a play."""
     what = f"{state.event} by {state.agent}" if state.event else state.status
     more = f" ({state.status})" if state.event and state.status != "running" else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
-from pursue_gen.simulation.clockwork import Alarm, Clockwork
+from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.tga.names import is_doing, is_going
 from pursue_runtime.controller.scheduler import CommandScheduler, StartedActivity
@@ -22,25 +22,25 @@ TICK = 1e-9
 """Seconds by which an alarm rings after its moment, so that its moment has come by any clock."""
 
 
-class Outside(Protocol):
+class MissionLinks(Protocol):
     """What the nodes need of the mission around them."""
 
-    clockwork: Clockwork
+    events: EventQueue
     faulty: bool
 
     def publish(self, state: SystemState) -> None:
         """The observer says a state."""
 
-    def propose(self, plan: Dict[str, Any]) -> None:
+    def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer has another plan for everybody."""
 
-    def want(self, request: Optional[PlanRequest]) -> None:
+    def request_plan(self, request: Optional[PlanRequest]) -> None:
         """The observer wants another plan (None: no longer)."""
 
-    def say(self, node: str, word: Word, latest: float) -> None:
+    def publish_word(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI says a word, which is promised to be heard by the moment `latest`."""
 
-    def order(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
+    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
         """A controller tells its robot what to do, because of state `seq`; `newest` is the last one that it knows,
         `again`: it was started again since it has told it anything."""
 
@@ -49,11 +49,11 @@ class ObserverNode:
     """The observer. `alive` False: it was killed; its journal is kept as lines of text, as on a disk. `life` counts its
     processes: what was sent to one never comes to the next."""
 
-    def __init__(self, stage: Stage, outside: Outside, log: Callable[[str, str], None]) -> None:
+    def __init__(self, stage: Stage, links: MissionLinks, log: Callable[[str, str], None]) -> None:
         self.alive, self.life = True, 1
-        self._stage, self._outside, self._log = stage, outside, log
+        self._stage, self._links, self._log = stage, links, log
         self._entries: List[str] = []
-        self._alarm = Alarm(outside.clockwork, lambda: self.call("tick"))
+        self._timer = Timer(links.events, lambda: self.call("tick"))
         self._proposed = 0
         self.mission = self._mission()
 
@@ -67,113 +67,113 @@ class ObserverNode:
         """Calls the mission, writes down what has changed it, and says what follows."""
         if not self.alive:
             return
-        mission, now = self.mission, self._outside.clockwork.now
-        before = mission.revision() if self._outside.faulty else None
+        mission, now = self.mission, self._links.events.now
+        before = mission.revision() if self._links.faulty else None
         states = CALLS[name](mission, *args, now)
         if before is not None and mission.revision() != before:
             end = {"seq": mission.seq, "status": mission.status}
             self._entries.append(json.dumps({"at": now, "call": name, "args": args, **end}))
-        self._say(states)
+        self._publish(states)
 
-    def beat(self) -> None:
+    def heartbeat(self) -> None:
         """Says the state again."""
         if self.alive:
             if self.mission.proposal is not None:
                 self._proposed = 0
-            self._say([self.mission.state(self._outside.clockwork.now)])
+            self._publish([self.mission.state(self._links.events.now)])
 
-    def start_again(self) -> None:
+    def restart(self) -> None:
         """A new process: it has the journal, and nothing else."""
         self.alive = True
         self.life += 1
         self.mission = self._mission()
         replay(self.mission, [json.loads(entry) for entry in self._entries])
         self._proposed = 0
-        self.beat()
+        self.heartbeat()
 
-    def die(self) -> None:
+    def kill(self) -> None:
         """It is killed."""
         self.alive = False
-        self._alarm.set()
+        self._timer.set()
 
-    def _say(self, states: Sequence[SystemState]) -> None:
-        outside, mission = self._outside, self.mission
+    def _publish(self, states: Sequence[SystemState]) -> None:
+        links, mission = self._links, self.mission
         for state in states:
-            outside.publish(state)
+            links.publish(state)
         proposal = mission.proposal or mission.in_force
         if proposal is not None and proposal["plan"] != self._proposed:
             self._proposed = proposal["plan"]
-            outside.propose(proposal)
-        outside.want(mission.plan_request)
-        self._alarm.set(mission.next_moment(outside.clockwork.now))
+            links.publish_plan(proposal)
+        links.request_plan(mission.plan_request)
+        self._timer.set(mission.next_moment(links.events.now))
 
 
 class ControllerNode:
     """A controller. `offset`: seconds by which its clock is ahead."""
 
-    def __init__(self, stage: Stage, name: str, outside: Outside, offset: float) -> None:
+    def __init__(self, stage: Stage, name: str, links: MissionLinks, offset: float) -> None:
         self.name, self.life = name, 1
         self.alive, self._restarted, self._newest = True, False, 0
-        self._stage, self._outside, self._offset = stage, outside, offset
-        self._alarm = Alarm(outside.clockwork, self._ring)
-        self._player = self._new()
+        self._stage, self._links, self._offset = stage, links, offset
+        self._timer = Timer(links.events, self._on_timer)
+        self._scheduler = self._new()
 
     def _new(self) -> CommandScheduler:
         return CommandScheduler(self._stage.strategies[self.name], self.name)
 
     @property
     def _now(self) -> float:
-        return self._outside.clockwork.now + self._offset
+        return self._links.events.now + self._offset
 
-    def see(self, state: SystemState) -> None:
+    def on_state(self, state: SystemState) -> None:
         """A state has come."""
         if not self.alive:
             return
         self._newest = max(self._newest, state.seq)
-        known = self._player.state
-        for order in self._player.on_state(state, self._now):
+        known = self._scheduler.state
+        for order in self._scheduler.on_state(state, self._now):
             if order.agent in self._stage.robots and _is_for_robots(order):
-                self._outside.order(self.name, order, state.seq, self._newest, self._restarted)
+                self._links.command_robot(self.name, order, state.seq, self._newest, self._restarted)
         self._restarted = False
-        receipt = self._player.repeated_receipt()
+        receipt = self._scheduler.repeated_receipt()
         if receipt:
-            self._outside.say(self.name, receipt, self._outside.clockwork.now)
+            self._links.publish_word(self.name, receipt, self._links.events.now)
         if known is None or (known.seq, known.status) != (state.seq, state.status):
-            self._set()  # a state that is said again must not make it more patient
+            self._set_timer()  # a state that is said again must not make it more patient
 
-    def learn(self, plan: Dict[str, Any]) -> None:
+    def on_plan(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
         if self.alive:
             strategy = Strategy(plan["strategies"][self.name])
-            word = self._player.add_plan(plan["plan"], strategy, self._now)
-            self._outside.say(self.name, word, self._outside.clockwork.now)
-            self._set()
+            word = self._scheduler.add_plan(plan["plan"], strategy, self._now)
+            self._links.publish_word(self.name, word, self._links.events.now)
+            self._set_timer()
 
-    def start_again(self) -> None:
+    def restart(self) -> None:
         """A new process: it knows nothing."""
         self.alive = self._restarted = True
         self.life += 1
         self._newest = 0
-        self._player = self._new()
+        self._scheduler = self._new()
 
-    def die(self) -> None:
+    def kill(self) -> None:
         """It is killed."""
         self.alive = False
-        self._alarm.set()
+        self._timer.set()
 
-    def _ring(self) -> None:
-        decided = self._player.next_wakeup()[0]
-        word = self._player.on_timer(self._now)
+    def _on_timer(self) -> None:
+        decided = self._scheduler.next_wakeup()[0]
+        word = self._scheduler.on_timer(self._now)
         if word:
             stage = self._stage
-            moment = self._outside.clockwork.now if decided is None else decided - self._offset
-            self._outside.say(self.name, word, moment + stage.reaction)
-        self._set()
+            moment = self._links.events.now if decided is None else decided - self._offset
+            self._links.publish_word(self.name, word, moment + stage.reaction)
+        self._set_timer()
 
-    def _set(self) -> None:
-        moment, patience = self._player.next_wakeup()
-        now = self._outside.clockwork.now
-        self._alarm.set(
+    def _set_timer(self) -> None:
+        moment, patience = self._scheduler.next_wakeup()
+        now = self._links.events.now
+        self._timer.set(
             None if moment is None else moment - self._offset + TICK, None if patience is None else now + patience
         )
 
@@ -181,29 +181,29 @@ class ControllerNode:
 class PeopleNode:
     """The part of the UI that tells human allies what to do. It hears the observer at once."""
 
-    def __init__(self, stage: Stage, outside: Outside) -> None:
-        self._stage, self._outside = stage, outside
+    def __init__(self, stage: Stage, links: MissionLinks) -> None:
+        self._stage, self._links = stage, links
         self._ui = ui.MissionView(stage.model, IdleEnvironment(), stage.people)
-        self._alarm = Alarm(outside.clockwork, self._ring)
+        self._timer = Timer(links.events, self._on_timer)
 
-    def see(self, state: SystemState) -> None:
+    def on_state(self, state: SystemState) -> None:
         """A state has come."""
-        self._ui.on_state(state, self._outside.clockwork.now)
-        self._ring()
+        self._ui.on_state(state, self._links.events.now)
+        self._on_timer()
 
-    def learn(self, plan: Dict[str, Any]) -> None:
+    def on_plan(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
         if plan["people"]:
             self._ui.add_plan(plan["plan"], Strategy(plan["people"]))
-            self._ring()
+            self._on_timer()
 
-    def _ring(self) -> None:
-        now, stage = self._outside.clockwork.now, self._stage
+    def _on_timer(self) -> None:
+        now, stage = self._links.events.now, self._stage
         for text in self._ui.due(now, now):
             word = parse_word(text)
             assert word is not None, f"the user interface published {text!r}"
-            self._outside.say("UI", word, now + stage.reaction)
-        self._alarm.set(*self._ui.next_moments(now))
+            self._links.publish_word("UI", word, now + stage.reaction)
+        self._timer.set(*self._ui.next_moments(now))
 
 
 def _is_for_robots(order: StartedActivity) -> bool:

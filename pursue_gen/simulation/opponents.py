@@ -37,7 +37,7 @@ class Option(NamedTuple):
     last: float
 
 
-class Deed(NamedTuple):
+class OpponentMove(NamedTuple):
     """What an agent does, so many time units from now; with the word "" nothing: then it looks again."""
 
     word: str
@@ -84,7 +84,7 @@ class Opponent:
         self._draw = random.Random(f"{seed}/opponent")
         self._zeal = self._draw.uniform(0.1, 1.0)  # how often something is done where it could be
 
-    def next(self, state: State, point: Tuple[float, ...]) -> Optional[Deed]:
+    def next(self, state: State, point: Tuple[float, ...]) -> Optional[OpponentMove]:
         """What is done next, if no other event comes first; asked anew in each state."""
         if self.kind == "still":
             return None
@@ -95,13 +95,13 @@ class Opponent:
             return self._worst(able, point)
         return self._any(able)
 
-    def _any(self, able: List[Option]) -> Deed:
+    def _any(self, able: List[Option]) -> OpponentMove:
         if self._draw.random() > self._zeal:
-            return Deed("", self._draw.choice(SPANS) * self._draw.uniform(0.1, 1.0))
+            return OpponentMove("", self._draw.choice(SPANS) * self._draw.uniform(0.1, 1.0))
         option = self._draw.choice(able)
         return self._deed(option, self._draw.choice(self._moments(option)))
 
-    def _worst(self, able: List[Option], point: Tuple[float, ...]) -> Deed:
+    def _worst(self, able: List[Option], point: Tuple[float, ...]) -> OpponentMove:
         """The deed after which the strategy may need longest to the goal, counted from now; where a deed leads out of
         what the strategy knows, that is the longest of all. It looks at the first and at the last moment of each. Where
         nothing is known of times (a safety objective, a game too large), any deed."""
@@ -121,5 +121,5 @@ class Opponent:
             last = option.first + self._draw.choice(SPANS) * self._draw.random()
         return [option.first, last, self._draw.uniform(option.first, last)]
 
-    def _deed(self, option: Option, moment: float) -> Deed:
-        return Deed(f"{option.agent}:{option.word}", moment)
+    def _deed(self, option: Option, moment: float) -> OpponentMove:
+        return OpponentMove(f"{option.agent}:{option.word}", moment)

@@ -5,45 +5,45 @@ from __future__ import annotations
 import random
 from typing import Any, Callable, Dict, Optional
 
-from pursue_gen.simulation.clockwork import Clockwork
+from pursue_gen.simulation.event_queue import EventQueue
 from pursue_gen.simulation.stage import Stage
 from pursue_runtime.observer.planning import PlanRequest
 
-SHORTEST, LONGEST = 0.2, 3.0
+MIN_TIME, MAX_TIME = 0.2, 3.0
 """Seconds between which the planner answers."""
 
 LIMIT = 10.0
 """Seconds that it really may take, as the observer's ~planning_limit has it."""
 
 
-class Planner:
+class SimulatedPlanner:
     """Looks for one plan at a time; `answer` gets `planned` or `unplanned`, and what the mission is to be told."""
 
-    def __init__(self, stage: Stage, clockwork: Clockwork, seed: str, answer: Callable[..., None]) -> None:
-        self._stage, self._clockwork, self._answer = stage, clockwork, answer
+    def __init__(self, stage: Stage, events: EventQueue, seed: str, answer: Callable[..., None]) -> None:
+        self._stage, self._events, self._answer = stage, events, answer
         self._draw = random.Random(f"{seed}/planner")
         self._number = 0
 
-    def want(self, request: Optional[PlanRequest]) -> None:
+    def request_plan(self, request: Optional[PlanRequest]) -> None:
         """This plan is wanted now (None: none is)."""
         number = request.number if request else 0
         if number == self._number:
             return
         self._number = number
         if request is not None:
-            delay = self._draw.uniform(SHORTEST, LONGEST)
-            self._clockwork.at(self._clockwork.now + delay, lambda: self._look(request))
+            delay = self._draw.uniform(MIN_TIME, MAX_TIME)
+            self._events.schedule(self._events.now + delay, lambda: self._search(request))
 
-    def _look(self, request: PlanRequest) -> None:
+    def _search(self, request: PlanRequest) -> None:
         if request.number != self._number:
             return
-        found = self._ask(request)
+        found = self._replan(request)
         if found.get("won"):
             self._answer("planned", request.number, found)
         else:
             self._answer("unplanned", request.number, str(found["why"]))
 
-    def _ask(self, request: PlanRequest) -> Dict[str, Any]:
+    def _replan(self, request: PlanRequest) -> Dict[str, Any]:
         if self._stage.request is None:
             return {"won": False, "why": "the workspace has no planner"}
         from pursue_gen.replanning import replan

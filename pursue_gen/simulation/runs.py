@@ -13,7 +13,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome, Settings, play
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome, Settings, simulate_mission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.solution import Solution
@@ -75,7 +75,7 @@ def case_of(scenario: Scenario, won: Solution, options: Options, settings: Setti
     return Case(scenario, won, options, replace(settings, bound=bound, span=span)), remaining.works
 
 
-class Players:
+class MissionRunner:
     """A stage, and what the missions on it share."""
 
     def __init__(self, case: Case) -> None:
@@ -83,9 +83,9 @@ class Players:
         self._settings = case.settings
         self._remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
 
-    def play(self, seed: int, record: bool = False) -> Outcome:
+    def run(self, seed: int, record: bool = False) -> Outcome:
         """One mission."""
-        return play(self.stage, self._settings, seed, self._remaining, record)
+        return simulate_mission(self.stage, self._settings, seed, self._remaining, record)
 
 
 def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
@@ -93,8 +93,8 @@ def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
     shares = [list(seeds[k : k + _SHARE]) for k in range(0, len(seeds), _SHARE)]
     jobs = min(jobs, len(shares))
     if jobs <= 1:
-        players = Players(case)
-        yield from (players.play(seed) for seed in seeds)
+        players = MissionRunner(case)
+        yield from (players.run(seed) for seed in seeds)
         return
     context = multiprocessing.get_context("spawn")
     resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
@@ -124,9 +124,9 @@ def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
 def _work(case: Case, shares: Sequence[Sequence[int]], end: Connection) -> None:
     """A process: plays its shares, and sends the outcomes of each; or else, what went wrong."""
     try:
-        players = Players(case)
+        players = MissionRunner(case)
         for share in shares:
-            end.send([players.play(seed) for seed in share])
+            end.send([players.run(seed) for seed in share])
     except Exception as problem:
         end.send(problem)
 
@@ -141,7 +141,7 @@ def _received(end: Connection) -> List[Outcome]:
     return list(found)
 
 
-def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, told: Callable[[int], Any] = lambda done: None,
+def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable[[int], Any] = lambda done: None,
              shown: int = 1, remaining: bool = True) -> Summary:
     """Plays the missions; `told` hears how many are done. The first `shown` failures come with their plays."""
     times: Dict[str, List[float]] = {}
@@ -156,10 +156,10 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, told: Callable[[in
             count += 1
             failed += [outcome] if len(failed) < shown else []
         done += 1
-        told(done)
+        progress(done)
     rows = tuple(
         Row(end, len(times[end]), min(times[end]), median(times[end]), max(times[end])) for end in ENDS if end in times
     )
-    players = Players(case) if failed else None
-    plays = tuple(players.play(outcome.seed, record=True) for outcome in failed) if players else ()
+    players = MissionRunner(case) if failed else None
+    plays = tuple(players.run(outcome.seed, record=True) for outcome in failed) if players else ()
     return Summary(done, rows, plays, count, dict(sorted(happened.items())), planned, case.settings.bound, remaining)

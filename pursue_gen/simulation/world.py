@@ -8,10 +8,10 @@ from __future__ import annotations
 import random
 from typing import Callable
 
-from pursue_gen.simulation.clockwork import Alarm, Clockwork
-from pursue_gen.simulation.faults import Breakdown, Trouble
+from pursue_gen.simulation.connections import drawn_share
+from pursue_gen.simulation.event_queue import EventQueue, Timer
+from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.simulation.wires import share
 from pursue_gen.tga.names import is_under_way
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
 from pursue_runtime.state import SystemState
@@ -20,39 +20,39 @@ INSIDE = 1e-3
 """Time units by which the earliest end is inside its window, which opens with a strict bound."""
 
 
-class Durations:
+class FaultyDurations:
     """How long each activity of an agent takes; in the place of the simulator's `Delays`."""
 
-    def __init__(self, trouble: Trouble, seed: str) -> None:
-        self._trouble, self._seed = trouble, seed
+    def __init__(self, fault_plan: FaultPlan, seed: str) -> None:
+        self._fault_plan, self._seed = fault_plan, seed
 
     def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Time units from the start of the agent's `number`-th activity to its end: each end of the window with
         probability 1/4."""
-        part = share(random.Random(f"{self._seed}/{agent}/{number}"))
+        part = drawn_share(random.Random(f"{self._seed}/{agent}/{number}"))
         inside = min(INSIDE, (window.high - window.low) / 2)
         usual = window.low + inside + part * (window.high - window.low - inside)
-        return self._trouble.duration(window.low, window.high, usual)
+        return self._fault_plan.duration(window.low, window.high, usual)
 
 
-class Mover:
+class SimulatedAgent:
     """An agent that moves and acts. Its ends are words, brought by `say`."""
 
-    def __init__(self, stage: Stage, agent: str, clockwork: Clockwork, trouble: Trouble, seed: str,
-                 say: Callable[[str, str], None], promised: float) -> None:
+    def __init__(self, stage: Stage, agent: str, events: EventQueue, fault_plan: FaultPlan, seed: str,
+                 publish: Callable[[str, str], None], promised: float) -> None:
         """`promised`: the strategy has it that an order comes so many seconds after its state at the latest."""
         self.agent = agent
         self._stage = stage
-        self._clockwork, self._trouble, self._say, self._promised = clockwork, trouble, say, promised
-        self._simulator = Simulator(stage.model, [agent], Durations(trouble, seed))
-        self._alarm = Alarm(clockwork, self._act)
-        self._breakdown = trouble.breakdown if trouble.breakdown and trouble.breakdown.robot == agent else None
+        self._events, self._fault_plan, self._publish, self._promised = events, fault_plan, publish, promised
+        self._simulator = Simulator(stage.model, [agent], FaultyDurations(fault_plan, seed))
+        self._timer = Timer(events, self._on_timer)
+        self._breakdown = fault_plan.breakdown if fault_plan.breakdown and fault_plan.breakdown.robot == agent else None
         self._place = ""
         self._activities = 0
         self._broken = False
         self._stamp = 0.0
 
-    def see(self, state: SystemState) -> None:
+    def on_state(self, state: SystemState) -> None:
         """A state of the mission: it is what the world is like, for robots move by orders only."""
         place = state.locations.get(self.agent, "")
         if place != self._place:
@@ -61,46 +61,47 @@ class Mover:
                 self._activities += 1
                 self._stamp = state.stamp
                 self._may_break()
-        self._simulator.on_state(state, self._clockwork.now)
-        self._set()
+        self._simulator.on_state(state, self._events.now)
+        self._set_timer()
 
-    def order(self) -> None:
+    def on_order(self) -> None:
         """A goal or an action for a robot. One that comes as promised lets it end anywhere in the model's window."""
-        now = self._clockwork.now
+        now = self._events.now
         in_time = now <= self._stamp + self._promised + 1e-6
         self._simulator.on_goal(self.agent, self._stamp if in_time else now)
-        self._set()
+        self._set_timer()
 
-    def _act(self) -> None:
-        now = self._clockwork.now
+    def _on_timer(self) -> None:
+        now = self._events.now
         for word in self._simulator.due(now, now):
             if not self._broken:
-                self._say(self.agent, word)
-        self._set()
+                self._publish(self.agent, word)
+        self._set_timer()
 
-    def _set(self) -> None:
-        self._alarm.set(*self._simulator.next_moments())
+    def _set_timer(self) -> None:
+        self._timer.set(*self._simulator.next_moments())
 
     def _may_break(self) -> None:
         breakdown = self._breakdown
         if breakdown is not None and breakdown.number == self._activities:
             self._breakdown = None
-            self._clockwork.at(self._clockwork.now + 5.0 * breakdown.share, lambda: self._break(breakdown, self._place))
+            moment = self._events.now + 5.0 * breakdown.share
+            self._events.schedule(moment, lambda: self._break(breakdown, self._place))
 
     def _break(self, breakdown: Breakdown, place: str) -> None:
         if self._place != place:
             return  # it was done sooner
         self._broken = True
-        self._trouble.count("failed" if breakdown.says else "silent")
-        if breakdown.says:
-            self._say(self.agent, f"{self.agent}:_failed_")
+        self._fault_plan.count("failed" if breakdown.reported else "silent")
+        if breakdown.reported:
+            self._publish(self.agent, f"{self.agent}:_failed_")
         if breakdown.back is not None:
-            self._clockwork.at(self._clockwork.now + breakdown.back, self._mend)
+            self._events.schedule(self._events.now + breakdown.back, self._repair)
 
-    def _mend(self) -> None:
+    def _repair(self) -> None:
         """It can go on: what it was at ends now, if that is still to end."""
         self._broken = False
         model = self._stage.model
         window = end_window(model.automaton(self.agent), self._place)
         if window is not None:
-            self._say(self.agent, report_word(model, self.agent, window.event))
+            self._publish(self.agent, report_word(model, self.agent, window.event))

@@ -12,7 +12,7 @@ from typing import Tuple
 import pytest
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.allowance import Clock
+from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
@@ -228,12 +228,12 @@ def test_without_the_native_engine_the_time_is_kept_too(monkeypatch: pytest.Monk
     scenario = parse(CALLED.format(deadline=5), "x.pur")
     network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
     monkeypatch.setattr(native, "available", lambda: False)
-    assert Clock(Limits(PLENTY)).verdict(network, objective, DEFAULT.reaction).strategy is not None
+    assert TimeBudget(Limits(PLENTY)).verdict(network, objective, DEFAULT.reaction).strategy is not None
     with pytest.raises(PursueError) as stopped:
-        Clock(Limits(1e-4)).verdict(network, objective, DEFAULT.reaction)
+        TimeBudget(Limits(1e-4)).verdict(network, objective, DEFAULT.reaction)
     assert stopped.value.exit_status == 5
     with pytest.raises(PursueError) as refused:
-        Clock(Limits(PLENTY)).verdict(network, objective, Fraction(-1))
+        TimeBudget(Limits(PLENTY)).verdict(network, objective, Fraction(-1))
     assert [finding.code for finding in refused.value.diagnostics] == ["SYN001"]
 
 

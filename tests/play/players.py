@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.play.counter import Robots
+from pursue_gen.play.counter import CounterPlay
 from pursue_gen.play.games import game_of
 from pursue_gen.play.session import GameOf, Session
-from pursue_gen.play.table import GRAIN, Plan, Table, beginning, board_of
-from pursue_gen.play.words import words_of
-from pursue_gen.play.world import Offer, World
+from pursue_gen.play.state import GRAIN, PlannedMove, PlayState, beginning, setup_of
+from pursue_gen.play.texts import event_texts
+from pursue_gen.play.world import Offer, StrategyPlay
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.synthesis.limits import NO_LIMITS
 
@@ -71,26 +71,26 @@ def changed(name: str, old: str, new: str) -> Scenario:
 def game(name: str, ideal: bool = False, old: str = "", new: str = "") -> GameOf:
     """The game of a scenario, solved once."""
     scenario = changed(name, old, new) if old else read(name)
-    return game_of(board_of(scenario, IDEAL if ideal else Rules()), 1, NO_LIMITS)
+    return game_of(setup_of(scenario, IDEAL if ideal else Rules()), 1, NO_LIMITS)
 
 
 def session(name: str, old: str = "", new: str = "") -> Session:
     """A new session of it."""
     played = game(name, old=old, new=new)
-    return Session(played, words_of(played.board.scenario, played.board.network), beginning(played.board))
+    return Session(played, event_texts(played.setup.scenario, played.setup.network), beginning(played.setup))
 
 
-def world(name: str, seed: int, ideal: bool = False) -> World:
+def world(name: str, seed: int, ideal: bool = False) -> StrategyPlay:
     """A game against the strategy."""
     played = game(name, ideal)
-    assert isinstance(played, World)
-    return World(played.board, played.advisor, seed)
+    assert isinstance(played, StrategyPlay)
+    return StrategyPlay(played.setup, played.advisor, seed)
 
 
-def robots(name: str, old: str = "", new: str = "") -> Robots:
+def robots(name: str, old: str = "", new: str = "") -> CounterPlay:
     """A game against the counter-strategy."""
     played = game(name, old=old, new=new)
-    assert isinstance(played, Robots)
+    assert isinstance(played, CounterPlay)
     return played
 
 
@@ -110,7 +110,7 @@ def whims(draw: st.DrawFn, most: int) -> List[Tuple[int, int]]:
     return draw(st.lists(st.tuples(st.integers(0, 11), st.integers(0, 10)), max_size=most))
 
 
-def do(played: GameOf, table: Table, whim: Optional[Tuple[int, int]]) -> Table:
+def do(played: GameOf, table: PlayState, whim: Optional[Tuple[int, int]]) -> PlayState:
     """The table after that whim: an offer at a moment, a wait of some length, or (None) a wait for what comes."""
     if whim is None:
         return played.advance(table)
@@ -121,5 +121,5 @@ def do(played: GameOf, table: Table, whim: Optional[Tuple[int, int]]) -> Table:
     if not offers:
         return played.advance(table)
     offer = offers[kind % len(offers)]
-    planned = played.planned(table, Plan(offer.agent, offer.word, moments(offer, table.now, share)))
+    planned = played.planned(table, PlannedMove(offer.agent, offer.word, moments(offer, table.now, share)))
     return played.advance(planned)

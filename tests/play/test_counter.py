@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from players import do, robots, whims
 
-from pursue_gen.play.table import LOST, RUNNING, WON, Plan, Table, beginning
+from pursue_gen.play.state import LOST, RUNNING, WON, PlannedMove, PlayState, beginning
 
 REACH = (
     ("cage", "", ""),
@@ -28,13 +28,13 @@ def test_in_a_lost_game_the_robots_never_reach_the_goal(
     name: str, old: str, new: str, wishes: List[Tuple[int, int]]
 ) -> None:
     played = robots(name, old, new)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         if table.over:
             break
         table = do(played, table, whim)
         assert table.status != WON
-        assert table.status == LOST or played.oracle.lost(table.here)
+        assert table.status == LOST or played.oracle.lost(table.position)
 
 
 @pytest.mark.parametrize("name, old, new", SAFE)
@@ -45,7 +45,7 @@ def test_in_a_lost_safety_game_the_robots_lose_in_time(
 ) -> None:
     played = robots(name, old, new)
     assert played.horizon is not None
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         table = table if table.over else do(played, table, whim)
     for _ in range(100):
@@ -58,31 +58,31 @@ def test_in_a_lost_safety_game_the_robots_lose_in_time(
 def test_where_losing_takes_long_it_stays_lost_all_the_same(wishes: List[Tuple[int, int]]) -> None:
     played = robots("ecobot/ecobot", "within 46", "within 45")
     assert played.horizon is None
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         if not table.over:
             table = do(played, table, whim)
-            assert table.status == LOST or played.oracle.lost(table.here)
+            assert table.status == LOST or played.oracle.lost(table.position)
 
 
-def order(table: Table, word: str, at: Fraction) -> Table:
+def order(table: PlayState, word: str, at: Fraction) -> PlayState:
     """The table with an order of the person for the keeper."""
-    return robots("cage").planned(table, Plan("keeper", word, at))
+    return robots("cage").planned(table, PlannedMove("keeper", word, at))
 
 
 def test_an_order_is_carried_out_if_that_helps_nobody() -> None:
     played = robots("cage")
-    table = played.advance(order(beginning(played.board), "keeper_yard2exit", Fraction(3)))
+    table = played.advance(order(beginning(played.setup), "keeper_yard2exit", Fraction(3)))
     while table.deeds[-1].agent != "keeper":
         table = played.advance(table)
     assert table.deeds[-1].word == "keeper_yard2exit"
-    assert 3 <= table.deeds[-1].at <= 3 + played.board.rules.reaction
+    assert 3 <= table.deeds[-1].at <= 3 + played.setup.rules.reaction
     assert table.plans == ()
 
 
 def test_the_lion_gets_away_when_the_keeper_comes() -> None:
     played = robots("cage")
-    table = order(beginning(played.board), "keeper_yard2cage", Fraction(2))
+    table = order(beginning(played.setup), "keeper_yard2cage", Fraction(2))
     for _ in range(30):
         again = played.advance(table)
         if again == table:
@@ -97,7 +97,7 @@ def test_the_lion_gets_away_when_the_keeper_comes() -> None:
 
 def test_going_round_in_circles_is_noticed() -> None:
     played = robots("cage")
-    table = beginning(played.board)
+    table = beginning(played.setup)
     assert played.repeats(table) is None
     for word in ("keeper_yard2exit", "keeper_exit2yard") * 3:
         while word not in {offer.word for offer in played.offers(table)}:

@@ -38,12 +38,12 @@ def test_it_begins_with_who_plays_whom() -> None:
 def test_a_number_and_a_moment() -> None:
     at, told = say(session(THIEF), "1 @ 3.5", "wait")
     assert "thief    on the way from c to b since 3.5; arrives between 15.5 and 16.5" in told
-    assert at.table.now == Fraction(7, 2)
+    assert at.play.now == Fraction(7, 2)
 
 
 def test_waiting_for_a_while_and_until_a_time() -> None:
-    assert say(session(THIEF), "wait 0.5")[0].table.now == Fraction(1, 2)
-    assert say(session(THIEF), "wait 0.5", "wait @ 0.75")[0].table.now == Fraction(3, 4)
+    assert say(session(THIEF), "wait 0.5")[0].play.now == Fraction(1, 2)
+    assert say(session(THIEF), "wait 0.5", "wait @ 0.75")[0].play.now == Fraction(3, 4)
 
 
 def test_undo_and_redo_lead_to_the_very_same_tables() -> None:
@@ -51,10 +51,10 @@ def test_undo_and_redo_lead_to_the_very_same_tables() -> None:
     first, _ = say(start, "1")
     second, _ = say(first, "wait")
     back, told = say(second, "undo")
-    assert back.table == first.table
+    assert back.play == first.play
     assert told == "\n".join(shown(first))
-    assert say(back, "undo")[0].table == start.table
-    assert say(back, "redo")[0].table == second.table
+    assert say(back, "undo")[0].play == start.play
+    assert say(back, "redo")[0].play == second.play
     other, _ = say(back, "wait 0.125")
     assert other.future == ()
     assert "where it began" in say(start, "undo")[1]
@@ -81,7 +81,7 @@ def test_wrong_input_is_explained_and_changes_nothing(line: str, why: str) -> No
     start = session(THIEF)
     reply = answer(start, line)
     assert why in "\n".join(reply.lines)
-    assert reply.session.table == start.table
+    assert reply.session.play == start.play
     assert not reply.over
 
 
@@ -118,17 +118,17 @@ def test_the_map_tells_ways_and_people() -> None:
 def test_a_won_game_ends_with_a_clear_sentence() -> None:
     at = session("thesis/scenario_1")
     told = ""
-    while not at.table.over:
+    while not at.play.over:
         at, told = say(at, "wait")
     assert told.splitlines()[-1].startswith("The robots have done it after ")
     assert "The game is over" in say(at, "wait")[1]
     back, told = say(at, "undo")
-    assert not back.table.over and "You can do" in told
+    assert not back.play.over and "You can do" in told
 
 
 def test_a_lost_game_ends_with_a_clear_sentence() -> None:
     at, told = session("work_cell/work_cell", "within 30", "within 12"), ""
-    while not at.table.over:
+    while not at.play.over:
         at, told = say(at, "wait")
     assert told.splitlines()[-1].startswith("The robots have lost after ")
     assert "no putDownBox within 12 of newBox" in told
@@ -158,7 +158,7 @@ def test_a_trace_of_nothing_is_an_empty_list(tmp_path: Path) -> None:
 
 def test_a_journal_is_found_right_by_replay(tmp_path: Path) -> None:
     file, at = tmp_path / "game.jsonl", session("thesis/scenario_2")
-    while not at.table.over:
+    while not at.play.over:
         at, _ = say(at, "wait")
     say(at, f"save {file}")
     scenario = SCENARIOS / "thesis" / "scenario_2.pur"

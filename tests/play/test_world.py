@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from players import do, game, moments, whims, world
 
-from pursue_gen.play.table import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, Plan, beginning, last_moment
-from pursue_gen.play.world import World
+from pursue_gen.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove, beginning, last_moment
+from pursue_gen.play.world import StrategyPlay
 
 REACH = ("thesis/scenario_1", "thesis/scenario_2", "thesis/scenario_3", "thesis/scenario_4", "thesis/catch_the_thief",
          "catch_the_thief/one_officer")
@@ -25,7 +25,7 @@ def test_a_won_game_is_won_whatever_a_person_does(
     name: str, ideal: bool, seed: int, wishes: List[Tuple[int, int]]
 ) -> None:
     played = world(name, seed, ideal)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         if not table.over:
             table = do(played, table, whim)
@@ -41,7 +41,7 @@ def test_a_won_game_is_won_whatever_a_person_does(
 @given(st.sampled_from(SAFE), st.integers(0, 999), whims(most=80))
 def test_a_safe_game_stays_safe_whatever_a_person_does(name: str, seed: int, wishes: List[Tuple[int, int]]) -> None:
     played = world(name, seed)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         table = do(played, table, whim)
         assert table.status == RUNNING
@@ -51,11 +51,11 @@ def test_a_safe_game_stays_safe_whatever_a_person_does(name: str, seed: int, wis
 @given(st.sampled_from(REACH + SAFE), st.integers(0, 999), whims(most=30))
 def test_every_step_is_in_its_window_and_in_order(name: str, seed: int, wishes: List[Tuple[int, int]]) -> None:
     played = world(name, seed)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for whim in wishes:
         if table.over:
             break
-        last = last_moment(played.board, table)
+        last = last_moment(played.setup, table)
         after = do(played, table, whim)
         assert table.now <= after.now
         assert last is None or after.now <= last
@@ -68,7 +68,7 @@ def test_every_step_is_in_its_window_and_in_order(name: str, seed: int, wishes: 
 
 def test_looking_again_and_again_changes_nothing() -> None:
     played = world("thesis/scenario_1", 7)
-    through, slowly = beginning(played.board), beginning(played.board)
+    through, slowly = beginning(played.setup), beginning(played.setup)
     while not through.over:
         through = played.advance(through)
     while not slowly.over:
@@ -80,11 +80,11 @@ def test_the_seed_decides_what_nobody_says() -> None:
     plays = set()
     for seed in range(8):
         played = world("thesis/scenario_1", seed)
-        table = beginning(played.board)
+        table = beginning(played.setup)
         while not table.over:
             table = played.advance(table)
         plays.add(tuple(deed.at for deed in table.deeds))
-        again = beginning(played.board)
+        again = beginning(played.setup)
         while not again.over:
             again = played.advance(again)
         assert again == table
@@ -93,13 +93,13 @@ def test_the_seed_decides_what_nobody_says() -> None:
 
 def test_a_person_may_say_when_a_movement_ends() -> None:
     played = world("thesis/scenario_1", 1)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     while not (offers := [offer for offer in played.offers(table) if offer.drawn is not None]):
         table = played.advance(table)
     offer = offers[0]
     at = moments(offer, table.now, 7)
     assert at != offer.drawn
-    table = played.planned(table, Plan(offer.agent, offer.word, at))
+    table = played.planned(table, PlannedMove(offer.agent, offer.word, at))
     while (offer.agent, offer.word) not in {(deed.agent, deed.word) for deed in table.deeds}:
         table = played.advance(table)
     deed = next(deed for deed in table.deeds if deed.word == offer.word)
@@ -108,9 +108,9 @@ def test_a_person_may_say_when_a_movement_ends() -> None:
 
 def test_what_is_planned_for_later_happens_then_and_not_before() -> None:
     played = world("thesis/catch_the_thief", 1)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     offer = played.offers(table)[0]
-    table = played.planned(table, Plan(offer.agent, offer.word, Fraction(7, 2)))
+    table = played.planned(table, PlannedMove(offer.agent, offer.word, Fraction(7, 2)))
     while not any(deed.agent == "thief" for deed in table.deeds):
         assert table.plans and table.now < Fraction(7, 2)
         table = played.advance(table)
@@ -120,7 +120,7 @@ def test_what_is_planned_for_later_happens_then_and_not_before() -> None:
 
 def test_who_did_what_is_told() -> None:
     played = world("thesis/scenario_1", 1)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     while not table.over:
         table = played.advance(table)
     assert {deed.by for deed in table.deeds} == {ROBOTS, CHANCE}
@@ -129,7 +129,7 @@ def test_who_did_what_is_told() -> None:
 def test_a_strategy_that_does_nothing_would_lose() -> None:
     """The judge of these tests can tell: with an empty strategy the deadline passes."""
     played = game("work_cell/work_cell")
-    assert isinstance(played, World)
+    assert isinstance(played, StrategyPlay)
 
     class Nobody:
         size = 0
@@ -138,9 +138,9 @@ def test_a_strategy_that_does_nothing_would_lose() -> None:
             return None
 
     lazy = replace(played, advisor=Nobody())
-    table = beginning(lazy.board)
+    table = beginning(lazy.setup)
     offer = next(offer for offer in lazy.offers(table) if offer.word == "newBox")
-    table = lazy.planned(table, Plan(offer.agent, offer.word, Fraction(2)))
+    table = lazy.planned(table, PlannedMove(offer.agent, offer.word, Fraction(2)))
     while not table.over:
         table = lazy.advance(table)
     assert (table.status, table.now) == (LOST, 32)
@@ -149,7 +149,7 @@ def test_a_strategy_that_does_nothing_would_lose() -> None:
 @pytest.mark.parametrize("name", SAFE)
 def test_where_nobody_does_anything_nothing_happens(name: str) -> None:
     played = world(name, 1)
-    table = beginning(played.board)
+    table = beginning(played.setup)
     for _ in range(20):
         after = played.advance(table)
         if after == table:

@@ -14,7 +14,7 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.language import load
 from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.moves import Moves, after
-from pursue_gen.replay.record import State
+from pursue_gen.replay.record import RecordedState
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import translate
 
@@ -52,7 +52,7 @@ def game() -> Game:
 class Mission:
     """What was said and shown: (seconds, topic, node, text or pose)."""
 
-    states: List[State] = field(default_factory=list)
+    states: List[RecordedState] = field(default_factory=list)
     heard: List[Tuple[float, str, str, Any]] = field(default_factory=list)
     unit: float = 1.0
 
@@ -84,7 +84,7 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
 
     def show(at: float, seq: int, **more: Any) -> None:
         clocks = {clock: (at - zero) / unit for clock, zero in zeros.items()}
-        made.states.append(State(seq, at, place.locations, place.values, clocks, unit, **more))
+        made.states.append(RecordedState(seq, at, place.locations, place.values, clocks, unit, **more))
 
     show(START - 3.0, 0, status="waiting")
     made.say(START - 0.001, "_start_", "UI")
@@ -105,7 +105,7 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
     return made
 
 
-def text_of(state: State) -> str:
+def text_of(state: RecordedState) -> str:
     """The text on pursue/system_state, as docs/run_time.md has it."""
     head = f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"
     facts = {"plan": state.plan, "event": state.event, "agent": state.agent, "lost": ",".join(state.lost)}

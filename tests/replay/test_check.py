@@ -9,14 +9,14 @@ import pytest
 from recordings import PLAY, Mission, game, mission
 
 from pursue_gen.partition import partition, strategy_file
-from pursue_gen.replay import Findings, Record, check
+from pursue_gen.replay import Findings, MissionRecord, check
 from pursue_gen.replay.bag import Message
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD
 from pursue_gen.replay.read import from_messages
-from pursue_gen.replay.record import State
+from pursue_gen.replay.record import RecordedState
 
 
-def record(made: Mission) -> Record:
+def record(made: Mission) -> MissionRecord:
     """What a reader makes of the mission (the bag's bytes have tests of their own)."""
     import recordings
 
@@ -101,7 +101,7 @@ def test_states_in_the_order_of_receipt_are_sorted() -> None:
     assert [state.seq for state in messy.states] == [state.seq for state in read.states]
 
 
-def _text(state: State) -> bytes:
+def _text(state: RecordedState) -> bytes:
     import recordings
 
     return recordings._string(recordings.text_of(state))
@@ -219,7 +219,7 @@ def held(made: Mission, before: int, plan: int = 0, lost: Tuple[str, ...] = ()) 
     """Puts a hold and its end between two states: all later numbers are greater by two."""
     old = next(state for state in made.states if state.seq == before)
 
-    def later(state: State) -> State:
+    def later(state: RecordedState) -> RecordedState:
         return replace(state, seq=state.seq + 2, plan=plan) if state.seq > before else state
 
     made.states = [later(state) for state in made.states]

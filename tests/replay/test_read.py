@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from recordings import PLAY, SCENARIO, game, mission, write_bag, write_journal
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.replay import Record, check, read_recording
-from pursue_gen.replay.journal import Journal, worked_out
+from pursue_gen.replay import MissionRecord, check, read_recording
+from pursue_gen.replay.journal import Journal, reconstruct
 from pursue_gen.replay.moves import Moves
 
 GAME: Dict[str, Any] = {
@@ -28,10 +28,10 @@ GAME: Dict[str, Any] = {
 }
 
 
-def read(path: Path) -> Record:
+def read(path: Path) -> MissionRecord:
     """The record in a bag."""
     found = read_recording(path)
-    assert isinstance(found, Record)
+    assert isinstance(found, MissionRecord)
     return found
 
 
@@ -50,7 +50,7 @@ def test_a_bag_is_read_whatever_its_compression(tmp_path: Path, compression: str
 def test_a_journal_is_worked_out_to_the_same_states(tmp_path: Path) -> None:
     journal = read_recording(write_journal(PLAY, tmp_path / "j.jsonl", unit=0.5))
     assert isinstance(journal, Journal)
-    record = worked_out(journal, Moves(game().network), game().objective)
+    record = reconstruct(journal, Moves(game().network), game().objective)
     assert list(record.states) == mission(unit=0.5).states[1:]
     findings = check(record, game())
     assert (findings.kept, findings.won, findings.findings) == (True, True, ())
@@ -60,7 +60,7 @@ def test_a_journal_shows_where_the_world_left_the_model(tmp_path: Path) -> None:
     play = tuple((at - 1.0 if "c_to_b2b" in word else at, word, node) for at, word, node in PLAY)
     journal = read_recording(write_journal(play, tmp_path / "j.jsonl"))
     assert isinstance(journal, Journal)
-    findings = check(worked_out(journal, Moves(game().network), game().objective), game())
+    findings = check(reconstruct(journal, Moves(game().network), game().objective), game())
     assert [(f.kind, f.seq) for f in findings.findings] == [("early", 5)]
 
 
@@ -69,7 +69,7 @@ def test_a_journal_that_ends_in_the_middle_of_a_line_is_read_as_far_as_it_goes(t
     path.write_bytes(path.read_bytes()[:-150])
     journal = read_recording(path)
     assert isinstance(journal, Journal)
-    findings = check(worked_out(journal, Moves(game().network), game().objective), game())
+    findings = check(reconstruct(journal, Moves(game().network), game().objective), game())
     assert not findings.kept and "line " in findings.findings[0].text
 
 
@@ -115,7 +115,7 @@ def checked(path: Path) -> bool:
     except PursueError as problem:
         assert problem.exit_status == 2
         return False
-    record = worked_out(found, Moves(game().network), game().objective) if isinstance(found, Journal) else found
+    record = reconstruct(found, Moves(game().network), game().objective) if isinstance(found, Journal) else found
     findings = check(record, game())
     return findings.kept and findings.won
 
@@ -180,7 +180,7 @@ def test_a_bag_that_was_never_closed_is_read_to_its_end(folder: Path, tmp_path: 
     path = tmp_path / "open.bag"
     path.write_bytes(content[:place] + b"\0\0\0\0" + content[place + 4 : place + 4 + size])
     found = read_recording(path)
-    assert isinstance(found, Record)
+    assert isinstance(found, MissionRecord)
     assert [state.seq for state in found.states] == list(range(11))
     assert found.problems
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from missions import SCENARIOS, made_up, mission
 
 from pursue_gen.replay import read_recording
-from pursue_gen.replay.record import HOLDING, RUNNING, WAITING, WON, Record, State
+from pursue_gen.replay.record import HOLDING, RUNNING, WAITING, WON, MissionRecord, RecordedState
 from pursue_gen.report.html import page
 from pursue_gen.report.recording import from_record, from_states, lasting, stays
 from pursue_gen.report.timeline import draw, section
@@ -144,11 +144,11 @@ def test_recorded_states_become_steps_once_each() -> None:
     made = made_up()
     here = {"locations": made.steps[0].locations, "values": made.steps[0].values, "clocks": {}}
     states = [
-        State(3, 114.0, agent="bot1", event="bot1_c2b", unit=2.0, **here),
-        State(0, 100.0, status=WAITING, unit=2.0, **here),
-        State(1, 110.0, unit=2.0, **here),
-        State(1, 110.0, unit=2.0, **here),
-        State(4, 120.0, status=WON, unit=2.0, **here),
+        RecordedState(3, 114.0, agent="bot1", event="bot1_c2b", unit=2.0, **here),
+        RecordedState(0, 100.0, status=WAITING, unit=2.0, **here),
+        RecordedState(1, 110.0, unit=2.0, **here),
+        RecordedState(1, 110.0, unit=2.0, **here),
+        RecordedState(4, 120.0, status=WON, unit=2.0, **here),
     ]
     found = from_states(states, made.scenario, made.network, "a bag", until=50.0)
     assert found is not None
@@ -164,7 +164,7 @@ def test_a_bag_is_drawn_as_it_was(tmp_path: Path) -> None:
 
     bag = recordings.write_bag(recordings.mission(), tmp_path / "mission.bag")
     record, game = read_recording(bag), recordings.game()
-    assert isinstance(record, Record)
+    assert isinstance(record, MissionRecord)
     made = from_record(record, game.scenario, game.network, bag.name)
     assert made is not None and made.status == WON
     found = lanes(draw(made))

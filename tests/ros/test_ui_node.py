@@ -14,10 +14,8 @@ import pytest
 import yaml
 from ros_world import Ros, end
 
+from tests.runtime.models import model_data, mover
 from tests.waiting import PATIENCE
-
-sys.path.append(str(Path(__file__).resolve().parent.parent / "runtime"))
-from ui_package import model_data, mover
 
 pytestmark = pytest.mark.ros
 

@@ -14,7 +14,7 @@ from pursue_gen.language import load
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
 from pursue_gen.simulation.mission import GOAL, SAFE
-from pursue_gen.simulation.runs import Players
+from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tga import translation_notes
 
@@ -60,8 +60,8 @@ def test_the_page_and_its_pictures_tell_what_is_found_out_today(name: str) -> No
 @native
 @pytest.mark.parametrize("name", sorted(set(FILES) - LOST))
 def test_twenty_missions_are_won(name: str) -> None:
-    players = Players(make.case(facts(name)))
-    outcomes = [players.play(seed) for seed in range(1, 21)]
+    players = MissionRunner(make.case(facts(name)))
+    outcomes = [players.run(seed) for seed in range(1, 21)]
     wanted = SAFE if facts(name).guarantee is None else GOAL
     assert {outcome.end for outcome in outcomes} == {wanted}, [o.reason for o in outcomes if o.end != wanted][:3]
     assert any(outcome.steps > 5 for outcome in outcomes)

@@ -9,7 +9,7 @@ from typing import Dict, Optional, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import Outcome, Settings, play
+from pursue_gen.simulation.mission import Outcome, Settings, simulate_mission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_from
 from pursue_gen.solving.solution import Rules, Solution, solve_scenario
@@ -59,4 +59,4 @@ def missions(name: str, number: int, settings: Settings, on: Optional[Stage] = N
     times = remaining(name)
     bound = times.bound()
     settings = replace(settings, bound=bound, span=0.6 * bound if bound else settings.span)
-    return tuple(play(on or stage(name), settings, seed, times) for seed in range(1, number + 1))
+    return tuple(simulate_mission(on or stage(name), settings, seed, times) for seed in range(1, number + 1))

@@ -100,41 +100,41 @@ def leaving(now: float, **more: Any) -> Any:
 
 def test_a_mission_begins_where_the_network_does() -> None:
     watching = judge()
-    watching.saw(first(), 0.0)
+    watching.on_state(first(), 0.0)
     assert watching.problems == []
     watching = judge()
-    watching.saw(first(3), 0.0)
+    watching.on_state(first(3), 0.0)
     assert "not where the network starts" in watching.problems[0]
 
 
 def test_a_step_too_early_is_a_problem_without_faults_and_with_them_where_it_is_a_command() -> None:
     for faults in (False, True):
         watching = judge(faults)
-        watching.saw(first(), 0.0)
-        watching.saw(leaving(0.5), 0.5)
+        watching.on_state(first(), 0.0)
+        watching.on_state(leaving(0.5), 0.5)
         assert "polBot1_a2b" in watching.problems[0]
 
 
 def test_what_is_held_is_ordered_once_and_only_while_it_lasts() -> None:
     watching = judge()
-    watching.saw(first(), 0.0)
-    watching.told("polBot1", "polBot1_a2b", "going_a_to_b", 1, 1, False)
+    watching.on_state(first(), 0.0)
+    watching.on_order("polBot1", "polBot1_a2b", "going_a_to_b", 1, 1, False)
     assert "not what was last commanded" in watching.problems[0]
 
 
 def test_an_order_as_of_an_old_state_is_a_problem() -> None:
     watching = judge()
-    watching.saw(first(), 0.0)
-    watching.told("polBot1", "polBot1_a2b", "going_a_to_b", 1, 2, False)
+    watching.on_state(first(), 0.0)
+    watching.on_order("polBot1", "polBot1_a2b", "going_a_to_b", 1, 2, False)
     assert "though state 2 is known" in watching.problems[0]
 
 
 def test_a_state_may_be_said_again_but_not_another_one() -> None:
     watching = judge()
-    watching.saw(first(), 0.0)
-    watching.saw(first(now=1.0), 1.0)
+    watching.on_state(first(), 0.0)
+    watching.on_state(first(now=1.0), 1.0)
     assert watching.problems == []
     changed = first(now=2.0)
     changed.locations["thief"] = "d"
-    watching.saw(changed, 2.0)
+    watching.on_state(changed, 2.0)
     assert "published again" in watching.problems[0]

@@ -7,26 +7,26 @@ from typing import Any, List
 import pytest
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.simulation.clockwork import Alarm, Clockwork
-from pursue_gen.simulation.faults import FAULTS, Trouble, read_faults
-from pursue_gen.simulation.wires import Wires, share
+from pursue_gen.simulation.connections import Connections, drawn_share
+from pursue_gen.simulation.event_queue import EventQueue, Timer
+from pursue_gen.simulation.faults import FAULTS, FaultPlan, read_faults
 
 
-def trouble(*kinds: str, seed: str = "1") -> Trouble:
-    return Trouble(kinds, seed, 1000.0, 30.0, ("controller_bot1", "controller_bot2"), ("bot1", "bot2"))
+def trouble(*kinds: str, seed: str = "1") -> FaultPlan:
+    return FaultPlan(kinds, seed, 1000.0, 30.0, ("controller_bot1", "controller_bot2"), ("bot1", "bot2"))
 
 
-def sent(about: Trouble, number: int = 400, latest: float = 0.1, machine: str = "", at: float = 0.0) -> List[Any]:
+def sent(about: FaultPlan, number: int = 400, latest: float = 0.1, machine: str = "", at: float = 0.0) -> List[Any]:
     """The number of each message that comes, and how long it took; one is sent each 0.05 s."""
-    clockwork = Clockwork(1000.0 + at)
-    wires, came = Wires(clockwork, about, "1"), []
+    clockwork = EventQueue(1000.0 + at)
+    wires, came = Connections(clockwork, about, "1"), []
 
     def send(k: int) -> None:
         moment = clockwork.now
         wires.send("word:x", latest, lambda: came.append((k, clockwork.now - moment)), machine)
 
     for k in range(number):
-        clockwork.at(1000.0 + at + 0.05 * k, lambda k=k: send(k))
+        clockwork.schedule(1000.0 + at + 0.05 * k, lambda k=k: send(k))
     while clockwork.step():
         pass
     return came
@@ -78,7 +78,7 @@ def test_a_machine_that_is_cut_off_hears_all_of_it_later() -> None:
 def test_the_same_seed_draws_the_same() -> None:
     kinds = tuple(FAULTS)
     one, other, third = trouble(*kinds, seed="7"), trouble(*kinds, seed="7"), trouble(*kinds, seed="8")
-    facts = [(t.kinds, t.deaths, t.cut, t.breakdown, t.junk, t.offsets) for t in (one, other, third)]
+    facts = [(t.kinds, t.crashes, t.cut, t.breakdown, t.junk, t.offsets) for t in (one, other, third)]
     assert facts[0] == facts[1] != facts[2]
 
 
@@ -92,15 +92,15 @@ def test_shares_have_extremes() -> None:
     import random
 
     draw = random.Random(1)
-    shares = [share(draw) for _ in range(1000)]
+    shares = [drawn_share(draw) for _ in range(1000)]
     assert 180 < shares.count(0.0) < 320
     assert 180 < shares.count(1.0) < 320
     assert all(0.0 <= part <= 1.0 for part in shares)
 
 
 def test_the_last_setting_of_an_alarm_counts() -> None:
-    clockwork, rung = Clockwork(0.0), []
-    alarm = Alarm(clockwork, lambda: rung.append(clockwork.now))
+    clockwork, rung = EventQueue(0.0), []
+    alarm = Timer(clockwork, lambda: rung.append(clockwork.now))
     alarm.set(5.0)
     alarm.set(None, 3.0)
     alarm.set(7.0, 4.0)

@@ -13,7 +13,7 @@ from stages import SCENARIOS, THESIS, THIEF, missions, remaining, solved, stage
 from pursue_gen.language import load
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.simulation.faults import FAULTS, HARMLESS
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Settings, play
+from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Settings, simulate_mission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -46,7 +46,7 @@ def test_other_games_and_controllers_win_too_and_people_follow(rules: Rules, opt
     won = solve_scenario(scenario, rules)
     on, times = stage_of(scenario, won, options), Remaining(won)
     assert on.people is not None
-    outcomes = [play(on, Settings("random", bound=times.bound()), seed) for seed in range(25)]
+    outcomes = [simulate_mission(on, Settings("random", bound=times.bound()), seed) for seed in range(25)]
     assert {outcome.end for outcome in outcomes} == {GOAL}, [o.reason for o in outcomes if o.end != GOAL][:3]
 
 
@@ -88,8 +88,8 @@ def test_a_robot_that_fails_is_replaced_by_a_new_plan() -> None:
 def test_a_mission_is_the_same_again_with_and_without_its_record() -> None:
     settings = Settings("mixed", tuple(kind for kind in FAULTS if kind not in ("failed", "silent")))
     for seed in range(5):
-        first = play(stage(THIEF), settings, seed, remaining(THIEF))
-        again = play(stage(THIEF), settings, seed, remaining(THIEF), record=True)
+        first = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF))
+        again = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF), record=True)
         assert again.play and not first.play
         assert replace(again, play=()) == first
 
@@ -109,9 +109,9 @@ def test_where_looking_ahead_costs_much_the_worst_opponent_of_mixed_ones_is_rare
     assert times.ease == 1.0, "a small game"
     for ease, some in ((1.0, True), (0.0, False)):
         times.ease = ease
-        kinds = {play(on, Settings("mixed"), seed, times).opponent for seed in range(20)}
+        kinds = {simulate_mission(on, Settings("mixed"), seed, times).opponent for seed in range(20)}
         assert kinds == ({"random", "still", "worst"} if some else {"random", "still"})
-        assert play(on, Settings("worst"), 1, times).opponent == "worst"
+        assert simulate_mission(on, Settings("worst"), 1, times).opponent == "worst"
 
 
 def test_the_bound_is_that_of_the_checker_and_a_quarter_of_the_reaction_for_each_command() -> None:
@@ -123,12 +123,12 @@ def test_the_bound_is_that_of_the_checker_and_a_quarter_of_the_reaction_for_each
 
 
 def test_a_mission_that_takes_longer_than_guaranteed_fails() -> None:
-    outcome = play(stage(THIEF), Settings("still", bound=3.0), 1)
+    outcome = simulate_mission(stage(THIEF), Settings("still", bound=3.0), 1)
     assert outcome.end == FAILED
     assert "more than the guaranteed 3.000" in outcome.reason
 
 
 def test_a_mission_that_comes_to_no_end_fails() -> None:
-    outcome = play(stage(THIEF), Settings("still", until=5.0), 1)
+    outcome = simulate_mission(stage(THIEF), Settings("still", until=5.0), 1)
     assert (outcome.end, outcome.time) == (FAILED, 5.0)
     assert outcome.reason == "it neither reached the goal nor stopped"

@@ -5,18 +5,18 @@ from __future__ import annotations
 import heapq
 from typing import Callable, List, Optional, Tuple
 
-Act = Callable[[], object]
+Action = Callable[[], object]
 
 
-class Clockwork:
+class EventQueue:
     """The time of one simulated mission, in seconds; it leaps from event to event."""
 
     def __init__(self, now: float) -> None:
         self.now = now
-        self._heap: List[Tuple[float, int, Act]] = []
+        self._heap: List[Tuple[float, int, Action]] = []
         self._set = 0
 
-    def at(self, moment: float, act: Act) -> None:
+    def schedule(self, moment: float, act: Action) -> None:
         """Does it at this moment; at once (after what is set for now) where the moment is past."""
         self._set += 1
         heapq.heappush(self._heap, (max(moment, self.now), self._set, act))
@@ -29,16 +29,16 @@ class Clockwork:
         act()
         return True
 
-    def next(self) -> Optional[float]:
+    def next_time(self) -> Optional[float]:
         """The moment of what comes next."""
         return self._heap[0][0] if self._heap else None
 
 
-class Alarm:
+class Timer:
     """Does one thing at a moment that may be set anew; the last setting counts."""
 
-    def __init__(self, clockwork: Clockwork, act: Act) -> None:
-        self._clockwork, self._act = clockwork, act
+    def __init__(self, events: EventQueue, act: Action) -> None:
+        self._events, self._act = events, act
         self._version = 0
         self._moment: Optional[float] = None
 
@@ -51,7 +51,7 @@ class Alarm:
         self._moment = moment
         if moment is not None:
             version = self._version
-            self._clockwork.at(moment, lambda: self._ring(version))
+            self._events.schedule(moment, lambda: self._ring(version))
 
     def _ring(self, version: int) -> None:
         if version == self._version:

@@ -5,62 +5,62 @@ from __future__ import annotations
 import random
 from typing import Dict
 
-from pursue_gen.simulation.clockwork import Act, Clockwork
-from pursue_gen.simulation.faults import Trouble
+from pursue_gen.simulation.event_queue import Action, EventQueue
+from pursue_gen.simulation.faults import FaultPlan
 
 DECIMALS = 2e-6
 """Seconds by which messages come before the last moment that was promised: stamps travel with six decimals."""
 
 
-def share(draw: random.Random, extremes: float = 0.5) -> float:
+def drawn_share(draw: random.Random, extremes: float = 0.5) -> float:
     """A number from 0 to 1; with the probability `extremes`, it is 0 or 1."""
     if draw.random() < extremes:
         return float(draw.random() < 0.5)
     return draw.random()
 
 
-class Wires:
+class Connections:
     """All connections of one mission. A connection has the name of what it carries, such as `word:controller_bot1`."""
 
-    def __init__(self, clockwork: Clockwork, trouble: Trouble, seed: str) -> None:
-        self._clockwork, self._trouble = clockwork, trouble
+    def __init__(self, events: EventQueue, fault_plan: FaultPlan, seed: str) -> None:
+        self._events, self._fault_plan = events, fault_plan
         self._draw = random.Random(f"{seed}/wires")
         self._last: Dict[str, float] = {}
 
-    def send(self, connection: str, latest: float, deliver: Act, machine: str = "") -> None:
+    def send(self, connection: str, latest: float, deliver: Action, machine: str = "") -> None:
         """Delivers a message after at most `latest` seconds, if no fault is in its way; `machine` may be cut off."""
-        trouble, now = self._trouble, self._clockwork.now
-        moment = now + max(0.0, latest - DECIMALS) * share(self._draw)
-        if not trouble.kinds:
+        fault_plan, now = self._fault_plan, self._events.now
+        moment = now + max(0.0, latest - DECIMALS) * drawn_share(self._draw)
+        if not fault_plan.kinds:
             self._deliver(connection, moment, deliver)
             return
-        if trouble.lost():
+        if fault_plan.is_lost():
             return
-        moment = self._after_cut(machine, moment + trouble.late())
-        again = trouble.again()
-        alone = trouble.overtaken()
+        moment = self._after_cut(machine, moment + fault_plan.delay())
+        again = fault_plan.duplicate_delay()
+        alone = fault_plan.reorder_delay()
         if alone:
-            self._clockwork.at(moment + alone, deliver)
+            self._events.schedule(moment + alone, deliver)
         else:
             moment = self._deliver(connection, moment, deliver)
         if again is not None:
-            self._clockwork.at(moment + again, deliver)
+            self._events.schedule(moment + again, deliver)
 
     def is_cut(self, machine: str) -> bool:
         """True while the machine is cut off."""
-        cut = self._trouble.cut
-        return cut is not None and cut[0] == machine and cut[1] <= self._clockwork.now < cut[2]
+        cut = self._fault_plan.cut
+        return cut is not None and cut[0] == machine and cut[1] <= self._events.now < cut[2]
 
-    def _deliver(self, connection: str, moment: float, deliver: Act) -> float:
+    def _deliver(self, connection: str, moment: float, deliver: Action) -> float:
         moment = self._last[connection] = max(moment, self._last.get(connection, 0.0))
-        self._clockwork.at(moment, deliver)
+        self._events.schedule(moment, deliver)
         return moment
 
     def _after_cut(self, machine: str, moment: float) -> float:
         """When it comes: a connection that was cut is silent for up to 12 s more, then all comes in a burst."""
-        cut = self._trouble.cut
-        if cut is None or cut[0] != machine or not cut[1] <= self._clockwork.now < cut[2]:
+        cut = self._fault_plan.cut
+        if cut is None or cut[0] != machine or not cut[1] <= self._events.now < cut[2]:
             return moment
-        self._trouble.count("cut")
+        self._fault_plan.count("cut")
         silence = random.Random(f"{machine}/{cut[2]}").uniform(0.0, 12.0)
         return max(moment, cut[2] + silence)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
-from pursue_gen.replay.moves import Moves, Place
+from pursue_gen.replay.moves import DiscreteState, Moves
 from pursue_gen.replay.record import (
     ENDED,
     FAILED,
@@ -18,9 +18,9 @@ from pursue_gen.replay.record import (
     START,
     STOP,
     WAITING,
-    Record,
-    State,
-    Word,
+    MissionRecord,
+    RecordedState,
+    RecordedWord,
 )
 
 CONTROL = (START, PING, STOP, FINISH)
@@ -29,19 +29,19 @@ APART = 60.0
 
 
 @dataclass(frozen=True)
-class Said:
+class WordMatches:
     """The word of each step (by the number of its state), the states by number, and the words that led to nothing."""
 
-    words: Mapping[int, Word]
-    states: Mapping[int, State]
-    left: Tuple[Word, ...]
+    words: Mapping[int, RecordedWord]
+    states: Mapping[int, RecordedState]
+    unmatched: Tuple[RecordedWord, ...]
 
-    def of(self, seq: int) -> Optional[Word]:
+    def of(self, seq: int) -> Optional[RecordedWord]:
         """The word that led to this state."""
         return self.words.get(seq)
 
 
-def who_said(record: Record, steps: Sequence[Tuple[State, State]]) -> Said:
+def match_words(record: MissionRecord, steps: Sequence[Tuple[RecordedState, RecordedState]]) -> WordMatches:
     """A command is for the number of the state before it; of several reports the one nearest to the state counts."""
     heard: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
@@ -49,7 +49,7 @@ def who_said(record: Record, steps: Sequence[Tuple[State, State]]) -> Said:
     for words in heard.values():
         words.sort()
     used: Set[int] = set()
-    found: Dict[int, Word] = {}
+    found: Dict[int, RecordedWord] = {}
     for before, state in steps:
         for words in (heard.get((state.event, before.seq), []), heard.get((state.event, None), [])):
             near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
@@ -59,41 +59,41 @@ def who_said(record: Record, steps: Sequence[Tuple[State, State]]) -> Said:
                 used.add(best)
                 found[state.seq] = record.words[best]
                 break
-    states: Dict[int, State] = {}
+    states: Dict[int, RecordedState] = {}
     for state in record.states:
         states.setdefault(state.seq, state)
     left = [word for place, word in enumerate(record.words) if place not in used and not _control(word)]
-    return Said(found, states, tuple(left))
+    return WordMatches(found, states, tuple(left))
 
 
-def _control(word: Word) -> bool:
+def _control(word: RecordedWord) -> bool:
     return word.text in CONTROL or word.event in (PLANNED, FAILED)
 
 
-def dropped(record: Record, said: Said, moves: Moves) -> List[Finding]:
+def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> List[Finding]:
     """Why each word that led to nothing did; and the words that steer the mission itself."""
     found: List[Finding] = []
     stamps = [state.stamp for state in record.states]
 
-    def now(word: Word) -> State:
+    def now(word: RecordedWord) -> RecordedState:
         return record.states[max(0, bisect.bisect(stamps, word.at + 1e-6) - 1)]
 
     for word in record.words:
         if word.text == STOP:
-            found.append(Finding(NOTE, "stop", now(word).seq, f"{_by(word)} said {STOP}"))
+            found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} said {STOP}"))
         elif word.event == FAILED:
             found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot do what it was told"))
-    for word in said.left:
+    for word in said.unmatched:
         seq, why = _why(now(word), word, said, moves)
-        found.append(Finding(NOTE, "dropped", seq, f"{word.text[:80]!r} of {_by(word)} led to nothing: {why}"))
+        found.append(Finding(NOTE, "dropped", seq, f"{word.text[:80]!r} of {_sender(word)} led to nothing: {why}"))
     return found
 
 
-def _by(word: Word) -> str:
+def _sender(word: RecordedWord) -> str:
     return word.node or "somebody"
 
 
-def _why(now: State, word: Word, said: Said, moves: Moves) -> Tuple[int, str]:
+def _why(now: RecordedState, word: RecordedWord, said: WordMatches, moves: Moves) -> Tuple[int, str]:
     """The state that it met, and the reason."""
     if not word.event:
         return now.seq, "it is no word"
@@ -111,13 +111,13 @@ def _why(now: State, word: Word, said: Said, moves: Moves) -> Tuple[int, str]:
     return word.seq, _impossible(state, word, moves) or "the mission ended first, or its moment was over"
 
 
-def _impossible(state: State, word: Word, moves: Moves) -> str:
+def _impossible(state: RecordedState, word: RecordedWord, moves: Moves) -> str:
     """Why the word cannot be taken there, whatever the clocks; "" where it can."""
     if state.status == WAITING or state.status in ENDED:
         return f"the mission was {state.status}"
     if state.status == HOLDING and word.seq is not None:
         return "the mission held"
-    place = Place(dict(state.locations), dict(state.values))
+    place = DiscreteState(dict(state.locations), dict(state.values))
     if next(moves.of(place, word.event, word.agent), None) is None:
         return f"it cannot happen in state {state.seq}; possible: {', '.join(moves.possible(place)) or 'nothing'}"
     return ""

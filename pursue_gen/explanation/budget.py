@@ -15,7 +15,7 @@ from pursue_gen.tga.network import Network, Objective
 EXPLAINING = "explaining"
 
 
-class Clock:
+class TimeBudget:
     """How much of an allowance of seconds is left; solver runs that are cut off when it is used up.
 
     The limit on memory is one for each of them. The listener, where there is one, learns how far each of them is.

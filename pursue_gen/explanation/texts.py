@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Tuple
 
-from pursue_gen.explanation.play import Play, Step
+from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
@@ -14,7 +14,7 @@ from pursue_gen.tga.positions import directions
 
 
 @dataclass(frozen=True)
-class Line:
+class TimedLine:
     """Something that happens at a time (in units since the start); `who` is an agent, or empty."""
 
     at: Fraction
@@ -22,15 +22,15 @@ class Line:
     text: str
 
 
-def in_words(scenario: Scenario, play: Play) -> Tuple[Line, ...]:
+def describe(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
     """The play step by step, and at last how it ends."""
     words = _words(scenario)
-    lines: List[Line] = []
+    lines: List[TimedLine] = []
     for step in play.steps:
         owner = play.game.automata[step.owner].name
         text = words.get(_key(play, step))
         if text is not None:
-            lines.append(Line(step.at, owner, text + "".join(_remarks(scenario, play, step))))
+            lines.append(TimedLine(step.at, owner, text + "".join(_remarks(scenario, play, step))))
     return (*lines, *_ending(scenario, play))
 
 
@@ -43,7 +43,7 @@ _Key = Tuple[str, str, str]
 """An automaton, a channel (or nothing for a step of its own), and the location that is left by a step of its own."""
 
 
-def _key(play: Play, step: Step) -> _Key:
+def _key(play: Play, step: CounterStep) -> _Key:
     edge = play.game.origins[step.edges[0]]
     owner = play.game.automata[step.owner].name
     return (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
@@ -62,7 +62,7 @@ def _words(scenario: Scenario) -> Dict[_Key, str]:
     return words
 
 
-def _remarks(scenario: Scenario, play: Play, step: Step) -> Iterator[str]:
+def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]:
     """What the step means for a deadline."""
     safety = scenario.safety
     if isinstance(safety, Respond):
@@ -75,19 +75,19 @@ def _remarks(scenario: Scenario, play: Play, step: Step) -> Iterator[str]:
                     yield " (in time)"
 
 
-def _ending(scenario: Scenario, play: Play) -> Tuple[Line, ...]:
+def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
     tell: Dict[str, Callable[[Scenario, Play], str]] = {
         "bad": _bad,
         "overdue": _overdue,
-        "idle": lambda s, p: f"nobody has to do anything any more{_so(s, ', and ', ' need never come')}",
+        "idle": lambda s, p: f"nobody has to do anything any more{_goal_clause(s, ', and ', ' need never come')}",
         "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
-        f"{_so(s, ': ', ' can always be prevented')}",
+        f"{_goal_clause(s, ': ', ' can always be prevented')}",
         "open": lambda s, p: "and so on: from here, too, it can be prevented whatever the robots do",
     }
     texts = [tell[play.end](scenario, play)]
     if play.end in ("overdue", "idle"):
         texts += _withheld(scenario, play)
-    return tuple(Line(play.at, "", text) for text in texts)
+    return tuple(TimedLine(play.at, "", text) for text in texts)
 
 
 def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
@@ -99,7 +99,7 @@ def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
     # Agents' guards only bound their clocks from below: what is not possible yet will be.
     moves = [move for move in joint_moves(game, state) if game.automata[move.owner].name in agents]
     words = _words(scenario)
-    keys = [_key(play, Step(play.at, move.owner, move.edges)) for move in moves if not move.controllable]
+    keys = [_key(play, CounterStep(play.at, move.owner, move.edges)) for move in moves if not move.controllable]
     undone = ", ".join(dict.fromkeys(f"{key[0]}: {words[key]}" for key in keys))
     if undone and not any(move.controllable for move in moves):
         yield f"the robots can do nothing before one of these, and none of them needs to happen: {undone}"
@@ -107,7 +107,7 @@ def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
         yield f"these could still happen, and need not: {undone}"
 
 
-def _so(scenario: Scenario, before: str, after: str) -> str:
+def _goal_clause(scenario: Scenario, before: str, after: str) -> str:
     return "" if scenario.reach is None else f"{before}{scenario.reach.event.name}{after}"
 
 

@@ -1,6 +1,6 @@
-"""The table at which a game is played: frozen positions with exact times, and the steps that lead from one to the next.
+"""The play at which a game is played: frozen positions with exact times, and the steps that lead from one to the next.
 
-A table remembers how its discrete state was entered: what the strategy decides, and when, follows from that, however
+A play remembers how its discrete state was entered: what the strategy decides, and when, follows from that, however
 often somebody looks in between.
 """
 
@@ -40,7 +40,7 @@ ROBOTS, OTHERS, CHANCE = "robots", "others", "chance"
 
 
 @dataclass(frozen=True)
-class Board:
+class Setup:
     """What stays the same: the scenario, its rules, the game (times in units: its scale is 1)."""
 
     scenario: Scenario
@@ -73,7 +73,7 @@ class Board:
 
 
 @dataclass(frozen=True)
-class Deed:
+class PlayedMove:
     """A joint move that was made: when (time units since the start), by which automaton, whose doing it was."""
 
     at: Fraction
@@ -85,7 +85,7 @@ class Deed:
 
 
 @dataclass(frozen=True)
-class Plan:
+class PlannedMove:
     """What a person wants an agent to do at a moment (time units since the start)."""
 
     agent: str
@@ -94,18 +94,18 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Table:
+class PlayState:
     """`entry` is the position at the time `since`, when the last move was made; now it is `now`."""
 
     entry: Position
     since: Fraction = Fraction(0)
     now: Fraction = Fraction(0)
     status: str = RUNNING
-    deeds: Tuple[Deed, ...] = ()
-    plans: Tuple[Plan, ...] = ()
+    deeds: Tuple[PlayedMove, ...] = ()
+    plans: Tuple[PlannedMove, ...] = ()
 
     @property
-    def here(self) -> Position:
+    def position(self) -> Position:
         """The position now."""
         return later(self.entry, self.now - self.since)
 
@@ -115,15 +115,15 @@ class Table:
         return self.status != RUNNING
 
 
-def board_of(scenario: Scenario, rules: Rules) -> Board:
-    """The board of a scenario. Raises PursueError where it has no objective."""
+def setup_of(scenario: Scenario, rules: Rules) -> Setup:
+    """The setup of a scenario. Raises PursueError where it has no objective."""
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-    return Board(scenario, rules, network, objective, compile_game(network, objective))
+    return Setup(scenario, rules, network, objective, compile_game(network, objective))
 
 
-def beginning(board: Board) -> Table:
-    """The table at time 0."""
-    return Table(Position(initial_state(board.game), (Fraction(0),) * len(board.game.clocks)))
+def beginning(setup: Setup) -> PlayState:
+    """The play at time 0."""
+    return PlayState(Position(initial_state(setup.game), (Fraction(0),) * len(setup.game.clocks)))
 
 
 def later(position: Position, delay: Fraction) -> Position:
@@ -139,22 +139,22 @@ def after(here: Position, move: JointMove, delay: Fraction) -> Position:
     return Position(move.target, tuple(clocks))
 
 
-def open_moves(board: Board, table: Table, controllable: bool) -> Iterator[Tuple[JointMove, Window]]:
+def open_moves(setup: Setup, play: PlayState, controllable: bool) -> Iterator[Tuple[JointMove, Window]]:
     """The moves of one side from here on, with the delays (from now) after which they can be made."""
-    here = table.here
-    for move in joint_moves(board.game, here.state):
+    here = play.position
+    for move in joint_moves(setup.game, here.state):
         if move.controllable == controllable:
-            open_ = window(board.game, here, move)
+            open_ = window(setup.game, here, move)
             if open_.earliest(GRAIN) is not None:  # else it is over, or would break an invariant
                 yield move, open_
 
 
-def own_window(board: Board, table: Table, move: JointMove) -> Window:
+def own_window(setup: Setup, play: PlayState, move: JointMove) -> Window:
     """The delays (from now) in which a move can be made as far as its own automaton goes.
 
     Somebody else who has to move before ends the state of the game, but not what this one may do.
     """
-    game, here = board.game, table.here
+    game, here = setup.game, play.position
     mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
     result = Window()
     for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
@@ -165,57 +165,57 @@ def own_window(board: Board, table: Table, move: JointMove) -> Window:
     return result
 
 
-def last_moment(board: Board, table: Table) -> Optional[Fraction]:
+def last_moment(setup: Setup, play: PlayState) -> Optional[Fraction]:
     """The time until which somebody has to move; None: nobody has to."""
-    room = longest(board.game, table.here)
-    return None if room is None else table.now + room
+    room = longest(setup.game, play.position)
+    return None if room is None else play.now + room
 
 
-def passed(table: Table, moment: Fraction) -> Table:
-    """The table at a later moment, when nothing has happened in between."""
-    assert moment >= table.now
-    return replace(table, now=moment)
+def passed(play: PlayState, moment: Fraction) -> PlayState:
+    """The play at a later moment, when nothing has happened in between."""
+    assert moment >= play.now
+    return replace(play, now=moment)
 
 
-def taken(board: Board, table: Table, move: JointMove, moment: Fraction, by: str) -> Table:
-    """The table after a move at a moment. Plans that cannot be carried out any more are dropped."""
-    there = after(table.entry, move, moment - table.since)
-    status = WON if is_goal(board.game, there.state) else LOST if is_bad(board.game, there.state) else RUNNING
-    deed = Deed(moment, board.owner(move), board.word(move), by, there, move.edges)
-    fresh = Table(there, moment, moment, status, (*table.deeds, deed))
-    kept = (plan for plan in table.plans if not (plan.agent == deed.agent and plan.word == deed.word))
-    return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if possible(board, fresh, plan)))
+def taken(setup: Setup, play: PlayState, move: JointMove, moment: Fraction, by: str) -> PlayState:
+    """The play after a move at a moment. Plans that cannot be carried out any more are dropped."""
+    there = after(play.entry, move, moment - play.since)
+    status = WON if is_goal(setup.game, there.state) else LOST if is_bad(setup.game, there.state) else RUNNING
+    deed = PlayedMove(moment, setup.owner(move), setup.word(move), by, there, move.edges)
+    fresh = PlayState(there, moment, moment, status, (*play.deeds, deed))
+    kept = (plan for plan in play.plans if not (plan.agent == deed.agent and plan.word == deed.word))
+    return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if possible(setup, fresh, plan)))
 
 
-def possible(board: Board, table: Table, plan: Plan) -> bool:
+def possible(setup: Setup, play: PlayState, plan: PlannedMove) -> bool:
     """True if the plan can still be carried out, unless something else happens before."""
     return any(
-        (board.owner(move), board.word(move)) == (plan.agent, plan.word)
-        and own_window(board, table, move).holds(plan.at - table.now)
-        for move in joint_moves(board.game, table.here.state)
+        (setup.owner(move), setup.word(move)) == (plan.agent, plan.word)
+        and own_window(setup, play, move).holds(plan.at - play.now)
+        for move in joint_moves(setup.game, play.position.state)
     )
 
 
-def overdue(board: Board, table: Table) -> Tuple[str, ...]:
+def overdue(setup: Setup, play: PlayState) -> Tuple[str, ...]:
     """The automata at their bounds now that the others' side cannot move: then the robots ought to."""
-    here, game = table.here, board.game
+    here, game = play.position, setup.game
     bound = {
         number
         for number, automaton in enumerate(game.automata)
         for clock, limit in automaton.invariants[here.state.locations[number]]
         if constant(limit) == here.clocks[clock - 1]
     }
-    able = {move.owner for move, open_ in open_moves(board, table, False) if open_.holds(Fraction(0))}
+    able = {move.owner for move, open_ in open_moves(setup, play, False) if open_.holds(Fraction(0))}
     return tuple(game.automata[number].name for number in sorted(bound - able))
 
 
-def ended(board: Board, table: Table) -> Table:
-    """The table where time cannot go on and nobody can move as they must: who is to blame has lost.
+def ended(setup: Setup, play: PlayState) -> PlayState:
+    """The play where time cannot go on and nobody can move as they must: who is to blame has lost.
 
     With a goal to reach, it is not reached: the robots have lost. Else whoever is overdue and could only be moved by
     the robots' side has lost it for them.
     """
-    names = overdue(board, table)
-    ours = {agent.name for agent in board.scenario.agents if agent.controllable}
-    blame = not board.safety or any(name in ours or name not in board.agents for name in names)
-    return replace(table, status=LOST if blame else STUCK)
+    names = overdue(setup, play)
+    ours = {agent.name for agent in setup.scenario.agents if agent.controllable}
+    blame = not setup.safety or any(name in ours or name not in setup.agents for name in names)
+    return replace(play, status=LOST if blame else STUCK)

@@ -8,7 +8,7 @@ from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.simulation.runs import Summary
 from pursue_runtime.state import LOST, STOPPED
 
-WORDS = {
+END_TEXTS = {
     GOAL: "goal reached",
     SAFE: "safe to the end",
     STOPPED: "safe stop",
@@ -24,7 +24,7 @@ def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
     for row in summary.rows:
         share = f"{100 * row.missions / summary.missions:.1f}"
         times = [f"{time:.2f}" for time in (row.least, row.median, row.worst)]
-        cells.append([WORDS[row.end], f"{row.missions:,}", share, *times])
+        cells.append([END_TEXTS[row.end], f"{row.missions:,}", share, *times])
     widths = [max(len(line[column]) for line in cells) for column in range(len(cells[0]))]
     lines = [_line(cells[0], widths), _line(["-" * width for width in widths], widths)]
     lines += [_line(line, widths) for line in cells[1:]]
