@@ -46,7 +46,7 @@ __all__ = [
 ]
 
 LIMIT = 64 * 2**20
-"""The largest bundle in bytes, unless told otherwise."""
+"""The largest bundle in bytes, by default."""
 FILES = 2000
 ORDER_LENGTH = 4096
 """The longest order in characters, as it travels in a header."""
@@ -205,7 +205,7 @@ def _object(text: bytes, name: str) -> Dict[str, Any]:
 
 
 def write_order(order: Order, key: Ed25519PrivateKey) -> str:
-    """The order as it travels: what it says, whose key, signature, with dots between."""
+    """Return the order as text: content, fingerprint of the key, signature, separated by dots."""
     text = json.dumps({"format": FORMAT, **order.__dict__}, sort_keys=True).encode()
     signature = key.sign(_ORDER + text)
     return ".".join((_encoded(text), fingerprint(key.public_key()), _encoded(signature)))
@@ -215,9 +215,9 @@ def read_order(text: str, keys: Keys) -> Order:
     """Reads what `write_order` writes. Raises Refused: whether robot and ticket are ours is for the caller to see."""
     if len(text) > ORDER_LENGTH:
         raise Refused("bad_order", "the order is too long")
-    said, signed_by, signature = (text.split(".") + ["", ""])[:3] if text.count(".") == 2 else ("", "", "")
+    body_text, signed_by, signature = (text.split(".") + ["", ""])[:3] if text.count(".") == 2 else ("", "", "")
     try:
-        body = base64.b64decode(said.encode("ascii"), altchars=b"-_", validate=True)
+        body = base64.b64decode(body_text.encode("ascii"), altchars=b"-_", validate=True)
         seal = base64.b64decode(signature.encode("ascii"), altchars=b"-_", validate=True)
     except (ValueError, binascii.Error) as problem:
         raise Refused("bad_order", "not an order") from problem

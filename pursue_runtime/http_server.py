@@ -1,4 +1,4 @@
-"""The door of an HTTP server that strangers may reach: so many at a time, each for so long, no chunks. No ROS."""
+"""An HTTP server for untrusted networks: limited connections, limited time, no chunked requests."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from tornado.httpserver import HTTPServer
 
 
 class LimitedServer(HTTPServer):
-    """Lets in so many connections, each for so long. WebSockets leave by this door: they are counted elsewhere."""
+    """An HTTP server with a limit on connections and on their duration; WebSockets are counted elsewhere."""
 
     def limit(self, connections: int, longest: float, on_refused: Callable[[], object]) -> None:
-        """To be called before it opens: the base class does not have its subclasses take arguments.
+        """Set the limits, before the server opens: the base class does not let subclasses take arguments.
 
-        `longest` in seconds; `turned_away` is called for each that finds no room.
+        `longest` in seconds; `turned_away` is called for each connection beyond the limit.
         """
         self._room, self._life, self._on_refused = connections, longest, on_refused
         self._inside: Dict[Any, asyncio.TimerHandle] = {}
 
     def handle_stream(self, stream: Any, address: Any) -> None:
-        """One that comes."""
+        """Accept a connection, or close it where there are too many."""
         if len(self._inside) >= self._room:
             self._on_refused()
             stream.close()
@@ -30,20 +30,20 @@ class LimitedServer(HTTPServer):
         super().handle_stream(stream, address)
 
     def on_close(self, server_conn: Any) -> None:
-        """One that has gone."""
+        """Forget a connection that was closed."""
         timer = self._inside.pop(server_conn.stream, None)
         if timer is not None:
             timer.cancel()
         super().on_close(server_conn)
 
     def close_all(self) -> None:
-        """Closes all."""
+        """Close all connections."""
         for stream in list(self._inside):
             stream.close()
 
 
 def drop_chunks(headers: Any) -> bool:
-    """Has tornado read no chunks of a request whose head has just come; True where some were announced.
+    """Keep tornado from reading a chunked body of a request whose head has arrived; return True if one was announced.
 
     A negative size of a chunk keeps it (6.2) in a loop for ever.
     """

@@ -1,4 +1,7 @@
-"""When connections are made anew, and what is thought of the master: no ROS; moments are seconds of a real clock."""
+"""When connections to silent publishers are renewed, and the state of the ROS master.
+
+Times are seconds of a monotonic clock.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,13 @@ from dataclasses import dataclass
 from typing import Dict, List, Mapping
 
 SILENCE = 3.0
-"""Seconds without a pulse after which a publisher counts as silent."""
+"""Seconds without a message after which a publisher counts as silent."""
 
 FIRST_WAIT, LAST_WAIT = 4.0, 60.0
-"""Seconds until a publisher that stays silent on new connections gets the next ones: at first, and at most."""
+"""Seconds until the connections to a publisher that stays silent are renewed again: at first, and at most."""
 
 PATIENCE = 10.0
-"""Seconds after which a master that is gone is given up."""
+"""Seconds after which a master that does not know this node, or refuses connections, counts as lost."""
 
 REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
 MASTER_PROBLEMS = {
@@ -21,7 +24,7 @@ MASTER_PROBLEMS = {
     REFUSED: "the ROS master is gone",
     UNREACHABLE: "the ROS master cannot be reached",
 }
-"""What a call to the master may find, and how it is told."""
+"""A message for each result of a call to the master."""
 
 
 @dataclass
@@ -34,9 +37,10 @@ class _Peer:
 
 
 class Peers:
-    """Which publishers are silent, and for which of them it is time to make the connections anew.
+    """Keeps which publishers are silent, and whose connections have to be renewed.
 
-    Who was silent gets new connections even if it is heard again before: others of its connections may still be dumb.
+    A publisher that was silent gets new connections even if a message arrives before: its other connections may still
+    be broken.
     """
 
     def __init__(self, silence: float = SILENCE) -> None:
@@ -47,7 +51,7 @@ class Peers:
         return len(self._peers)
 
     def update(self, counts: Mapping[str, int], now: float) -> None:
-        """How many messages each connected publisher has sent so far."""
+        """Take the number of messages received so far from each connected publisher."""
         for name, count in counts.items():
             peer = self._peers.setdefault(name, _Peer(received=now))
             if count > peer.count:
@@ -62,15 +66,15 @@ class Peers:
                 peer.stale = True
 
     def silent(self, now: float) -> List[str]:
-        """Who has said nothing for too long."""
+        """Return the names of the silent publishers."""
         return sorted(name for name, peer in self._peers.items() if now - peer.received >= self._silence)
 
     def due(self) -> List[str]:
-        """Whose connections are to be made anew, as soon as they can be."""
+        """Return the names of the publishers whose connections have to be renewed."""
         return sorted(name for name, peer in self._peers.items() if peer.stale)
 
     def on_renewed(self, name: str, now: float) -> None:
-        """The connections to this publisher were made anew. If it stays silent, the next time comes later."""
+        """Note that the connections to this publisher were renewed; the next renewal comes later if it stays silent."""
         peer = self._peers.get(name)
         if peer is not None:
             if peer.renewed > peer.received:
@@ -79,9 +83,10 @@ class Peers:
 
 
 class MasterWatch:
-    """What is to be thought of the master, call by call.
+    """Decides from the results of calls whether the master is lost.
 
-    A master that is cut off may come back as it was. One that is gone, or another one, never hears its old nodes again.
+    A master that cannot be reached may come back with its registrations. One that refuses connections, or does not
+    know this node, has lost them.
     """
 
     def __init__(self, patience: float = PATIENCE) -> None:
@@ -90,13 +95,13 @@ class MasterWatch:
         self._since = 0.0
 
     def update(self, found: str, now: float) -> bool:
-        """What a call has found; True if that is news."""
-        news = found != self.found
-        if news and not {found, self.found} <= {NOT_REGISTERED, REFUSED}:
+        """Take the result of a call; return True if it differs from the one before."""
+        changed = found != self.found
+        if changed and not {found, self.found} <= {NOT_REGISTERED, REFUSED}:
             self._since = now
         self.found = found
-        return news
+        return changed
 
     def lost(self, now: float) -> bool:
-        """True when the master has been gone, or another one, for too long."""
+        """Return True when the registrations have been lost for longer than the patience."""
         return self.found in (NOT_REGISTERED, REFUSED) and now - self._since >= self._patience

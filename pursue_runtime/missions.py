@@ -66,7 +66,7 @@ def own_source(package: Package, main: str, config: str = "") -> Source:
 
 
 class Missions:
-    """What this machine has for a package: the workspace's own mission, and with `home` (ROS_HOME) those received."""
+    """The missions of a package on this machine: the workspace's own, and with `home` (ROS_HOME) those received."""
 
     def __init__(self, own: Source, package: str, home: str = "") -> None:
         self.own = own
@@ -81,14 +81,14 @@ class Missions:
         return self.own if digest == OWN else self._source(digest)
 
     def changed(self) -> bool:
-        """True if another mission may be current since `current` was asked for the last time."""
+        """Return True if another mission may be current since the last call of `current`."""
         return self._mark() != self._seen
 
     def find(self, mission: str) -> Optional[Source]:
         """The mission of this id, "" for the own one; None where this machine does not have it. Raises DataError.
 
         The own one may have been received as well. Then what was received counts, as it was signed: a person may have
-        changed the files in the workspace. Those count where the desk has told this machine to play its own.
+        changed the files in the workspace. Those count where the desk has ordered this machine to play its own.
         """
         if mission == OWN or (mission == self.own.mission and self._plays_own()):
             return self.own

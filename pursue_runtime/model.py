@@ -88,7 +88,7 @@ class Model:
     def joint_move(
         self, position: Position, word: str, agent: str = "", timed: bool = True
     ) -> Optional[Tuple[Move, ...]]:
-        """What `word` (done by `agent`, or whoever can first) does here: the mover's part, then each receiver's.
+        """What `word` (by `agent`, or the first automaton that can) does here: the mover's part, then each receiver's.
 
         None: it cannot happen. Untimed, bounds on clocks do not count: a robot may be earlier or later than its model.
         """

@@ -1,4 +1,4 @@
-"""What a state means to a node that plays a mission."""
+"""Which received states count for a node: those of its mission, in order of publication."""
 
 from __future__ import annotations
 
@@ -11,28 +11,29 @@ OURS, OLD, OTHER, OVER = "ours", "old", "other", "over"
 
 
 class StateFilter:
-    """What a state is to a node that has the data of `mission`; `own` is the workspace's, which states need not name.
+    """Classifies received states for a node that has the data of `mission`.
 
-    OURS: of its mission. OLD: published before one that was heard. OTHER: of another mission, which it must not take
-    for its own. OVER: the end of a mission that it was no part of, where it waits for the next one (`again`): whoever
-    begins anew after the end may still hear the observer of then.
+    `own` is the id of the workspace's mission, which states need not name. Classes: OURS, a state of the node's
+    mission; OLD, published before the newest one received; OTHER, of another mission; OVER, the end of a mission in
+    which the node took no part, while it waits for the next one (`again`): a node that restarts after the end may
+    still receive the latched state of that mission.
 
-    Who says for a minute (LATE, on the real `clock`) nothing but what seems to be OLD is an observer whose clock was
-    set back: then `anew` is True, and what was known before has nothing to do with what comes.
+    Where only OLD states arrive for a minute (LATE, on the real `clock`), the observer's clock was set back: then
+    `clock_set_back` is True, the state counts, and earlier states do not.
     """
 
     def __init__(
         self, mission: str, own: str, again: bool = False, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.mission = mission
-        self.newest: Optional[SystemState] = None  # the newest state, of whatever mission
+        self.newest: Optional[SystemState] = None  # the newest state, of any mission
         self.joined = False  # a state has been OURS
         self.clock_set_back = False  # the last state was the first one of an observer whose clock was set back
         self._own, self._again, self._clock = own, again, clock
-        self._received = clock()  # when the known state was said, or said again
+        self._received = clock()  # when the newest state was published, or published again
 
     def classify(self, state: SystemState) -> str:
-        """OURS, OLD, OTHER or OVER."""
+        """Return OURS, OLD, OTHER or OVER, and keep the state if it is the newest."""
         known, now = self.newest, self._clock()
         old = known is not None and older(state, known)
         same = known is not None and (state.mission, state.seq) == (known.mission, known.seq)

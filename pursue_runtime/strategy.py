@@ -94,7 +94,7 @@ class Strategy:
         """The first command that is due from the moment of the state on, and its moment, which may be past.
 
         It stands until the reaction is over, also where time has left its zone before the state came here: the proof
-        takes it for decided. Whoever is later than that looks from `now` on.
+        takes it for decided. A controller that is later than that takes the first one from `now` on.
         """
         first = self.next_command(state, state.stamp)
         if first is not None and now > first[0] + self.lateness(state) + EPSILON:
@@ -111,7 +111,7 @@ class Strategy:
 
 class Plans:
     """The strategies of one node by the number of their plan: 0 is the workspace's own, later ones were made during the
-    mission. Each state says which plan is in force, so that everybody goes from one to the next in one step."""
+    mission. Each state says which plan is in force, so that all nodes switch plans with the same state."""
 
     def __init__(self, own: Strategy) -> None:
         self._strategies = {0: own}

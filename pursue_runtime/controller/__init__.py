@@ -1,1 +1,1 @@
-"""What a controller decides: its next command, and what its robots are told."""
+"""The decisions of a controller: its next command, and goals and actions for its robots."""

@@ -1,4 +1,4 @@
-"""Which mission's part the controller plays: that of the states that it hears, and of no other."""
+"""Which mission's part a controller plays: always that of the states it receives."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Log = Callable[[str, str], None]
 
 
 class Part(NamedTuple):
-    """What this controller does in a mission: its strategy (None: it has no part in it), and where the points are."""
+    """A controller's part of a mission: its strategy (None: it has no part in it), and the poses of the POIs."""
 
     mission: str
     strategy: Optional[Strategy]
@@ -28,13 +28,13 @@ class Part(NamedTuple):
 
     @property
     def robots(self) -> List[str]:
-        """The robots that are commanded."""
+        """Return the robots that the strategy commands."""
         agents = self.strategy.agents if self.strategy is not None else []
         return [agent for agent in agents if agent not in OBJECTIVES]
 
 
 def read_part(source: Source) -> Part:
-    """All of a part from one place. Raises DataError."""
+    """Read a part from one source. Raises DataError."""
     if source.empty:
         return Part(source.mission, None, {})
     poses = source.read("poses.yaml").get("poses")
@@ -48,10 +48,10 @@ def read_part(source: Source) -> Part:
 
 
 class Follower:
-    """The part that is played. Without one, for the states name a mission that is not here, nothing is commanded.
+    """Follows the mission of the received states. Without data for that mission, nothing is commanded.
 
-    `name`: the node's; `package`: under which new plans have its strategy; `again`: it stays where it came too late;
-    `clock`: of real time.
+    `name`: the node's; `package`: under which new plans have its strategy; `again`: it waits for the
+    next mission where it came too late; `clock`: of real time.
     """
 
     def __init__(
@@ -72,15 +72,15 @@ class Follower:
         self.plan: Optional[Mapping[str, Any]] = None  # the newest, of whatever mission, until it is learned
 
     def load_current(self) -> None:
-        """Reads the part of the mission that is current, before any state is heard. Raises DataError."""
+        """Read the part of the current mission, before any state is received. Raises DataError."""
         self._read(self._missions.current())
 
     def on_state(self, state: SystemState) -> str:
-        """A state: the part of its mission is read, if it is another one. What the state is to us (see Hearing)."""
+        """Take a state, read the part of its mission if that is another one, and return its class (see StateFilter)."""
         verdict = self._filter.classify(state)
         if self._filter.clock_set_back and self.part is not None:
-            self._log("warn", "the observer's clock was set back: what was known of the mission is forgotten")
-            self._use(self.part._replace())  # a new one: what its robots were told is over
+            self._log("warn", "the observer's clock was set back: earlier states do not count any more")
+            self._use(self.part._replace())  # a new scheduler: earlier commands are over
         if verdict == OTHER or (verdict != OLD and (self.part is None or self._moved(state))):
             self._change(state.mission)
             verdict = self._filter.classify(state) if self.part else OTHER
@@ -91,14 +91,14 @@ class Follower:
         return verdict
 
     def reject(self, why: str) -> None:
-        """The part that was read cannot be played."""
+        """Play nothing: the part that was read cannot be used, for the reason `why`."""
         if why != self._logged:
             self._log("err", why)
         self._use(None)
         self.trouble = self._logged = why
 
     def take_plan(self, now: float) -> Optional[Word]:
-        """Learns the newest `plan`, if it is for the mission that is played: the word that says that we have it.
+        """Use the newest `plan` if it is for the mission that is played; return the word that acknowledges it.
 
         Raises DataError if it cannot be read. One of another mission is kept until the states of that come.
         """
@@ -115,13 +115,13 @@ class Follower:
         return player.add_plan(int(plan["plan"]), strategy, now)
 
     def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[Part], str]:
-        """The newest state of whatever mission, what plays, the part, and what is wrong ("": nothing)."""
+        """Return the newest state of any mission, the scheduler, the part, and what is wrong ("": nothing)."""
         state = self._filter.newest
         over = state is not None and state.status in ENDED and not self._filter.joined
         return state, self.scheduler, self.part, self.trouble or ("waits for the next mission" if over else "")
 
     def _change(self, mission: str) -> None:
-        """Plays this mission from now on, if it is here."""
+        """Switch to this mission, if it is on this machine."""
         try:
             source = self._missions.find(mission)
             if source is None:
@@ -131,7 +131,7 @@ class Follower:
             self.reject(str(problem))
 
     def _moved(self, state: SystemState) -> bool:
-        """True where the same mission is to be read from another place, while it has not begun."""
+        """Return True if the same mission has to be read from another source, while it has not begun."""
         source = self._source
         return state.status == WAITING and source is not None and self._missions.moved(state.mission, source)
 

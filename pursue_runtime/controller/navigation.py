@@ -1,6 +1,6 @@
-"""When a robot gets its goal, and what is reported of its way: decisions only, without ROS.
+"""When a robot gets its goals, and which ends and failures of its movements are reported.
 
-Moments are seconds of ROS time, `real` those of the computer's clock, distances metres.
+Times are seconds of ROS time, `real` of the monotonic clock; distances are metres.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ class Settings(NamedTuple):
 
     @property
     def uses_results(self) -> bool:
-        """True where the results of move_base are listened to."""
+        """Return True if results of move_base are used."""
         return self.goals == "action" or self.ends == "result"
 
     @property
     def uses_position(self) -> bool:
-        """True where it is for the controller to see that the robot has arrived."""
+        """Return True if the controller finds from the position that the robot has arrived."""
         return self.ends in ("pose", "tf")
 
 
@@ -61,7 +61,7 @@ def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
     if settings.simulated and (settings.goals, settings.ends) != ("simple", "words"):
         raise DataError(
             f"goals:={settings.goals} and ends:={settings.ends} for {robot}, which is simulated: the simulator takes"
-            " simple goals and tells ends in words; leave these out, or set simulate:=false for real robots"
+            " simple goals and reports ends as words; leave these out, or set simulate:=false for real robots"
         )
     frames = (settings.map_frame.replace("{robot}", robot), settings.base_frame.replace("{robot}", robot))
     return settings._replace(map_frame=frames[0], base_frame=frames[1])
@@ -80,7 +80,7 @@ def _checked(name: str, value: Any, default: Any) -> Any:
 
 
 class Movement(NamedTuple):
-    """A movement: the location that the agent has meanwhile, and the point where it ends."""
+    """A movement: the location of the agent meanwhile, and the POI where it ends (x, y in metres)."""
 
     location: str
     poi: str
@@ -89,7 +89,7 @@ class Movement(NamedTuple):
 
 
 class Goal(NamedTuple):
-    """What a robot is to be told: with an id of our own, which only action goals carry."""
+    """A goal for a robot, with an id of our own, which only action goals carry."""
 
     name: str
     movement: Movement
@@ -97,7 +97,7 @@ class Goal(NamedTuple):
 
 @dataclass
 class Progress:
-    """One movement under way: `goals` is how many were sent for it, `goal` the one that the robot is after."""
+    """The progress of a movement: `goals` is how many were sent for it, `goal` the id of the one in progress."""
 
     movement: Movement
     goal_at: Optional[float] = None
@@ -115,7 +115,7 @@ Log = Callable[[str, str], None]
 
 
 class Navigation:
-    """What one robot was told, and what it has answered."""
+    """Goals for one robot, and what follows from its results and positions."""
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
         self.name = name
@@ -128,31 +128,31 @@ class Navigation:
 
     @property
     def needs_position(self) -> bool:
-        """True while its position is to be looked at."""
+        """Return True while positions are needed."""
         trip = self._progress
         return self.settings.uses_position and trip is not None and trip.report != self._end_word(trip)
 
     @property
     def goal(self) -> str:
-        """The id of the goal that it is after, "" if none."""
+        """Return the id of the goal in progress, "" if none."""
         return self._progress.goal if self._progress else ""
 
     # What happens -----------------------------------------------------------------------------------------------------
 
     def on_state(self, way: Optional[Movement], running: bool, lost: bool) -> None:
-        """A state shows it on this way (None: on none). Goals are sent while the mission is `running` only."""
+        """Take from a state the movement of the robot (None: none); goals are sent only while it is `running`."""
         self._running = running
         if way is None or self._progress is None or self._progress.movement != way:
-            self._progress = Progress(way) if way else None  # whoever began it: its end is an end
+            self._progress = Progress(way) if way else None  # also one that was begun by hand: its end counts
         elif lost and self._progress.report == self._failure_word():
             self._progress.confirmed = True
 
     def start(self, way: Movement, now: float) -> None:
-        """It is to go there."""
+        """Start a movement: its goal is due now."""
         self._progress = Progress(way, goal_at=now)
 
     def on_result(self, goal: str, stamp: float, status: int, now: float) -> None:
-        """move_base says how a goal has ended that it got at `stamp`."""
+        """Take a result of move_base for a goal that was sent at `stamp` (seconds)."""
         trip = self._progress
         if trip is None or trip.report == self._end_word(trip) or not self._is_current(trip, goal, stamp, status):
             return
@@ -162,12 +162,12 @@ class Navigation:
             if self.settings.ends == "result":
                 self._report(trip, self._end_word(trip))
             elif self.settings.uses_position and trip.near_since is None:
-                self._log("warn", f"{self.name} says that it is at {trip.movement.poi}, but is not seen there yet")
+                self._log("warn", f"{self.name}: goal reached, but the position is not at {trip.movement.poi} yet")
         else:
             self._on_failure(trip, FAILURES[status], now)
 
     def on_position(self, x: float, y: float, now: float) -> None:
-        """It is there now, on the map."""
+        """Take a position on the map (metres)."""
         trip = self._progress
         if trip is None or not self.needs_position:
             return
@@ -179,7 +179,7 @@ class Navigation:
     # What is to be done -----------------------------------------------------------------------------------------------
 
     def due(self, now: float, real: float) -> Tuple[Optional[Goal], Optional[str]]:
-        """The goal to send and the word to publish at this moment, if any."""
+        """Return the goal to send and the word to publish now, if any."""
         trip = self._progress
         if trip is None:
             return None, None
@@ -193,7 +193,7 @@ class Navigation:
         return goal, word
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
-        """When `due` should be asked again: in ROS time, and on the real clock; None: not before something happens."""
+        """Return when to call `due` again, in ROS time and on the real clock; None: not before the next input."""
         trip = self._progress
         if trip is None:
             return None, None
@@ -214,7 +214,7 @@ class Navigation:
         return Goal(trip.goal, trip.movement)
 
     def _is_current(self, trip: Progress, goal: str, stamp: float, status: int) -> bool:
-        """True if the result is that of the goal which the robot is after."""
+        """Return True if the result belongs to the goal in progress."""
         if not trip.goal or (status != SUCCEEDED and status not in FAILURES):
             return False
         if self.settings.goals == "action":
@@ -223,7 +223,7 @@ class Navigation:
             return False
         if not stamp or stamp >= self._earliest:  # who gives no stamp (a person, with rostopic) means now
             return True
-        self._log("info", f"{self.name}: a result of {self._sent - stamp:.1f} s before the present goal is left aside")
+        self._log("info", f"{self.name}: ignored a result from {self._sent - stamp:.1f} s before the current goal")
         return False
 
     def _on_failure(self, trip: Progress, how: str, now: float) -> None:
@@ -237,7 +237,7 @@ class Navigation:
 
     @staticmethod
     def _report(trip: Progress, word: str) -> None:
-        """The word is reported until the state shows it; no goal is due any more."""
+        """Report this word until the state shows it; no further goal is due."""
         trip.report, trip.reports, trip.confirmed, trip.goal_at = word, 0, False, None
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""How a controller plays its part of the strategy: no threads; moments are seconds of ROS time."""
+"""When a controller publishes its commands, and what its agents have begun. Times are seconds of ROS time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pursue_runtime.zones import EPSILON
 
 
 class StartedActivity(NamedTuple):
-    """What an agent has begun, for the exeggutor."""
+    """A movement or an action that an agent has begun, for its robot."""
 
     agent: str
     trigger: str
@@ -22,10 +22,10 @@ class StartedActivity(NamedTuple):
 
 
 class CommandScheduler:
-    """Looks from state to state when the next command of its strategy is due, and what its agents have begun."""
+    """Finds in each state when the next command of the strategy is due, and what the agents have begun."""
 
     def __init__(self, strategy: Strategy, name: str = "") -> None:
-        """`name`: the controller's, by which the observer knows who has a new plan."""
+        """`name`: the controller's, with which it acknowledges new plans."""
         self.state: Optional[SystemState] = None
         self.planned: Optional[Tuple[float, Command]] = None
         self.is_new = False  # the last state was a new one
@@ -39,11 +39,11 @@ class CommandScheduler:
         self._patience: Optional[float] = None
 
     def next_wakeup(self) -> Tuple[Optional[float], Optional[float]]:
-        """When to call `ring`: a moment, or the seconds of real time from now after which a word counts as lost."""
+        """Return when to call `on_timer`: a time, or seconds of real time until a word counts as lost."""
         return (self.planned[0] if self.planned else None), self._patience
 
     def add_plan(self, plan: int, strategy: Strategy, now: float) -> Word:
-        """A new plan came, for the states that name it; the word that says so to the observer."""
+        """Add a plan for the states that name it; return the word that acknowledges it."""
         self._plans.add(plan, strategy)
         self._newest = max(plan, self._newest)
         if self.state is not None and self.state.plan == plan and self.planned is None:
@@ -51,7 +51,7 @@ class CommandScheduler:
         return self._receipt(plan)
 
     def repeated_receipt(self) -> Optional[Word]:
-        """Says again which plan came last, while the mission may be waiting for that."""
+        """Return the acknowledgement of the newest plan once more, while the mission may be waiting for it."""
         waits = self.state is not None and self.state.status == HOLDING and self.state.plan < self._newest
         return self._receipt(self._newest) if waits else None
 
@@ -59,17 +59,17 @@ class CommandScheduler:
         return Word(self._name, PLANNED, plan)
 
     def on_state(self, state: SystemState, now: float) -> List[StartedActivity]:
-        """A state was published: what has our agents begun? The next command is planned."""
+        """Take a state, find the next command, and return what our agents have begun."""
         before = self.state
         self.is_new = False
         if before is not None and older(state, before):
             self.counts["old"] += 1
             return []
         self.state = state
-        if state.status == WAITING:  # a mission that has not begun has no new plans: these were of the one before
+        if state.status == WAITING:  # new plans belong to a mission that has begun: these are of an earlier one
             self._plans, self._newest = Plans(self._own), 0
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
-            return []  # the answer to a ping, or the observer says only that it is there
+            return []  # the answer to a ping, or a heartbeat
         self.is_new = True
         self.planned, self._patience, self._unanswered = None, None, 0
         if state.status == WON:  # what won it, if that is done at once
@@ -82,7 +82,7 @@ class CommandScheduler:
         return orders
 
     def on_timer(self, now: float) -> Optional[Word]:
-        """A command is due, or was not answered: the word to publish, if any."""
+        """Return the word to publish now: a command that is due, or one that got no answer."""
         state = self.state
         if state is None or state.status != RUNNING:
             return None
@@ -105,12 +105,12 @@ class CommandScheduler:
         return Word(command.agent, command.event, state.seq)
 
     def _plan(self, state: SystemState, now: float) -> None:
-        """Looks for the next command: there is none while the mission holds, or before the plan in force came."""
+        """Find the next command: none while the mission holds, or before the plan in force has arrived."""
         strategy = self._plans.strategy_for(state) if state.status == RUNNING else None
         self.planned = strategy.decided(state, now) if strategy else None
 
     def _begun(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
-        """What our agents have begun since the state before, even where states in between (or all) were missed."""
+        """Return what our agents have begun since the state before, even if states in between were missed."""
         orders: List[StartedActivity] = []
         for agent in self._agents:
             target = state.locations.get(agent, "")
@@ -118,18 +118,18 @@ class CommandScheduler:
             own = state.agent == agent
             begins = origin != target and is_under_way(target)
             if own and before is not None and not self._holds(before, state):
-                self.counts["not_ours"] += 1  # somebody reports it, or did it by hand: the robot gets no order from us
+                self.counts["not_ours"] += 1  # a report, or a word published by hand: the robot gets no order
             elif begins or (own and origin == target and self._instant(state, target)):
                 orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))
         return orders
 
     def _instant(self, state: SystemState, location: str) -> bool:
-        """True for a command that is done at once; after states that were missed it may be the end of another one."""
+        """Return True if the last event is a command without duration, not the end of another one."""
         strategy = self._plans.strategy_for(state)
         return strategy is not None and strategy.instant(state.agent, state.event, location)
 
     def _holds(self, before: SystemState, state: SystemState) -> bool:
-        """True if what led to the state is a command of the strategy, or cannot be known: states were missed."""
+        """Return True if a command of the strategy led to the state, or states were missed so that it may have."""
         if before.status == HOLDING and state.seq == before.seq + 1:
             return False
         strategy = self._plans.strategy_for(before)

@@ -1,4 +1,4 @@
-"""An event loop in a thread of its own, in which the servers of communication_manager run. Without ROS."""
+"""An event loop in a thread of its own, in which the servers of communication_manager run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Callable, List, Tuple
 
 from tornado.netutil import bind_sockets
 
-CAPTURED_LOGGERS = ("tornado", "asyncio")  # loggers that would tell the log of every stranger
+CAPTURED_LOGGERS = ("tornado", "asyncio")  # loggers that write a line for each malformed request
 
 
 class ServerError(Exception):
@@ -101,7 +101,7 @@ class _Log(logging.Handler):
             logger.propagate = True
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Errors are ours, and worth a line; the rest is what strangers do."""
+        """Pass on errors, which are faults of this program, with their text; the rest is malformed requests."""
         if record.levelno < logging.ERROR:
             self._trouble("malformed", "")
             return

@@ -1,6 +1,6 @@
-"""The socket on which communication_manager forwards topics to tools that are no ROS nodes. Without ROS.
+"""The socket on which communication_manager forwards topics to tools that are no ROS nodes.
 
-Whoever connects gets a line for each message: `{"topic": "pursue/events", "data": "bot1_a2b"}`. (The thesis sends the
+Each subscriber gets a line for each message: `{"topic": "pursue/events", "data": "bot1_a2b"}`. (The thesis sends the
 text "actions …" with no end to it: lines of JSON are what tools can take apart.) Of a latched topic a newcomer gets the
 last message at once. Nothing that subscribers send is looked at, and who does not read is given up. There is no TLS
 here: what is forwarded can be read by whoever reaches the port.
@@ -27,7 +27,7 @@ MAX_INPUT = 1 << 16  # bytes that a subscriber may send until it is given up
 
 
 class Forwarder(Service):
-    """Tells every subscriber of every message; lives in the loop, but for the constructor."""
+    """Sends every message to every subscriber; all but the constructor runs in the event loop."""
 
     def __init__(
         self, sockets: List[Any], record: RequestLog, subscribers: int = MAX_SUBSCRIBERS, backlog: int = MAX_BACKLOG
@@ -53,11 +53,11 @@ class Forwarder(Service):
 
     @property
     def subscribers(self) -> int:
-        """So many listen."""
+        """Return the number of subscribers."""
         return len(self._streams)
 
     def send(self, topic: str, data: str, latched: bool = False) -> None:
-        """A message of a topic."""
+        """Send a message of a topic to every subscriber."""
         line = json.dumps({"topic": topic, "data": data}).encode() + b"\n"
         if len(line) > MAX_LINE:
             self._record.count("not forwarded", f"a message of {topic} is too long to be forwarded: {len(line)} bytes")
@@ -81,9 +81,9 @@ class Forwarder(Service):
         try:
             for line in self._last.values():
                 self._write(stream, line)
-            heard = 0
-            while heard < MAX_INPUT:  # reading is how one learns that the other side has gone
-                heard += len(await stream.read_bytes(4096, partial=True))
+            received = 0
+            while received < MAX_INPUT:  # reading is how one learns that the other side has gone
+                received += len(await stream.read_bytes(4096, partial=True))
             self._record.count("given up", "a subscriber that talks was given up")
         except StreamClosedError:
             pass

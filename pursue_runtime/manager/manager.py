@@ -1,4 +1,4 @@
-"""What communication_manager decides, without ROS and without a server: whose orders count, and what is answered.
+"""The decisions of communication_manager: which orders are accepted, and the answers.
 
 All that is known of the robot is the last status of its pursue_reader. That node checks everything once more.
 """
@@ -14,7 +14,8 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
-from pursue_runtime.trusted_keys import KeyFolder, RateLimitedLog
+from pursue_runtime.rate_limited_log import RateLimitedLog
+from pursue_runtime.trusted_keys import KeyFolder
 
 LOCAL_MISSION, MISSION_STATUS = "local_mission", "mission_status"
 LONGEST_HEADER = 4 * ORDER_LENGTH  # bytes of all headers of a request
@@ -42,7 +43,7 @@ REFUSED_BY_READER = 409
 
 
 class HttpAnswer(NamedTuple):
-    """What a client is told: HTTP status, a word for programs, a sentence for people; `ok` for what was done."""
+    """The answer to a client: HTTP status, a code for programs, a sentence for people; `ok` if the order was done."""
 
     http: int
     code: str
@@ -82,7 +83,7 @@ def parse_status(text: str) -> Optional[Dict[str, Any]]:
 
 
 def parse_length(text: Optional[str]) -> Optional[int]:
-    """The bytes of a body from its header; None where there is none. Raises NotNow for what is not a plain number."""
+    """Return the length of a body from its header, None without one. Raises RequestRefused where it is no number."""
     if text is None:
         return None
     if not re.fullmatch(r"[0-9]{1,15}", text, re.ASCII):
@@ -103,10 +104,10 @@ def topic_names(text: str) -> List[str]:
 
 
 class Manager:
-    """Knows this robot's name, whom it trusts, and what its reader said last; says what is to be done with requests.
+    """Checks requests against this robot's name, its trusted keys, and the last status of its reader.
 
     `reader` tells whether the reader is connected, `limit` is the largest bundle in bytes. With `exposed`, where other
-    machines reach the server, nobody is told anything before there is a key.
+    machines reach the server, every request is refused until a key is trusted.
     """
 
     def __init__(
@@ -117,14 +118,14 @@ class Manager:
         self._status: Optional[Dict[str, Any]] = None
 
     def on_status(self, text: str) -> None:
-        """A message of the reader. One that speaks for another robot does not count."""
+        """Take a status of the reader; one for another robot is ignored."""
         status = parse_status(text)
         if status is not None and status["robot"] == self.robot:
             self._status = status
 
     @property
     def trusts_any_key(self) -> bool:
-        """True where somebody's orders count."""
+        """Return True if any key is trusted."""
         return bool(self._folder.keys())
 
     def condition(self) -> Tuple[str, str]:
@@ -148,7 +149,7 @@ class Manager:
         return self._status if self._status is not None and self.reader_connected else {}
 
     def check_trust(self) -> None:
-        """Raises NotNow while strangers could ask and nobody is trusted."""
+        """Raise RequestRefused while the server is exposed and no key is trusted."""
         if self.exposed and not self.trusts_any_key:
             raise RequestRefused("no_keys", "this robot trusts no key yet: everything is refused")
 
@@ -158,7 +159,8 @@ class Manager:
         return (200 if there else HTTP["no_reader"]), {**self.status(), "robot": self.robot, "reader": there}
 
     def check_order(self, text: Optional[str], length: Optional[int], chunked: bool) -> Order:
-        """The order of a request whose body is still to come. Raises NotNow unless it is for us, now, from a friend.
+        """The order of a request whose body is still to come. Raises RequestRefused unless it is signed by a
+        trusted key, for this robot, with the current ticket.
 
         `length` is the announced length of the body; nothing of the body is needed for this.
         """
@@ -176,7 +178,7 @@ class Manager:
         return order
 
     def check_ticket(self, order: Order) -> None:
-        """Raises NotNow unless the reader would take the order now."""
+        """Raises RequestRefused unless the reader would take the order now."""
         if not self.reader_connected:
             raise RequestRefused("no_reader", "pursue_reader is silent: nobody can carry the order out")
         if order.ticket != self.status().get("ticket"):
@@ -185,8 +187,8 @@ class Manager:
     def _check_length(self, order: Order, length: Optional[int], chunked: bool) -> None:
         if chunked or (length is None and order.size):
             raise RequestRefused("no_length", "Content-Length is needed, and no chunks")
-        said = self.status().get("limit")
-        limit = min(self.limit, said) if type(said) is int else self.limit
+        reported = self.status().get("limit")
+        limit = min(self.limit, reported) if type(reported) is int else self.limit
         if order.size > limit:
             raise RequestRefused("too_large", f"the bundle has {order.size} bytes; at most {limit} are taken")
         if (length or 0) != order.size:
@@ -208,7 +210,7 @@ class Manager:
 
 
 def check_bundle(order: Order, body: bytes) -> None:
-    """Raises NotNow where the body is not the one that the order is about."""
+    """Raises RequestRefused where the body is not the one that the order is about."""
     if len(body) != order.size or (order.size and hashlib.sha256(body).hexdigest() != order.bundle):
         raise RequestRefused("bad_bundle", "what came is not the bundle that the order is about")
 
@@ -225,9 +227,9 @@ def mission_message(order_text: str, body: bytes) -> str:
 
 
 class RequestLog:
-    """Counts what happens by word, and writes lines about it, those of strangers now and then only.
+    """Counts requests by kind; what clients cause is logged at a limited rate.
 
-    `warn(text)` and `note(text)` write to the log, `clock()` tells seconds.
+    `warn(text)` and `note(text)` write to the log, `clock()` returns seconds.
     """
 
     def __init__(
@@ -237,14 +239,14 @@ class RequestLog:
         self._log = RateLimitedLog(warn)
 
     def count(self, word: str, text: str = "") -> None:
-        """One more of this; `text`, where given, is worth a line unless there was one just now."""
+        """Count an event; `text`, if given, is logged unless a line was logged just before."""
         if text:
             self._log.count(word, text, self._clock())
         else:
             self._log.counts[word] = self._log.counts.get(word, 0) + 1
 
     def log(self, word: str, text: str) -> None:
-        """One more of this, which is always worth a line: no stranger can bring it about."""
+        """Count an event and log it in any case: only trusted orders cause it."""
         self.count(word)
         self._info(text)
 

@@ -1,9 +1,9 @@
-"""The HTTP server of communication_manager: /health, and /mission for orders with their bundles. Without ROS.
+"""The HTTP server of communication_manager: /health, and /mission for orders with their bundles.
 
     GET /health      200 the status of pursue_reader, with "reader": true; 503 with "reader": false
     POST /mission    header Pursue-Order: what to do, signed; body: the bundle that the order is about, or nothing
 
-It may stay switched on where strangers reach it. An order is checked by its header, before a byte of the body is read;
+It is safe on untrusted networks. An order is checked by its header, before a byte of the body is read;
 orders are taken one at a time; a connection brings one request, and ends after a time whatever it does.
 """
 
@@ -35,7 +35,7 @@ from pursue_runtime.manager.manager import (
 )
 
 HEALTH, MISSION = "/health", "/mission"
-MAX_DISCARDED = 1 << 20  # bytes of a refused body that are read and thrown away, so that the client hears the answer
+MAX_DISCARDED = 1 << 20  # bytes of a refused body that are read and thrown away, so that the client receives the answer
 DISCARD_TIME = 2.0  # seconds that this may take
 _HOST = re.compile(r"[A-Za-z0-9_.:%\[\]-]{1,255}", re.ASCII)
 
@@ -91,7 +91,7 @@ class Server(Service):
         limits: Limits,
         context: Optional[ssl.SSLContext] = None,
     ) -> None:
-        """`publish` gets what the reader is to hear."""
+        """`publish` sends a text to the reader."""
         self.manager, self.record, self.limits = manager, record, limits
         self.port = int(sockets[0].getsockname()[1])
         self.busy = False
@@ -127,7 +127,7 @@ class Server(Service):
                 future.set_result(answer)
 
     async def deliver(self, text: str, order: Order, body: bytes) -> HttpAnswer:
-        """Has the reader carry the order out, and waits for what it says. Raises NotNow."""
+        """Publish the order for the reader, and wait for its answer. Raises RequestRefused."""
         check_bundle(order, body)
         self.manager.check_ticket(order)  # once more: the body may have taken its time
         future: "asyncio.Future[HttpAnswer]" = asyncio.get_running_loop().create_future()
@@ -147,14 +147,14 @@ class Server(Service):
     def _log(self, handler: RequestHandler) -> None:
         """Every request that was answered."""
         ip, http = handler.request.remote_ip, str(handler.get_status())
-        told, done = (handler.sent, handler.done) if isinstance(handler, _Request) else (None, "")
-        if told is None:
+        answer, done = (handler.sent, handler.done) if isinstance(handler, _Request) else (None, "")
+        if answer is None:
             self.record.count(http)
         elif done:
-            self.record.log(http, f"{ip}: {done}: {told.message}")
+            self.record.log(http, f"{ip}: {done}: {answer.message}")
         else:
-            # Only words of our own, and what is quoted: lines of strangers do not get into the log as they are.
-            self.record.count(http, f"{ip}: refused: {told.code}, {told.message}")
+            # Only words of our own, and what is quoted: texts of clients are not logged as they are.
+            self.record.count(http, f"{ip}: refused: {answer.code}, {answer.message}")
 
 
 @stream_request_body
@@ -265,7 +265,7 @@ class _Request(RequestHandler):
     # How it ends otherwise --------------------------------------------------------------------------------------------
 
     async def _refuse(self, answer: HttpAnswer) -> None:
-        """Says no, and closes. Of what is already on its way a little is read: else the client would not hear it."""
+        """Refuse and close; a part of the body is read, since the client would not receive the answer otherwise."""
         self.set_header("Connection", "close")
         self._send(answer)
         headers = self.request.headers

@@ -1,6 +1,6 @@
-"""Where everything is in the mission: a `transitions` machine for each automaton, variables, clocks.
+"""The state of the automata of a mission: a `transitions` machine for each one, variables, clocks.
 
-Moments are seconds of ROS time, delays are time units.
+Times are seconds of ROS time, delays are time units.
 """
 
 from __future__ import annotations
@@ -15,7 +15,11 @@ from pursue_runtime.zones import due, holds
 
 
 class AutomatonMachine:
-    """Where one automaton is: a `transitions` machine whose triggers are the words of its edges."""
+    """One automaton as a `transitions` machine: locations are its states, the words of edges its triggers.
+
+    The machine keeps the location and which words leave it; guards, clocks and the receivers of a word belong to
+    several automata at once, so the model evaluates them and this class applies the edge that it has chosen.
+    """
 
     def __init__(self, automaton: Automaton) -> None:
         self._model = SimpleNamespace()  # the machine gives it a state, and names that scenarios choose
@@ -27,14 +31,14 @@ class AutomatonMachine:
 
     @property
     def location(self) -> str:
-        """The location."""
+        """Return the current location."""
         return str(self._model.state)
 
     def take(self, edge: Edge) -> None:
-        """Takes the edge, which starts where the automaton is.
+        """Take an edge that leaves the current location.
 
-        Several edges of a location may have one word, and the model has chosen between them by their guards: so the
-        machine is set to the target. Its own way there, by trigger and conditions, took a quarter of a reaction.
+        The state is set directly: several edges of a location may have the same word, and evaluating the trigger's
+        conditions once more took a quarter of a reaction. Raises AssertionError for an edge from another location.
         """
         if edge.word not in self._machine.get_triggers(self.location):
             raise AssertionError(f"{edge.word} does not start at {self.location}")
@@ -42,44 +46,44 @@ class AutomatonMachine:
 
 
 class Automata:
-    """The automata, the variables and the clocks. `unit` is the length of a time unit in seconds."""
+    """The automata, variables and clocks of a mission; `unit` is the length of a time unit in seconds."""
 
     def __init__(self, model: Model, unit: float) -> None:
         self.model = model
         self.unit = unit
         self._machines = {automaton.name: AutomatonMachine(automaton) for automaton in model.automata}
         self._values = dict(model.variables)
-        self._zeros: Dict[str, float] = {}  # the moment of the last reset of each clock
+        self._zeros: Dict[str, float] = {}  # the time of the last reset of each clock
 
     def start(self, now: float) -> None:
-        """Every clock is zero."""
+        """Set every clock to zero at the time `now`."""
         self._zeros = dict.fromkeys(self.model.clocks, now)
 
     def location_of(self, name: str) -> str:
-        """The location of an automaton, "" if there is none of this name."""
+        """Return the location of an automaton, "" if there is none of this name."""
         return self._machines[name].location if name in self._machines else ""
 
     def is_at(self, place: Optional[Tuple[str, str]]) -> bool:
-        """True where the automaton is at this location (never at None)."""
+        """Return True if the automaton (first) is at the location (second); False for None."""
         return place is not None and self.location_of(place[0]) == place[1]
 
     def position(self, now: float) -> Position:
-        """Locations, variables and the clocks of this moment."""
+        """Return the locations, variables and clocks at the time `now`."""
         locations = {name: machine.location for name, machine in self._machines.items()}
         clocks = {clock: (now - self._zeros.get(clock, now)) / self.unit for clock in self.model.clocks}
         return Position(locations, dict(self._values), clocks)
 
     def take(self, moves: Iterable[Move], now: float) -> None:
-        """Moves the automata of one event."""
+        """Apply the moves of one event."""
         for name, edge in moves:
             self._machines[name].take(edge)
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
     def bounds(self, position: Position, *kinds: str) -> List[Tuple[str, float]]:
-        """The automata (of these kinds, if any are named) that must move by some moment, and how far that is.
+        """Return the automata whose invariant bounds their stay, and the time units until then (negative: overdue).
 
-        In time units; negative: the moment has passed.
+        Only automata of the given kinds, if any are given.
         """
         return [
             (automaton.name, bound.bound - position.clocks[bound.left])
@@ -88,12 +92,12 @@ class Automata:
         ]
 
     def internal_delays(self, position: Position) -> List[float]:
-        """How far the steps are that objectives take by themselves, if only time passes."""
+        """Return the delays (time units) until internal edges of objectives are enabled, if only time passes."""
         delays = (due([edge.when], position.clocks) for _, edge in self._internal_edges(position))
         return [delay for delay in delays if delay is not None]
 
     def internal_move(self, position: Position) -> Optional[Tuple[Move, ...]]:
-        """The step that an objective takes by itself now (`never_with`)."""
+        """Return the internal edge of an objective that is enabled now (`never_with`), None if there is none."""
         for automaton, edge in self._internal_edges(position):
             if holds(edge.when, position.clocks):
                 return (Move(automaton.name, edge),)

@@ -1,5 +1,4 @@
-"""The journal of a mission: whatever changed it, line by line, so that an observer that was killed goes
-on where it was. No ROS.
+"""The journal of a mission: one line for each call that changed it, so that a restarted observer can continue.
 
 A line is one write to a file that is opened for appending: it outlives the process, not a power cut.
 """
@@ -36,10 +35,10 @@ Log = Callable[[str, str], None]
 
 
 class Journal:
-    """Calls of a mission, written down before anybody hears of what they changed."""
+    """Writes the calls of a mission before their results are published."""
 
     def __init__(self, mission: Mission, path: str, header: Mapping[str, Any], log: Log) -> None:
-        """Takes the mission, which is fresh, to where the journal at `path` ends ("": no journal).
+        """Replay the journal at `path` ("": no journal) into a fresh mission.
 
         `header` tells missions apart: a journal of another model or another launch is set aside.
         """
@@ -57,11 +56,11 @@ class Journal:
 
     @property
     def is_open(self) -> bool:
-        """True where what happens is written down."""
+        """Return True while the journal can be written."""
         return self._file is not None
 
     def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
-        """Calls the mission (one of CALLS) at this moment (seconds), and writes down what has changed it."""
+        """Call the mission (a name in CALLS) at the time `now` (seconds); write the call if it changed the mission."""
         before = self._mission.revision()
         states = CALLS[name](self._mission, *args, now)
         if self._mission.revision() != before:
@@ -70,7 +69,7 @@ class Journal:
         return states
 
     def end(self) -> None:
-        """The mission is over, and everybody knows: the next one begins a journal of its own."""
+        """Write that the end of the mission was published: the next mission begins a journal of its own."""
         self._write({"call": END})
 
     def _resume(self, path: str, header: Mapping[str, Any]) -> None:
@@ -93,11 +92,11 @@ class Journal:
             replay(self._mission, entries)
         except DataError as problem:
             self._log("err", f"{path}: {problem}")
-            self._mission.stop(f"the observer died, and its journal cannot be played again: {problem}", 0.0)
+            self._mission.stop(f"the observer was restarted, and its journal cannot be replayed: {problem}", 0.0)
         else:
             if entries:
                 self.last = float(entries[-1]["at"])
-                self._log("warn", f"goes on from state {self._mission.seq}, as {path} has it")
+                self._log("warn", f"continues from state {self._mission.seq}, read from {path}")
 
     def _write(self, entry: Mapping[str, Any]) -> None:
         if self._file is None:
@@ -109,13 +108,13 @@ class Journal:
 
     def _fail(self, problem: OSError) -> None:
         self._file = None
-        self._log("err", f"no journal: {problem}. An observer that is killed cannot go on where it was.")
+        self._log("err", f"no journal: {problem}. A restarted observer cannot continue this mission.")
 
 
 def read_journal(path: str) -> Tuple[Optional[Dict[str, Any]], List[Dict[str, Any]], int]:
-    """The first line, the others, and the length in bytes of all whole lines: a kill may have torn the last one.
+    """Return the first line, the other lines, and the length in bytes of all complete lines.
 
-    A line that cannot be read is an entry without a call. Raises OSError.
+    A kill may leave the last line incomplete; a line that cannot be read is an entry without a call. Raises OSError.
     """
     with open(path, "rb") as file:
         content = file.read()
@@ -125,8 +124,10 @@ def read_journal(path: str) -> Tuple[Optional[Dict[str, Any]], List[Dict[str, An
 
 
 def unfinished_mission(path: str, launch: str) -> Optional[str]:
-    """The id of the mission that was under way when the observer of this launch died ("" for the workspace's own); None
-    where none was, or nobody can tell."""
+    """Return the id of the mission that the observer of this launch had not finished ("": the workspace's own).
+
+    None where there was none, or the journal cannot be read.
+    """
     try:
         header, entries, _ = read_journal(path)
     except OSError:
@@ -137,7 +138,7 @@ def unfinished_mission(path: str, launch: str) -> Optional[str]:
 
 
 def replay(mission: Mission, entries: List[Dict[str, Any]]) -> None:
-    """Takes a fresh mission through the entries. Raises DataError where they are not its own."""
+    """Apply the entries to a fresh mission. Raises DataError where they do not fit it."""
     for number, entry in enumerate(entries, start=2):
         try:
             CALLS[entry["call"]](mission, *entry["args"], float(entry["at"]))
@@ -161,7 +162,7 @@ def _entry(line: bytes) -> Dict[str, Any]:
 
 
 def _set_aside(path: str) -> None:
-    """Gives the file the next free name."""
+    """Rename the file to the next free name."""
     stem, ending = os.path.splitext(path)
     number = 1
     while os.path.exists(f"{stem}-{number}{ending}"):
@@ -170,7 +171,7 @@ def _set_aside(path: str) -> None:
 
 
 def _delete_old(folder: str) -> None:
-    """Deletes the oldest journals."""
+    """Delete all but the newest MAX_JOURNALS journals."""
     journals = [entry for entry in os.scandir(folder) if entry.name.startswith("journal-")]
     for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-MAX_JOURNALS]:
         with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""The mission as the observer keeps it: no threads; moments are seconds of ROS time."""
+"""The mission in the observer: takes words and time, returns the states to publish. Times are seconds of ROS time."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ Log = Callable[[str, str], None]
 
 
 COVER_GRACE = 2.0
-"""Seconds by which time may leave what the strategy covers, with nobody late, before that counts: words get lost and
-are sent again."""
+"""Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
+published again."""
 
 MAX_WORD_LENGTH = 1000
-"""Letters of a word, at most: what is longer is none."""
+"""The most characters of a word; longer texts are dropped."""
 
 ACTING = ("robot", "human", "agent")
 COUNTED = ("taken", "stale", "held", "impossible", "untimely", "unreadable", "uncovered")
 
 
 class Mission:
-    """One mission: hears words, moves the automata, and says which states are to be published.
+    """One mission: takes words, moves the automata, and returns the states to publish.
 
     `unit` is the length of a time unit in seconds; `tolerance`, in time units, is how far clocks may be off (a message
     takes its time) before a deadline counts as missed or a state as not covered; `lost_after`, in time units, is how
-    late an agent may be before nothing is expected of it any more. `on_uncovered` is what follows where the strategy
-    does not know what to do: `plan` again, `stop`, or `warn`. `controllers` are the nodes that need a new plan.
+    late an agent may be before it counts as lost. `on_uncovered` is what follows in a state that the strategy does not
+    cover: `plan` again, `stop`, or `warn`. `controllers` are the nodes that have to acknowledge a new plan.
     `name` is the mission's id, which its states carry.
     """
 
@@ -66,14 +66,14 @@ class Mission:
         self._event = self._agent = ""
         self._ended: Optional[float] = None
 
-    # What is ---------------------------------------------------------------------------------------------------------
+    # State ----------------------------------------------------------------------------------------------------------
 
     def position(self, now: float) -> Position:
-        """Locations, variables and clocks of now (of the end, once the mission has ended)."""
+        """Return locations, variables and clocks at the time `now`, or at the end of the mission if that was before."""
         return self._automata.position(now if self._ended is None else self._ended)
 
     def state(self, now: float) -> SystemState:
-        """What is published."""
+        """Return the state to publish."""
         position = self.position(now)
         late, lost = tuple(sorted(self.late)), tuple(sorted(self.lost))
         what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
@@ -81,22 +81,22 @@ class Mission:
 
     @property
     def plan_request(self) -> Optional[PlanRequest]:
-        """The plan that is to be looked for."""
+        """Return the request for a plan, None if none is needed."""
         return self._planning.request if self.status in LIVE else None
 
     @property
     def proposal(self) -> Optional[Dict[str, Any]]:
-        """The plan that is to be published: it is in force as soon as every controller has it."""
+        """Return the plan to publish; it is in force once every controller has acknowledged it."""
         proposal = self._planning.proposal
         return proposal.data if proposal else None
 
     def revision(self) -> Tuple[object, ...]:
-        """What a call changes that is not to be forgotten: equal before and after a call without consequences."""
+        """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
         return (self.seq, self.status, self.reason, *people, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
-        """When `tick` has something to do, if nothing is heard before; None: never."""
+        """Return when to call `on_time` if no input comes before; None: never."""
         if self.status not in LIVE:
             return None
         position = self.position(now)
@@ -109,10 +109,10 @@ class Mission:
         first = min(delays, default=INFINITY)
         return None if first == INFINITY else now + max(0.0, first) * self._unit
 
-    # What happens: each returns the states to publish, in order -------------------------------------------------------
+    # Inputs: each returns the states to publish, in order -------------------------------------------------------------
 
     def on_word(self, text: str, now: float) -> List[SystemState]:
-        """A word was published. What cannot be changes nothing."""
+        """Take a word from pursue/events; a word that is not possible changes nothing."""
         orders = {START: self._start, PING: self._ping, STOP: self._stop, FINISH: self._finish}
         if text.strip() in orders:
             return orders[text.strip()](now)
@@ -135,7 +135,7 @@ class Mission:
         return []
 
     def on_time(self, now: float) -> List[SystemState]:
-        """Time has passed: deadlines, agents that are late or lost, and steps that objectives take by themselves."""
+        """Handle deadlines, late and lost agents, and internal edges of objectives that are due."""
         if self.status not in LIVE:
             return []
         position = self.position(now)
@@ -157,17 +157,17 @@ class Mission:
         return self._status_changes(now)
 
     def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
-        """A controller has not been heard for a while: the mission holds until it is back."""
+        """Hold the mission until this controller, which is silent, is back."""
         self.silent.add(node)
         return self._status_changes(now)
 
     def on_controller_back(self, node: str, now: float) -> List[SystemState]:
-        """A controller is heard again."""
+        """Note that a controller is not silent any more."""
         self.silent.discard(node)
         return self._status_changes(now)
 
     def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
-        """The plan that was wanted under this number was found."""
+        """Take the planner's answer to the request of this number."""
         try:
             found = self._planning.on_plan(number, answer)
         except (DataError, KeyError, TypeError) as problem:
@@ -177,12 +177,12 @@ class Mission:
         return self._put_plan_in_force(now)
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
-        """There is no plan for what was wanted under this number: a safe stop, unless somebody is only late."""
+        """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
         self._planning.on_no_plan(number, why)
         return self._status_changes(now)
 
     def stop(self, why: str, now: float) -> List[SystemState]:
-        """A safe stop: nobody gets another command."""
+        """Stop the mission safely: no further commands are taken."""
         return self._end(STOPPED, why, now) if self.status in (WAITING, *LIVE) else []
 
     def _start(self, now: float) -> List[SystemState]:
@@ -202,18 +202,18 @@ class Mission:
 
     def _finish(self, now: float) -> List[SystemState]:
         if self.status not in LIVE:
-            return []  # most often our own word
+            return []  # most often the observer's own word
         if self.model.goal is not None:
             self._log("warn", f"{FINISH} before the goal is reached: ignored")
             return []
         return self._end(WON, "", now)
 
-    # How it happens ---------------------------------------------------------------------------------------------------
+    # Moves ------------------------------------------------------------------------------------------------------------
 
     def _moves_of(self, word: Word, now: float) -> Optional[Tuple[Move, ...]]:
-        """What the word does here; None, and counted, where it cannot be.
+        """Return the moves of a word here; None, and counted, if it is not possible.
 
-        A command that is early by no more than the tolerance is kept until its moment: its machine's clock is ahead.
+        A command that is early by no more than the tolerance is kept until it is due: its machine's clock is ahead.
         """
         position = self.position(now)
         moves = self.model.joint_move(position, word.event, word.agent)
@@ -222,7 +222,7 @@ class Mission:
         untimed = self.model.joint_move(position, word.event, word.agent, timed=False)
         if untimed and word.seq is None:
             self.counts["untimely"] += 1
-            self._log("warn", f"{word.event} comes at a time that the model does not know; the state follows the world")
+            self._log("warn", f"{word.event} is outside the model's time window; the state follows the report")
             return untimed
         delay = due([untimed[0].edge.when], position.clocks, EPSILON) if untimed else None
         if delay is not None and delay <= self._tolerance:
@@ -234,7 +234,7 @@ class Mission:
         return None
 
     def _due_command(self, position: Position, now: float) -> Optional[Tuple[Move, ...]]:
-        """The command that came early, once its moment has come; one that another event has overtaken is stale."""
+        """Return the moves of an early command that is due now; one that another event has overtaken is dropped."""
         for word in [word for word, moment in self._early.items() if now >= moment - EPSILON * self._unit]:
             del self._early[word]
             if word.seq == self.seq and self.status == RUNNING:
@@ -242,7 +242,7 @@ class Mission:
         return None
 
     def _take(self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "") -> List[SystemState]:
-        """Takes the moves, and then whatever the objectives do by themselves."""
+        """Apply the moves, and then internal edges of objectives that are enabled."""
         states: List[SystemState] = []
         while moves:
             self._automata.take(moves, now)
@@ -260,7 +260,7 @@ class Mission:
         return states
 
     def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
-        """Ends the mission where it is won, lost or not covered; else, what an objective does by itself now."""
+        """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective."""
         position = self.position(now)
         if self._automata.is_at(self.model.goal):
             self._conclude(WON, "", now)
@@ -273,10 +273,10 @@ class Mission:
             return moves
         return None
 
-    # Holding, and planning again --------------------------------------------------------------------------------------
+    # Holding and replanning ------------------------------------------------------------------------------------------
 
     def _status_changes(self, now: float) -> List[SystemState]:
-        """Something other than an event may have changed: what follows from it is a state of its own."""
+        """Return a new state if the status, its reason or the lost agents have changed without an event."""
         if self.status not in LIVE:
             return []
         before = self.status, self.reason, set(self.lost)
@@ -289,9 +289,9 @@ class Mission:
         return [self.state(now)]
 
     def _update_status(self, now: float, patience: float) -> None:
-        """Runs where the strategy in force knows what to do, holds where a plan or a controller is missing.
+        """Set the status: running where the plan in force covers the state, holding where a plan or node is missing.
 
-        `patience`: the time units by which time may have left what the strategy covers.
+        `patience`: the time units for which clocks may be outside what the plan covers.
         """
         trouble = self._planning.unexcused(self.lost)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
@@ -325,7 +325,7 @@ class Mission:
         return self._tolerance + COVER_GRACE / self._unit
 
     def _request_plan(self, now: float) -> bool:
-        """Asks for another plan from here; False where there is none."""
+        """Request another plan from here; return False if there is none."""
         position = self.position(now)
         excused = frozenset(self.late | set(self.lost))
         ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
@@ -338,7 +338,7 @@ class Mission:
         return self._put_plan_in_force(now)
 
     def _put_plan_in_force(self, now: float) -> List[SystemState]:
-        """Once every controller has the plan, it is in force from the next state on, if it fits the clocks of now."""
+        """Put an acknowledged plan in force with a new state, if it covers the present clocks."""
         proposal = self._planning.acknowledged()
         if proposal is None:
             return []
@@ -352,7 +352,7 @@ class Mission:
         return self._new_state(now)
 
     def _on_failure(self, agent: str, now: float) -> List[SystemState]:
-        """A robot says that it cannot do what it was told."""
+        """Take a robot's report that it cannot finish what it is doing."""
         if not is_under_way(self._automata.location_of(agent)):
             self._reject("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
         elif agent not in self.lost:
@@ -361,10 +361,10 @@ class Mission:
 
     def _mark_lost(self, agent: str, why: str) -> None:
         self.lost[agent] = why
-        self._log("err", f"nothing is expected of {agent} any more: it {why}")
+        self._log("err", f"{agent} counts as lost: it {why}")
 
     def _late_agents(self, position: Position) -> List[Tuple[str, float]]:
-        """The agents that are late but do not count as lost."""
+        """Return the agents that are late but not lost, with their delays (time units; negative: overdue)."""
         acting = self._automata.bounds(position, *ACTING)
         return [(name, delay) for name, delay in acting if name in self.late and name not in self.lost]
 

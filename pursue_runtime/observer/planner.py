@@ -1,4 +1,4 @@
-"""The planner: a process of its own that looks for a plan from where the mission is."""
+"""Runs the planner, a process that looks for a plan from the current state of the mission."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ PlannerAnswer = Tuple[int, Optional[Dict[str, Any]], str]
 
 
 class Planner:
-    """Runs one planner at a time; what it answers goes to `done`, in a thread of its own."""
+    """Runs one planner at a time, and passes its answer to `done` in a thread of its own."""
 
     def __init__(
         self, command: str, game: Mapping[str, Any], limit: float, done: Callable[[PlannerAnswer], None]
     ) -> None:
-        """`command`: as in a shell, `off` for none; `game`: what the solver has to know; `limit`: seconds."""
+        """`command`: a shell command, `off` for none; `game`: the content of game.yaml; `limit`: seconds."""
         self._command = [] if command == "off" else shlex.split(command)
         self._game, self._limit, self._done = game, limit, done
         self._lock = threading.Lock()
@@ -34,7 +34,7 @@ class Planner:
         self._process: Optional[subprocess.Popen[bytes]] = None
 
     def request_plan(self, request: Optional[PlanRequest]) -> None:
-        """This plan is wanted now (None: none is); whoever looks for another one is stopped."""
+        """Start a planner for this request and stop any other; None: only stop."""
         number = request.number if request else 0
         with self._lock:
             if number == self._number:
@@ -57,7 +57,7 @@ class Planner:
         try:
             with self._lock:
                 if request.number != self._number:
-                    return None, "another plan is wanted by now"
+                    return None, "another plan has been requested"
                 self._process = process = subprocess.Popen(
                     self._command,
                     stdin=subprocess.PIPE,
@@ -68,12 +68,12 @@ class Planner:
         except OSError as problem:
             return None, f"{self._command[0]} cannot be run here: {problem}; set ~planner to the planner's command"
         try:
-            said, complaint = process.communicate(text.encode(), self._limit + KILL_DELAY)
+            output, errors = process.communicate(text.encode(), self._limit + KILL_DELAY)
         except subprocess.TimeoutExpired:
             _kill(process)
             process.communicate()
             return None, f"none was found within {self._limit:g} s"
-        return _read(said, complaint, process.returncode)
+        return _read(output, errors, process.returncode)
 
     def _kill(self) -> None:
         """The thread that waits for its answer notices."""
@@ -86,10 +86,10 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _read(said: bytes, complaint: bytes, status: int) -> Tuple[Optional[Dict[str, Any]], str]:
+def _read(output: bytes, errors: bytes, status: int) -> Tuple[Optional[Dict[str, Any]], str]:
     try:
-        answer = json.loads(said)
+        answer = json.loads(output)
         return (answer, "") if answer["won"] else (None, str(answer["why"]))
     except (ValueError, KeyError, TypeError):
-        lines = complaint.decode(errors="replace").strip().splitlines()
+        lines = errors.decode(errors="replace").strip().splitlines()
         return None, f"the planner failed (status {status})" + (f": {lines[-1]}" if lines else "")

@@ -1,5 +1,4 @@
-"""Plans as the observer sees them: what one covers; and planning again: what is asked for, what was
-found, who has it. No ROS."""
+"""Plans in the observer: what a plan covers, and the request, proposal and acknowledgement of a new one."""
 
 from __future__ import annotations
 
@@ -11,19 +10,19 @@ from pursue_runtime.strategy import StateTable, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
 
 MIN_LEAD_TIME = 1.0
-"""Seconds that a first plan is given to be there: it is made for the moment at which it can begin."""
+"""Seconds between a request and the time for which its plan is computed: finding and distributing it takes time."""
 
 ATTEMPTS = 5
-"""So many plans in a row may come too late to begin."""
+"""Plans in a row that may arrive too late to be put in force."""
 
 Cover = StateTable[Tuple[Zone, ...]]
-"""The states and clocks in which a plan knows what to do."""
+"""The zones of each discrete state in which a plan has a decision."""
 
 
 class PlanRequest(NamedTuple):
-    """Asks for a plan that begins at this place; clocks are those of `stamp` (seconds), `ahead` is in time units.
+    """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
-    Nothing is to be expected of the agents that are `excused`.
+    The plan must not rely on the agents in `excused`.
     """
 
     number: int
@@ -44,9 +43,9 @@ class Proposal(NamedTuple):
 
 
 class Planning:
-    """The way from one plan to the next.
+    """The steps from one plan to the next: request, proposal, acknowledgement by all controllers, in force.
 
-    `excused`: the agents that the plan in force expects nothing of; `hopeless`: why there is no plan for this place.
+    `excused`: the agents on which the plan in force does not rely; `no_plan_reason`: why there is no plan from here.
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
@@ -62,17 +61,17 @@ class Planning:
         self._place: object = None
 
     def revision(self) -> Tuple[object, ...]:
-        """What a step of planning changes."""
+        """Return a value that changes with each step of planning."""
         return self._number, self.request is None, self.proposal is None, self.no_plan_reason, len(self._unacknowledged)
 
     def unexcused(self, lost: Mapping[str, str]) -> str:
-        """Who is lost but expected by the plan in force, and why; "" for nobody."""
+        """Return which lost agents the plan in force relies on, and why they are lost; "" if there are none."""
         return " and ".join(f"{name} {lost[name]}" for name in sorted(set(lost) - self.excused))
 
     def request_plan(
         self, place: object, position: Position, stamp: float, excused: FrozenSet[str], ahead: float
     ) -> None:
-        """A plan from this position is needed. `place` tells positions apart: nothing is asked for twice."""
+        """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
         if place != self._place:
             self.reset()
             self._place = place
@@ -87,12 +86,12 @@ class Planning:
         self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)))
 
     def reset(self) -> None:
-        """No other plan is needed any more."""
+        """Drop the request and the proposal: no other plan is needed."""
         self.request = self.proposal = self._place = None
         self.no_plan_reason, self._attempts, self.lead_time = "", 0, MIN_LEAD_TIME
 
     def on_plan(self, number: int, answer: Mapping[str, Any]) -> bool:
-        """A plan was found; False for an answer that nobody waits for. Raises DataError or KeyError on bad data."""
+        """Make the planner's answer the proposal; return False if it was not requested. Raises DataError, KeyError."""
         if self.request is None or number != self.request.number:
             return False
         data = {"format": 1, "plan": number, **{key: answer[key] for key in ("strategies", "people", "cover")}}
@@ -102,26 +101,26 @@ class Planning:
         return True
 
     def on_no_plan(self, number: int, why: str) -> None:
-        """There is no plan for what was asked under this number."""
+        """Note that there is no plan for the request of this number."""
         if self.request is not None and number == self.request.number:
             self.request, self.no_plan_reason = None, why
 
     def on_receipt(self, node: str, number: int) -> None:
-        """A controller says that it has a plan."""
+        """Note that a controller has acknowledged a plan."""
         if self.proposal is not None and self.proposal.data["plan"] == number:
             self._unacknowledged.discard(node)
 
     def acknowledged(self) -> Optional[Proposal]:
-        """The plan that every controller has."""
+        """Return the proposal once every controller has acknowledged it."""
         return None if self._unacknowledged else self.proposal
 
     def put_in_force(self, proposal: Proposal) -> None:
-        """It is in force."""
+        """Note that the proposal is in force."""
         self.excused = frozenset(proposal.request.excused)
         self.reset()
 
     def expire(self, proposal: Proposal, now: float) -> None:
-        """It does not fit the clocks of now: the next one is given more time to be there."""
+        """Drop a proposal that does not cover the present clocks; the next one gets a longer lead time."""
         self.lead_time = (now - proposal.request.stamp) * 1.3 + MIN_LEAD_TIME
         self.proposal = None
 
@@ -130,17 +129,17 @@ class Planning:
 
 
 def covers(cover: Cover, position: Position, tolerance: float) -> bool:
-    """It knows what to do here and now."""
+    """Return True if the plan has a decision at this position."""
     return any(holds(zone, position.clocks, tolerance) for zone in _zones(cover, position))
 
 
 def stays(cover: Optional[Cover], position: Position, tolerance: float) -> float:
-    """The time units until time leaves what is covered; negative: it has."""
+    """Return the time units until the covered zones are left if only time passes; negative: they have been left."""
     return INFINITY if cover is None else last_moment(_zones(cover, position), position.clocks, tolerance)
 
 
 def uncovered(cover: Optional[Cover], position: Position, tolerance: float, patience: float) -> str:
-    """Why it does not know what to do; "" where it does, or where time left it less than `patience` (units) ago."""
+    """Return why the plan has no decision here; "" if it has one, or had one less than `patience` time units ago."""
     if cover is None or covers(cover, position, tolerance):
         return ""
     left = stays(cover, position, tolerance)

@@ -1,4 +1,4 @@
-"""Which packages this machine plays a part of missions with: those of the nodes that run here. No ROS."""
+"""Which packages this machine plays a part of missions with: those of the nodes that run here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def packages_here(nodes: str, installed: Collection[str]) -> Tuple[str, ...]:
 
 
 def without_package(nodes: str, installed: Collection[str]) -> Tuple[str, ...]:
-    """Those of the nodes that are said to run here, and whose package is not here."""
+    """Return the nodes that should run here and whose package is not installed."""
     names = nodes.replace(",", " ").split()
     return tuple(name for name in names if names != [ALL] and package_of(name) not in installed)
 

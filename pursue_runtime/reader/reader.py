@@ -1,4 +1,4 @@
-"""What pursue_reader does with the orders that come from the desk, without ROS; moments are seconds of a real clock.
+"""How pursue_reader checks and executes the orders of the desk. Times are seconds of a monotonic clock.
 
 An order counts once: it holds the ticket that is out, and uses it up. A mission is never exchanged while one runs.
 """
@@ -30,16 +30,17 @@ from pursue_runtime.bundle import (
 )
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.model import Model
+from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, manifest
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover
-from pursue_runtime.trusted_keys import KeyFolder, RateLimitedLog
+from pursue_runtime.trusted_keys import KeyFolder
 
 PATIENCE = 5.0
-"""Seconds without an observer's word, at the start or after it said that no mission runs, after which none runs."""
+"""Seconds without a state, at the start or after one of no running mission, after which no mission runs."""
 
 FRESH = 1.5
-"""Seconds for which it counts that no mission runs: an observer says it once a second, and one that was started anew,
+"""Seconds for which it counts that no mission runs: an observer publishes it once a second, and one that was restarted,
 and is not connected to us yet, takes longer to begin."""
 
 RETRY_PERIOD = 10.0
@@ -73,7 +74,7 @@ class Machine(NamedTuple):
 
 
 class Reader:
-    """Takes orders and states one by one, keeps the store, and says how it stands."""
+    """Takes orders and states one by one, keeps the store, and reports its status."""
 
     def __init__(
         self, robot: Machine, store: Store, keys: KeyFolder, now: float, log: Log, patience: float = PATIENCE
@@ -91,7 +92,7 @@ class Reader:
         self._received = now
         self._failures = RateLimitedLog(lambda text: log("err", text))
 
-    # What is heard ----------------------------------------------------------------------------------------------------
+    # Inputs ----------------------------------------------------------------------------------------------------------
 
     def on_message(self, text: str, now: float) -> OrderResult:
         """A message on local_mission. Whatever it is, it is answered; only orders that count change anything."""
@@ -131,21 +132,21 @@ class Reader:
         return True
 
     def next_check(self, now: float) -> Optional[float]:
-        """In how many seconds to call `tick` if nothing is heard; None: no need."""
+        """Return in how many seconds to call `on_time` if no input comes; None: no need."""
         if self._store.state.next is None or self.mission_runs:
             return None
         sure = self._received + self._patience
         return sure - now if now < sure else RETRY_PERIOD
 
-    # What is said -----------------------------------------------------------------------------------------------------
+    # Status -----------------------------------------------------------------------------------------------------------
 
     @property
     def mission_runs(self) -> bool:
-        """True while the last state that was heard is one of a mission that goes on."""
+        """Return True while the newest state is one of a mission that runs or holds."""
         return self._known is not None and self._known.status in LIVE
 
     def keys(self) -> Keys:
-        """Those whose orders count."""
+        """Return the trusted keys."""
         return self._keys.keys()
 
     def problem(self) -> str:
@@ -156,7 +157,7 @@ class Reader:
         return "; ".join([*found, *self._keys.problems])
 
     def status(self) -> Dict[str, Any]:
-        """How it stands, for mission_status."""
+        """Return the status for mission_status."""
         state = self._store.state
         return {
             "format": 1,
@@ -272,7 +273,7 @@ class Reader:
     # Missions ---------------------------------------------------------------------------------------------------------
 
     def _can_exchange(self, now: float) -> bool:
-        """True where no mission can be under way: the observer has just said so, or there is none."""
+        """Return True if no mission can be running: the observer has just published that, or there is none."""
         fresh = self._known is not None and now <= self._received + FRESH
         return not self.mission_runs and (fresh or now >= self._received + self._patience)
 

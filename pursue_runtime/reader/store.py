@@ -1,4 +1,4 @@
-"""The missions that a robot keeps on its disk, and which of them counts. No ROS.
+"""The missions that a robot keeps on its disk, and which of them counts.
 
 In the store's folder: `<digest>/` for each mission, with its manifest, its signature and `<package>/<name>.yaml`; and
 `state.json`, which names the one that nodes start with. A mission is written beside its place and renamed when all of
@@ -32,7 +32,7 @@ Log = Callable[[str, str], None]
 
 
 class StoreError(Exception):
-    """The disk does not take, or does not give, what it should; the text says what."""
+    """The disk does not take, or does not give, what it should; the message has the reason."""
 
 
 class TemporaryError(StoreError):
@@ -150,11 +150,11 @@ def table(folder: str, own: str) -> List[Tuple[str, str, str]]:
     rows = []
     for digest in (OWN, *stored_digests(folder)):
         roles = ((state.current, "current"), (state.next, "next, when no mission runs"), (state.prepared, "prepared"))
-        told = [role for name, role in roles if name == digest] or ["earlier" if digest in state.history else "kept"]
+        shown = [role for name, role in roles if name == digest] or ["earlier" if digest in state.history else "kept"]
         wrong = find_damage(folder, digest) if digest else ""
         scenario = own if not digest else "?" if wrong else str(manifest(folder, digest)["scenario"])
         what = "the workspace's own; " if not digest else ""
-        rows.append((mission_id(digest), scenario, what + "; ".join([*told, *([wrong] if wrong else [])])))
+        rows.append((mission_id(digest), scenario, what + "; ".join([*shown, *([wrong] if wrong else [])])))
     return rows
 
 

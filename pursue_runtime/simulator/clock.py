@@ -1,4 +1,4 @@
-"""The clock of a mission that runs faster than life, without ROS.
+"""Simulated time of a mission that runs faster than real time.
 
 Simulated time goes in small steps, never catches up after a delay of the machine, and stands still for a moment after
 every message: so what the nodes do in answer to a message takes (nearly) no simulated time, however busy the machine.
@@ -53,7 +53,7 @@ class SimClock:
         return self._start + self._steps * self._pace.step
 
     def on_message(self, real: float) -> None:
-        """A message was heard at this moment of the real clock."""
+        """Hold the clock: a message was received at the time `real` of the monotonic clock."""
         self._held_until = max(self._held_until, real + self._pace.hold)
 
     def tick(self, real: float) -> float:
@@ -90,4 +90,4 @@ def _changed(entry: "os.DirEntry[str]") -> float:
     try:
         return entry.stat().st_mtime
     except OSError:
-        return 0.0  # somebody else has removed it
+        return 0.0  # another process has removed it

@@ -1,4 +1,4 @@
-"""The simulated robots, people and other agents: when each of their movements and actions ends. Without ROS.
+"""Simulated robots, people and other agents: when each of their movements and actions ends.
 
 A robot sets out when it gets its goal, everybody else when the observer has taken the start. The end comes a drawn
 delay later, inside the model's window, and is reported once; the state that follows is the receipt.
@@ -48,7 +48,7 @@ class Activity:
 
 
 def end_window(automaton: Automaton, location: str) -> Optional[EndWindow]:
-    """When what the agent does in this location ends; None where it does nothing that ends."""
+    """Return when the movement or action of this location ends; None for other locations."""
     for edge in automaton.edges_from(location):
         if edge.sync == "receive" or not is_end(edge.source, edge.target):
             continue
@@ -60,7 +60,7 @@ def end_window(automaton: Automaton, location: str) -> Optional[EndWindow]:
 
 
 def report_word(model: Model, agent: str, event: str) -> str:
-    """The word of a report: with the agent's name only where somebody else could mean the same."""
+    """Return the word that reports an event, with the agent's name only if another agent has the same event."""
     able = {a.name for a in model.automata for edge in a.edges if edge.word == event and edge.sync != "receive"}
     return format_word(Word(agent if able - {agent} else "", event))
 
@@ -92,7 +92,7 @@ class Delays:
 
 
 class Simulator:
-    """What everybody does, from the states of the mission and the goals that robots get."""
+    """The activities of simulated agents, from the states of the mission and the goals of robots."""
 
     def __init__(self, model: Model, reports: Collection[str], delays: Durations) -> None:
         """`reports`: the agents whose ends come from here."""
@@ -110,7 +110,7 @@ class Simulator:
         self._activities: Dict[str, Activity] = {}
 
     def on_state(self, state: SystemState, real: float) -> None:
-        """A state came, at this moment of the real clock."""
+        """Take a state, received at the time `real` of the monotonic clock."""
         before = self._state
         if before is not None and older(state, before):
             return
@@ -123,11 +123,11 @@ class Simulator:
             self._activities.clear()
             return
         for automaton in self._agents:
-            # Whoever is on the way already when we start was on the way before: its goal came before our time.
+            # At the first state, agents may be under way already: their goals were sent before this node started.
             self._update_activity(automaton, state, newborn=before is None)
 
     def on_goal(self, robot: str, now: float) -> None:
-        """The robot got a goal or an action, at this moment of ROS time."""
+        """Take that a robot got a goal or an action at the time `now`."""
         activity = self._activities.get(robot)
         if activity is not None and not activity.under_way:
             self._start(activity, now)
@@ -135,7 +135,7 @@ class Simulator:
             self._goals[robot] = now
 
     def due(self, now: float, real: float) -> List[str]:
-        """The words to publish at this moment (of ROS time; of the real clock)."""
+        """Return the words to publish at this ROS time and time of the monotonic clock."""
         words = []
         for activity in self._activities.values():
             ended = activity.under_way and now >= activity.moment - 1e-6
@@ -146,7 +146,7 @@ class Simulator:
         return words
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
-        """When `due` should be asked again: in ROS time, and on the real clock; None: not before the next message."""
+        """Return when to call `due` again, in ROS time and on the real clock; None: not before the next message."""
         ends = [a.moment for a in self._activities.values() if a.under_way and a.sends == 0]
         receipts = [self._resend_at(a) for a in self._activities.values() if a.sends]
         return min(ends, default=None), min(receipts, default=None)

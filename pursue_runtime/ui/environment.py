@@ -1,4 +1,4 @@
-"""Who plays the agents that nobody controls: nobody (they stand still), chance, or a trace. Without ROS."""
+"""Plays the uncontrollable agents: not at all, at random, or from a trace."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import MARGIN, possible_words
 from pursue_runtime.ui.trace import TraceStep
 
-MIN_PAUSE = 1.0  # time units after which something that was said without effect may be followed by something else
+MIN_PAUSE = 1.0  # time units after a word without effect until the next one
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
 
 
@@ -21,7 +21,7 @@ class IdleEnvironment:
         """Nothing comes of a state."""
 
     def due(self, now: float) -> List[str]:
-        """Nothing to say."""
+        """Return no words."""
         return []
 
     def next_moment(self) -> Optional[float]:

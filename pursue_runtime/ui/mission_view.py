@@ -1,6 +1,6 @@
-"""The mission as the person at the terminal sees it: who is ready, what can be done, what happens, how it ends.
+"""The mission as the terminal shows it: which nodes are ready, possible words, events, the end.
 
-Without ROS. Moments are seconds of ROS time, `real` ones of the real clock; `at` and `opens` are in time units.
+Times are seconds of ROS time, `real` ones of the real clock; `at` and `opens` are in time units.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ MARGIN = 0.05  # time units: how far inside an open bound something counts as po
 
 
 class PossibleWord(NamedTuple):
-    """`word` can be said from `opens` to `closes`, time units from now, unless something else happens first."""
+    """`word` can be published from `opens` to `closes`, time units from now, unless another event comes first."""
 
     word: str
     opens: float
@@ -56,7 +56,7 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
 
 
 def tasks(model: Model, state: SystemState) -> List[Task]:
-    """What people are at, in system order. They say themselves when it is done: a report counts at any moment."""
+    """Return what people are doing, in system order; they report the end themselves, at any time."""
     found = []
     for automaton in model.of_kind("human"):
         location = state.locations.get(automaton.name, "")
@@ -69,13 +69,13 @@ def tasks(model: Model, state: SystemState) -> List[Task]:
 
 
 class Readiness:
-    """Which of the expected nodes have said that they are ready."""
+    """Which of the expected nodes are ready, by their diagnostics."""
 
     def __init__(self, nodes: Sequence[str]) -> None:
         self._ready = {node.strip("/"): False for node in nodes}
 
     def update(self, node: str, ready: bool) -> None:
-        """A node's diagnostics came."""
+        """Take a node's readiness from its diagnostics."""
         if node.strip("/") in self._ready:
             self._ready[node.strip("/")] = ready
 
@@ -85,20 +85,20 @@ class Readiness:
 
 
 class Environment(Protocol):
-    """Plays the agents that nobody controls."""
+    """Plays the uncontrollable agents."""
 
     def on_state(self, state: SystemState, start: float, now: float) -> None:
         """A state came; the mission started at `start`."""
 
     def due(self, now: float) -> List[str]:
-        """The words to say now."""
+        """Return the words to publish now."""
 
     def next_moment(self) -> Optional[float]:
-        """When `due` has something to say, if no other state comes."""
+        """Return when to call `due` again if no other state comes."""
 
 
 class MissionView:
-    """One mission, from its states: what to say, what to print, and how it ends."""
+    """One mission, from its states: the words to publish, the lines to print, and the verdict."""
 
     def __init__(self, model: Model, player: Environment, orders: Optional[Strategy] = None) -> None:
         """`orders`: the part of the strategy that people carry out."""
@@ -128,7 +128,7 @@ class MissionView:
         news = self.state is None or self.state.seq != state.seq or self.state.status != state.status
         self.state = state
         if self.start is None and state.seq > 0:
-            # Whoever comes later, after a restart, still finds the time since the start on the oldest clock.
+            # After a restart, the oldest clock still shows the time since the start.
             age = 0.0 if state.event == START else max(state.clocks.values(), default=0.0)
             self.start = state.stamp - age * state.unit
         if self.start is None or not news:
@@ -163,7 +163,7 @@ class MissionView:
         )
 
     def verdict(self) -> Optional[Tuple[int, str]]:
-        """The exit status and what to say; None while the mission goes on."""
+        """Return the exit status and a sentence; None while the mission goes on."""
         state = self.state
         if state is None or state.status not in ENDED:
             return None
@@ -173,10 +173,10 @@ class MissionView:
             return 0, f"{goal}, {after}."
         if state.status == LOST:
             return 1, f"The mission is lost, {after}: {state.reason or 'the safety objective is broken'}."
-        return 1, f"The mission was stopped, {after}: {state.reason or 'somebody said _stop_'}."
+        return 1, f"The mission was stopped, {after}: {state.reason or '_stop_ was published'}."
 
     def progress(self, now: float) -> str:
-        """One line on where everybody is."""
+        """Return a line with the location of each agent."""
         if self.state is None:
             return "waiting for the first state"
         places = [
@@ -216,8 +216,8 @@ class MissionView:
         automaton = self._model.automaton(state.agent)
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == state.locations.get(state.agent):
-                told = "" if is_end(edge.source, edge.target) else _instruction_text(edge, automaton.edges, " now")
-                return told and f"{state.agent}: {told}"
+                text = "" if is_end(edge.source, edge.target) else _instruction_text(edge, automaton.edges, " now")
+                return text and f"{state.agent}: {text}"
         return ""
 
 
@@ -234,7 +234,7 @@ def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
 
 
 def menu(offers: Sequence[PossibleWord]) -> List[str]:
-    """What the person at the terminal can say now."""
+    """Return the menu of the words that can be published now."""
     lines = []
     for number, (word, opens, closes, _) in enumerate(offers, start=1):
         until = f", for {closes - opens:.1f} time units" if closes != float("inf") else ""
@@ -244,7 +244,7 @@ def menu(offers: Sequence[PossibleWord]) -> List[str]:
 
 
 def read_done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
-    """Somebody ("": the only one at work) says that the task is done: the word to publish, and what to tell them."""
+    """Return the word that reports the end of a person's task ("": the only task), and a remark for the terminal."""
     meant = [task for task in given if who in ("", task.agent)]
     if len(meant) == 1:
         return meant[0].word, ""
@@ -256,7 +256,7 @@ def read_done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
 def read_line(
     text: str, offers: Sequence[PossibleWord], words: Collection[str], given: Sequence[Task] = ()
 ) -> Tuple[str, str]:
-    """What the person typed: the word to publish ("" for none) and what to tell them ("" for nothing)."""
+    """Return the word to publish for a typed line ("" for none), and a remark for the terminal ("" for none)."""
     text = text.strip()
     if text in ("ping", "stop"):
         return f"_{text}_", ""
@@ -273,4 +273,4 @@ def read_line(
     event = text.partition("@")[0].rpartition(":")[2]
     if event in words or text.startswith("_") or text == "Finish!":
         return text, ""
-    return text, f"nobody in this scenario knows {text}: sent all the same" if text else ""
+    return text, f"{text} is not a word of this scenario; it was published anyway" if text else ""

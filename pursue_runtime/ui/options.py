@@ -1,4 +1,4 @@
-"""What the UI is asked to do: parameters of its node, and the same on the command line, which wins."""
+"""The options of the UI: parameters of its node, or the command line, which takes precedence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Sequence, Tuple
 
 MODES = {
-    "ask": "you say what the agents do that nobody controls",
+    "ask": "you choose what the uncontrollable agents do",
     "still": "they stand still",
     "random": "they do something possible at random moments",
     "trace": "they do what a trace file says",
@@ -43,9 +43,9 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
 
     Raises OptionError; argparse ends the program on `--help` and on an unknown argument.
     """
-    told = vars(_parser().parse_args(list(arguments)))
+    given = vars(_parser().parse_args(list(arguments)))
     found = dict(params)
-    found.update((name, value) for name, value in told.items() if value is not None)
+    found.update((name, value) for name, value in given.items() if value is not None)
     trace = str(found.get("trace") or "")
     mode = str(found.get("mode") or ("trace" if trace else "ask" if terminal else "still"))
     if mode not in MODES:

@@ -1,4 +1,4 @@
-"""What the page shows, as values for JSON, and what it may ask for. Without ROS and without a web server.
+"""What the page shows, as values for JSON, and what it may ask for.
 
 Moments are time units since the start of the mission.
 """
@@ -24,7 +24,7 @@ NOTE, GOOD, BAD = "note", "good", "bad"
 
 
 class PageRequest(NamedTuple):
-    """What somebody wants who looks at the page."""
+    """A request from a page."""
 
     do: str
     word: str = ""
@@ -187,7 +187,7 @@ class Page:
     def _turn(self, agents: Sequence[Mapping[str, Any]], state: SystemState) -> str:
         """Whom the mission waits for, in a sentence."""
         if state.status == HOLDING:
-            return "Nobody is told anything while the mission holds."
+            return "No commands are sent while the mission holds."
         if state.status != RUNNING:
             return ""
         present = [agent for agent in agents if not agent["lost"]]
@@ -238,8 +238,8 @@ class Page:
         before = last.locations.get(state.agent, "") if last is not None else ""
         edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
         edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
-        told = _phrase(automaton, edge).past if edge is not None and edge.source != edge.target else ""
-        return f"{state.agent} {told or 'does ' + state.event}"
+        past = _phrase(automaton, edge).past if edge is not None and edge.source != edge.target else ""
+        return f"{state.agent} {past or 'does ' + state.event}"
 
     def _kind(self, agent: str) -> str:
         return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)

@@ -1,4 +1,4 @@
-"""Between the node and the page: what pages are told when, and what becomes of what they ask for. """
+"""Connects the node and its pages: sends views to all pages, and passes their requests to the node."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class PageNode(Protocol):
     lock: threading.RLock
 
     def facts(self) -> Facts:
-        """How it is."""
+        """Return the present facts."""
 
     def on_request(self, request: PageRequest) -> str:
-        """Somebody at a page wants something; what to tell them ("" for nothing)."""
+        """Carry out a request of a page; return a remark for the page, "" for none."""
 
 
 class PageServer:
-    """What there is to see; everything that is new goes to every page."""
+    """Sends everything new to every page."""
 
     def __init__(self, page: Page, node: PageNode) -> None:
         self._page, self._node = page, node
@@ -37,36 +37,36 @@ class PageServer:
         self.web: Any = None
 
     def on_state(self, state: SystemState, at: float) -> None:
-        """A state came, `at` time units after the start."""
+        """Take a state, `at` time units after the start."""
         self._page.on_state(state, at)
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
-        """The mission has ended: the exit status, and a sentence."""
+        """Show the end of the mission; `verdict` is the exit status and a sentence."""
         self._page.note(at, verdict[1], BAD if verdict[0] else GOOD)
         self.show()
 
     def show(self) -> None:
-        """Tells every page how it is now."""
+        """Send the present view to every page."""
         fresh = [entry for entry in self._page.log if entry["n"] > self._shown]
         self._shown = fresh[-1]["n"] if fresh else self._shown
         self.web.send({"type": "view", "view": self._page.view(self._node.facts()), "log": fresh})
 
-    # What the server asks, in its own thread --------------------------------------------------------------------------
+    # Called by the server, in its own thread --------------------------------------------------------------------------
 
     def first_message(self) -> Dict[str, Any]:
-        """What a page is told first."""
+        """Return the first message for a page."""
         with self._node.lock:
             view = self._page.view(self._node.facts())
             return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log}
 
     def on_message(self, message: Any) -> str:
-        """A page asks for something. Raises ValueError where that cannot be understood."""
+        """Take a message of a page. Raises ValueError where it is not a request."""
         request = read_request(message)
         with self._node.lock:
             return self._node.on_request(request)
 
     def present(self) -> Optional[float]:
-        """The present in time units since the start; None while time does not count."""
+        """Return the time units since the start; None while the mission does not run."""
         with self._node.lock:
             facts = self._node.facts()
         return facts.now if facts.live else None

@@ -1,6 +1,6 @@
-"""Serves the page: three files, and a WebSocket on which it hears the mission and asks for things. Without ROS.
+"""Serves the page: three files, and a WebSocket for views and requests.
 
-Who may speak here: pages that this server has served (`Host` and `Origin` are checked, against other sites and rebound
+Accepted are pages that this server has served (`Host` and `Origin` are checked, against other sites and rebound
 names), and for any address but loopback only those who know the token. It comes once in the address, then in a cookie.
 """
 
@@ -87,9 +87,9 @@ class Web:
     ) -> None:
         """Binds the address (port 0: any that is free) and reads the page from `folder`; serves after `start`.
 
-        `welcome` is what a page is told first, `asked` takes its messages (ValueError: junk) and returns a remark,
-        `moment` is the present, None while time does not count. They are called in the thread of the server.
-        Raises WebError.
+        `first_message` is for a page that connects, `on_message` takes its messages (ValueError: not a request) and
+        returns a remark, `present` is the present time, None while the mission does not run. They are called in
+        the thread of the server. Raises WebError.
         """
         self.generated = not token and not is_loopback(host)
         self.token = secrets.token_urlsafe(16) if self.generated else token
@@ -113,8 +113,8 @@ class Web:
         everywhere = self.host in ("", "0.0.0.0", "::")
         name = _own_address() if everywhere else self.host
         name = f"[{name}]" if ":" in name else name
-        told = self.token if self.generated else "<your token>"
-        return f"http://{name}:{self.port}/" + (f"?token={told}" if self.token else "")
+        shown = self.token if self.generated else "<your token>"
+        return f"http://{name}:{self.port}/" + (f"?token={shown}" if self.token else "")
 
     @property
     def cookie(self) -> str:
@@ -126,7 +126,7 @@ class Web:
         self._thread.start()
 
     def send(self, message: Mapping[str, Any]) -> None:
-        """Tells every page; from any thread."""
+        """Send a message to every page; from any thread."""
         text = json.dumps(message, allow_nan=False)
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(self._send_text, text)
@@ -187,14 +187,14 @@ class Web:
         return self._files[path]
 
     def add_page(self, page: "PageSocket") -> bool:
-        """A page wants to listen; False: there are too many."""
+        """Add a page that has connected; return False if there are too many."""
         if len(self._pages) >= MAX_PAGES:
             return False
         self._pages.add(page)
         return True
 
     def remove_page(self, page: "PageSocket") -> None:
-        """It has gone."""
+        """Remove a page that has disconnected."""
         self._pages.discard(page)
 
     def key(self) -> str:
@@ -268,9 +268,9 @@ class Guarded(RequestHandler):
             raise HTTPError(403)
         if not self.web.token:
             return
-        told = self.get_query_argument("token", None)
-        if told is not None:
-            if not _same(told, self.web.token):
+        given = self.get_query_argument("token", None)
+        if given is not None:
+            if not _same(given, self.web.token):
                 raise HTTPError(403)
         elif not _same(self.get_cookie(self.web.cookie) or "", self.web.key()):
             raise HTTPError(401)
@@ -281,7 +281,7 @@ class Guarded(RequestHandler):
         self.finish(f"<!DOCTYPE html><html lang=en><title>{status_code}</title><h1>{why}</h1>")
 
     def log_exception(self, *_: Any) -> None:
-        """Requests that are refused are no news, and what strangers send does not belong on our terminal."""
+        """Log nothing: refused requests are normal, and clients must not write to the terminal."""
 
 
 class Chunked(Guarded):
@@ -327,7 +327,7 @@ class NotFound(Guarded):
 
 
 class PageSocket(Guarded, WebSocketHandler):
-    """One page that listens."""
+    """The WebSocket of one page."""
 
     def prepare(self) -> None:
         """Browsers tell which page opens a WebSocket; only our own may."""
@@ -342,7 +342,7 @@ class PageSocket(Guarded, WebSocketHandler):
         return True
 
     def open(self, *_: str, **__: str) -> None:
-        """A page listens from now on."""
+        """Send the first message to a page that has connected."""
         if not self.web.add_page(self):
             self.close(1013, "too many pages")
             return
@@ -351,7 +351,7 @@ class PageSocket(Guarded, WebSocketHandler):
         self.send_text(json.dumps(self.web.first_message(), allow_nan=False))
 
     def on_message(self, message: Any) -> None:
-        """A page asks for something."""
+        """Pass a page's message to the node, and answer with its remark."""
         try:
             remark = self.web.on_message(message)
         except ValueError as problem:
@@ -363,11 +363,11 @@ class PageSocket(Guarded, WebSocketHandler):
             self.send_text(json.dumps({"type": "remark", "text": remark}))
 
     def on_close(self) -> None:
-        """It has gone."""
+        """Remove a page that has disconnected."""
         self.web.remove_page(self)
 
     def send_text(self, text: str) -> None:
-        """Sends; a page that is too far behind is closed, and comes back by itself."""
+        """Send a text; a page that is too far behind is closed, and connects again by itself."""
         try:
             sent = self.write_message(text)
         except WebSocketClosedError:
@@ -379,5 +379,5 @@ class PageSocket(Guarded, WebSocketHandler):
             sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # it has gone: on_close says so
 
 
-def _same(told: str, wanted: str) -> bool:
-    return hmac.compare_digest(told.encode(), wanted.encode())
+def _same(given: str, expected: str) -> bool:
+    return hmac.compare_digest(given.encode(), expected.encode())

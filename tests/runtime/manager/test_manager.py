@@ -222,7 +222,7 @@ def test_the_log_gets_a_line_now_and_then_and_the_counts_get_all() -> None:
     assert notes == ["a mission"] and record.counts()["200"] == 2, "strangers do not keep it out"
     now[0] = 11.0
     record.count("404", "another")
-    assert lines[1:] == ["another (and 999 more that are not in the log)"]
+    assert lines[1:] == ["another (and 999 more that were not logged)"]
 
 
 def test_topics_are_named_with_commas_between() -> None:

@@ -259,7 +259,7 @@ OFFERS = [PossibleWord("thief_a2b", 0.0, float("inf")), PossibleWord("boy:screw"
     (" stop ", "_stop_", ""),
     ("boy:screw", "boy:screw", ""),
     ("Finish!", "Finish!", ""),
-    ("screww", "screww", "nobody in this scenario knows screww: sent all the same"),
+    ("screww", "screww", "screww is not a word of this scenario; it was published anyway"),
     ("", "", ""),
 ])
 def test_what_is_typed_becomes_a_word(text: str, word: str, remark: str) -> None:
