@@ -52,7 +52,7 @@ class Node:
         at = self.state.stamp - 100.0 if self.state is not None else 0.0
         return Facts(self.phase, (), self.state, at, at + self.clock() - self.shown, self.verdict)
 
-    def obey(self, request: Any) -> str:
+    def on_request(self, request: Any) -> str:
         self.wanted.append(tuple(request))
         return "as you like"
 
