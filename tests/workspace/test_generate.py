@@ -23,7 +23,7 @@ from pursue_gen.partition import partition
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
-from pursue_gen.workspace.packages import RECEIVING, RUNTIME
+from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
 from pursue_runtime import bundle
 
 SHAPES = [
@@ -55,7 +55,7 @@ def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
 
 
 def test_one_package_for_each_node() -> None:
-    common = {"observer", "UI", "catch_the_thief_bringup", RUNTIME, *RECEIVING}
+    common = {"observer", "UI", "catch_the_thief_bringup", *SHARED, *RECEIVING}
     robots = {"controller_polBot1", "controller_polBot2"}
     name = "thesis/catch_the_thief"
     assert packages(files(name)) == common | robots | {"controllerObj"}
@@ -74,7 +74,7 @@ def test_manifests_are_valid_and_named_like_their_folders(generated: Dict[str, b
         parsed.validate()
         assert parsed.name == name
         assert [d.name for d in parsed.buildtool_depends] == ["catkin"]
-        assert name.endswith(("_bringup", RUNTIME)) or RUNTIME in {d.name for d in parsed.exec_depends}
+        assert name.endswith("_bringup") or name in SHARED or RUNTIME in {d.name for d in parsed.exec_depends}
 
 
 def test_what_a_node_imports_is_in_its_manifest_or_that_of_the_run_time(generated: Dict[str, bytes]) -> None:
@@ -148,7 +148,8 @@ def test_what_cmake_names_is_there_and_everything_is_installed(generated: Dict[s
         named = set(re.findall(r"(?:scripts|test)/[\w.]+", cmake))
         assert named <= inside
         assert {p for p in inside if p.startswith("scripts/")} <= named
-        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts", "src"}
+        assert all(p[len("msg/") :] in cmake for p in inside if p.startswith("msg/"))
+        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts", "src", "msg"}
         for folder in folders:
             assert re.search(rf"install\(DIRECTORY[^)]*\b{folder}\b", cmake), f"{name}/{folder} is not installed"
 
@@ -162,7 +163,7 @@ def test_robots_check_missions_with_the_desks_own_code(generated: Dict[str, byte
 
 def test_each_package_has_the_node_of_its_name(generated: Dict[str, bytes]) -> None:
     for name in packages(generated):
-        if not name.endswith(("_bringup", RUNTIME)):
+        if not name.endswith("_bringup") and name not in SHARED:
             assert generated[f"src/{name}/scripts/{name}"].startswith(b"#!/usr/bin/env python3\n")
     assert "src/UI/scripts/simulator" in generated and "src/UI/scripts/sim_clock" in generated
 
@@ -328,7 +329,7 @@ def test_people_get_instructions_and_no_controller() -> None:
     text = (SCENARIOS / "thesis/scenario_1.pur").read_text().replace('"bot2" controllable', '"bot2" human controllable')
     generated = generate_text(text, "ward")
     nodes = {"controller_bot1", "controllerObj", "observer", "UI"}
-    assert packages(generated) == {*nodes, "ward_bringup", RUNTIME, *RECEIVING}
+    assert packages(generated) == {*nodes, "ward_bringup", *SHARED, *RECEIVING}
     (instructions,) = [yaml.safe_load(t) for p, t in generated.items() if p.endswith("/config/people.yaml")]
     assert instructions["commands_agents"] == ["bot2"]
 
