@@ -94,14 +94,7 @@ def thesis_scenario(number: str) -> Path:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """With pytest-xdist all tests on ROS run on one worker: they share what they build, and answers must not be late.
+    """With pytest-xdist, files go to workers as a whole, the longest first."""
+    from tests.schedule import LongestFirst  # without pytest-xdist it cannot be imported
 
-    (`--dist loadgroup` is made for this, but does not group anything with pytest 9.)
-    """
-    from xdist.scheduler import LoadScopeScheduling
-
-    class OneWorkerForRos(LoadScopeScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            return "ros" if "tests/ros/" in nodeid else nodeid
-
-    return OneWorkerForRos(config, log)
+    return LongestFirst(config, log)

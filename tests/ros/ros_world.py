@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
+import hashlib
 import http.client
 import os
 import random
+import shutil
 import signal
 import socket
 import subprocess
@@ -14,7 +17,7 @@ import tempfile
 import time
 import xmlrpc.client
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
@@ -23,6 +26,9 @@ from tests.waiting import PATIENCE
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 SAY = Path(__file__).resolve().parent / "say.py"
+COMMON = ("pursue_msgs", "pursue_runtime")
+"""Packages that are the same in every workspace, with what the generated ones need of them."""
+
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
 
@@ -45,9 +51,21 @@ def _environment(home: Path) -> Dict[str, str]:
 class Ros:
     """Commands in that environment, and masters."""
 
-    def __init__(self, home: Path) -> None:
-        self.home = home
+    def __init__(self, home: Path, shared: Path) -> None:
+        """`home` is for what runs in this process, `shared` for what all processes of the session build but once."""
+        self.home, self.shared = home, shared
         self.environment = _environment(home)
+
+    def once(self, name: str, build: Callable[[Path], object]) -> Path:
+        """The shared folder of this name: the first that asks for it builds it, others wait until it is done."""
+        folder, done = self.shared / name, self.shared / f"{name}.done"
+        with open(self.shared / f"{name}.lock", "wb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not done.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+                build(folder)
+                done.touch()
+        return folder
 
     def start(self, command: str, folder: Path, log: Path, **more: str) -> "subprocess.Popen[bytes]":
         """Starts a shell command in a session of its own; what it says goes to the log."""
@@ -154,9 +172,29 @@ def generated(
     return write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
 
 
-def make(ros: Ros, workspace: Path, *targets: str) -> Path:
-    """Builds it with catkin_make."""
+def make_whole(ros: Ros, workspace: Path, *targets: str) -> Path:
+    """Builds it with catkin_make, all of it, as its user does."""
     done = ros.run(f"catkin_make {' '.join(targets)}", workspace, 900)
+    assert done.returncode == 0, done.stdout
+    return workspace
+
+
+def make(ros: Ros, workspace: Path) -> Path:
+    """Builds it over a workspace of the packages that all have in common: those are built once in a session."""
+    found = [workspace / "src" / name for name in COMMON if (workspace / "src" / name).is_dir()]
+    digest = hashlib.sha256()
+    for path in sorted(path for package in found for path in package.rglob("*") if path.is_file()):
+        digest.update(f"{path.relative_to(workspace)}\n".encode() + hashlib.sha256(path.read_bytes()).digest())
+
+    def build(folder: Path) -> None:
+        for package in found:
+            shutil.copytree(package, folder / "src" / package.name)
+        make_whole(ros, folder)
+
+    common = ros.once(f"common_{digest.hexdigest()[:16]}", build)
+    for package in found:
+        (package / "CATKIN_IGNORE").touch()
+    done = ros.run(f"source {common}/devel/setup.bash; catkin_make", workspace, 900)
     assert done.returncode == 0, done.stdout
     return workspace
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import shutil
 import time
 from pathlib import Path
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict, Iterator, List, Tuple
 
 import pytest
-from ros_world import Ros, end, generated, make
+from ros_world import Ros, end, generated, make_whole
 
 from tests.waiting import PATIENCE
 
@@ -20,14 +20,23 @@ NODES = ("observer", "controller_bot1", "controller_bot2", "controllerObj")
 
 
 @pytest.fixture(scope="module")
-def installed(ros: Ros, built: Build, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the workspace of which nothing but the install space is left."""
-    workspace = tmp_path_factory.mktemp("installed") / "ws"
-    shutil.copytree(built("thesis/scenario_1") / "src", workspace / "src", symlinks=True)
-    make(ros, workspace, "install")
-    for folder in ("src", "build", "devel"):
-        shutil.rmtree(workspace / folder)
-    return workspace
+def own(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace that no other test looks at, built and installed."""
+    return make_whole(ros, generated("thesis/scenario_1", tmp_path_factory.mktemp("own") / "ws"), "install")
+
+
+@pytest.fixture
+def installed(own: Path) -> Iterator[Path]:
+    """The workspace, while nothing but its install space is there."""
+    others = [own / name for name in ("src", "build", "devel")]
+    aside = own.parent / "aside"
+    aside.mkdir()
+    for folder in others:
+        folder.rename(aside / folder.name)
+    yield own
+    for folder in others:
+        (aside / folder.name).rename(folder)
+    aside.rmdir()
 
 
 @pytest.fixture(params=["devel", "install"])
@@ -89,25 +98,23 @@ def test_each_package_builds_alone(ros: Ros, built: Build, tmp_path: Path) -> No
     assert len(packages) == 8
     for package in packages:
         shutil.copytree(package, tmp_path / package.name / "src" / package.name)
-        make(ros, tmp_path / package.name)
+        make_whole(ros, tmp_path / package.name)
 
 
-def test_a_mission_that_does_not_reach_its_goal_fails_its_test(ros: Ros, built: Build) -> None:
+def test_a_mission_that_does_not_reach_its_goal_fails_its_test(ros: Ros, own: Path) -> None:
     """One robot's part of the strategy is taken away: the launch test must see it."""
-    workspace = built("thesis/scenario_1")
-    part = workspace / "src/controller_bot1/config/strategy.yaml"
+    part = own / "src/controller_bot1/config/strategy.yaml"
     kept = part.read_text()
     part.write_text(kept[: kept.index("strategy:")] + "strategy: []\n")
     try:
-        done = ros.run("source devel/setup.bash; rostest scenario_1_bringup mission.test patience:=5", workspace)
+        done = ros.run("source devel/setup.bash; rostest scenario_1_bringup mission.test patience:=5", own)
     finally:
         part.write_text(kept)
     assert done.returncode != 0
     assert "test_mission_ends_well][FAILURE]" in done.stdout and "[passed]" in done.stdout
 
 
-def test_regeneration_keeps_what_was_built(ros: Ros, built: Build) -> None:
-    workspace = built("thesis/scenario_1")
-    generated("thesis/scenario_1", workspace)
-    assert (workspace / "devel" / "setup.bash").is_file()
-    assert (workspace / "src" / "CMakeLists.txt").is_symlink()
+def test_regeneration_keeps_what_was_built(ros: Ros, own: Path) -> None:
+    generated("thesis/scenario_1", own)
+    assert (own / "devel" / "setup.bash").is_file()
+    assert (own / "src" / "CMakeLists.txt").is_symlink()

@@ -1,0 +1,49 @@
+"""How pytest-xdist shares out the tests: files as a whole, the longest first, so that all workers end together.
+
+(`--dist loadgroup` is made for this, but does not group anything with pytest 9.)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from xdist.scheduler import LoadScopeScheduling
+
+LONGEST = (
+    "ros/test_missions", "ros/test_faults", "ros/test_links", "ros/test_nodes", "ros/test_robots", "ros/test_web",
+    "ros/test_fleet", "ros/test_received_missions", "workspace/test_generate", "ros/test_newcomer",
+    "ros/test_recording", "scenarios/test_scenarios", "proof/test_checker_random", "proof/test_invariant",
+    "synthesis/test_reference", "synthesis/test_native", "proof/test_smaller", "synthesis/test_verdicts",
+    "cli/test_progress", "cli/test_commands", "proof/test_checker", "solving/test_least_time", "transport/test_bundles",
+    "simulation/test_simulated_missions", "test_tutorial", "workspace/test_machines", "synthesis/test_plan",
+    "lsp/test_packaging", "test_setup", "language/test_hostile", "solving/test_verifytga", "ros/test_benchmarks",
+)
+"""Files that take more than some twenty seconds, the longest first; all others are short, in any order."""
+
+ROS_WORKERS = ("gw0", "gw1")
+"""Workers that prefer tests on ROS: those wait much and compute little, so the others keep the processors busy, and a
+machine with two of these never runs more than two missions at once while there is anything else to do."""
+
+
+def rank(file: str) -> int:
+    """The place of a file in the list of the longest."""
+    name = file[: -len(".py")].rpartition("tests/")[2]
+    return LONGEST.index(name) if name in LONGEST else len(LONGEST)
+
+
+class LongestFirst(LoadScopeScheduling):
+    """Gives a worker that has nothing left the longest file that is left, of its kind where there is one."""
+
+    def __init__(self, config: pytest.Config, log: Any) -> None:
+        super().__init__(config, log)
+        config.option.loadscopereorder = False
+
+    def _split_scope(self, nodeid: str) -> str:
+        return nodeid.partition("::")[0]
+
+    def _assign_work_unit(self, node: Any) -> None:
+        prefers_ros = node.gateway.id in ROS_WORKERS
+        best = min(self.workqueue, key=lambda file: (("tests/ros/" in file) != prefers_ros, rank(file)))
+        self.workqueue.move_to_end(best, last=False)
+        super()._assign_work_unit(node)
