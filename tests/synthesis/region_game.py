@@ -23,10 +23,12 @@ from pursue_gen.synthesis.game import (
     start_zone,
 )
 from pursue_gen.tga.network import Kind
-from pursue_gen.zones.dbm import Dbm, constant
+from pursue_gen.zones.dbm import constant
 
 Region = Tuple[Fraction, ...]
 Position = Tuple[State, Region]
+Afters = Dict[Tuple[int, ...], Tuple[JointMove, Position]]
+"""Where the moves that are enabled lead to, by their edges."""
 
 
 class RegionGame:
@@ -36,6 +38,8 @@ class RegionGame:
         self.game = game
         self._beyond = max(game.max_constants) + game.delta + 1
         self._moves: Dict[State, List[JointMove]] = {}
+        self._paths: Dict[Position, Tuple[Position, ...]] = {}
+        self._afters: Dict[Position, Afters] = {}
         self.starts = self._starts()
         self.positions = self._reachable()
 
@@ -79,10 +83,16 @@ class RegionGame:
                 return True
         return True
 
-    def path(self, position: Position) -> Iterator[Position]:
+    def path(self, position: Position) -> Tuple[Position, ...]:
         """The positions that time leads to, as long as the invariants hold, the given one first."""
+        if position not in self._paths:
+            self._paths[position] = tuple(self._path(position))
+        return self._paths[position]
+
+    def _path(self, position: Position) -> Iterator[Position]:
         state, region = position
-        while self._holds(region, invariant(self.game, state)):
+        bounds = invariant(self.game, state)
+        while self._holds(region, bounds):
             yield state, region
             after = self._next(region)
             if after == region:
@@ -90,28 +100,27 @@ class RegionGame:
             region = after
 
     def _can_command(self, position: Position, targets: Set[Position]) -> bool:
-        return any(self.usable(position, move, targets) for move in self.moves(position[0]) if move.controllable)
+        moves = (move for move, _ in self.afters(position).values() if move.controllable)
+        return any(self.usable(position, move, targets) for move in moves)
 
     def usable(self, position: Position, move: JointMove, targets: Set[Position]) -> bool:
         """True if the move leads into the targets at every time of the delay and nothing spoils it meanwhile."""
         last = self._representative(tuple(x + self.game.delta for x in position[1]))
         delay = self.game.delta
         for later in self.path(position):
-            if self._after(later, move) not in targets or (delay and self._spoils(later, targets)):
+            after = self.afters(later).get(move.edges)
+            if after is None or after[1] not in targets or (delay and self._spoils(later, targets)):
                 return False
             if later[1] == last:
                 return True
         return False
 
     def _spoils(self, position: Position, good: Set[Position]) -> bool:
-        afters = (self._after(position, move) for move in self.moves(position[0]) if not move.controllable)
-        return any(after is not None and after not in good for after in afters)
+        return any(after not in good for move, after in self.afters(position).values() if not move.controllable)
 
     def _own(self, position: Position, owner: int) -> bool:
-        return any(
-            not move.controllable and move.owner == owner and self._after(position, move) is not None
-            for move in self.moves(position[0])
-        )
+        moves = (move for move, _ in self.afters(position).values())
+        return any(not move.controllable and move.owner == owner for move in moves)
 
     def _expiring(self, position: Position) -> List[int]:
         state, region = position
@@ -129,6 +138,13 @@ class RegionGame:
             return None
         return move.target, self._representative(reset)
 
+    def afters(self, position: Position) -> Afters:
+        """Where the moves that are enabled in this position lead to, by their edges."""
+        if position not in self._afters:
+            afters = ((move, self._after(position, move)) for move in self.moves(position[0]))
+            self._afters[position] = {move.edges: (move, after) for move, after in afters if after is not None}
+        return self._afters[position]
+
     def moves(self, state: State) -> List[JointMove]:
         """The joint moves of the state."""
         if state not in self._moves:
@@ -136,8 +152,11 @@ class RegionGame:
         return self._moves[state]
 
     def _holds(self, region: Region, bounds: Tuple[Bound, ...]) -> bool:
-        zone = Dbm.of(self.game.dim, bounds)
-        return zone is not None and zone.contains(region)
+        values = (Fraction(0), *region)
+        return all(
+            values[i] - values[j] < bound >> 1 or (bound & 1 == 1 and values[i] - values[j] == bound >> 1)
+            for i, j, bound in bounds
+        )
 
     def _representative(self, point: Region) -> Region:
         """The same point for all points of a region: fractions 1/(n+1), 2/(n+1), … in their order."""
@@ -178,8 +197,7 @@ class RegionGame:
             position = waiting.pop()
             followers = list(self.path(position))
             if not (is_goal(self.game, position[0]) or is_bad(self.game, position[0])):
-                afters = (self._after(position, move) for move in self.moves(position[0]))
-                followers += [after for after in afters if after is not None]
+                followers += [after for _, after in self.afters(position).values()]
             for follower in followers:
                 if follower not in met:
                     met.add(follower)
