@@ -6,36 +6,45 @@ A deliberately naive reading of the same rules, to hold against the symbolic che
 from __future__ import annotations
 
 import itertools
+import operator
 from fractions import Fraction
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Callable, Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
 
-STEP = Fraction(1, 4)
-"""Steps are taken at multiples of this. Bounds are multiples too, so between two of them a zone holds all along or not
-at all, and one look halfway tells: a zone may lie between them, and a player who acts in it never sees the later one.
+UNIT, STEP, HALFWAY = 8, 2, 1
+"""A time unit, a step and half of one, in eighths of a unit, in which all times are counted.
+
+Bounds are multiples of a step, so between two of them a zone holds all along or not at all, and one look halfway tells:
+a zone may lie between them, and a player who acts in it never sees the later one.
 """
 
-Values = Dict[str, Fraction]
-Entry = Tuple[Tuple[str, ...], Tuple[int, ...], Tuple[Fraction, ...]]
+Values = Dict[str, int]
+Entry = Tuple[Tuple[str, ...], Tuple[int, ...], Tuple[int, ...]]
+Move = Tuple[Tuple[str, Edge], ...]
 
 
 class Broken(Exception):
     """The play fails, and why."""
 
 
+COMPARED: Dict[str, Callable[[int, int], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq,
+}
+
+
 def holds(bound: ClockBound, clocks: Values) -> bool:
     """The bound, looked up."""
-    x, c = clocks[bound.clock], bound.bound
-    return {"<": x < c, "<=": x <= c, ">": x > c, ">=": x >= c, "==": x == c}[bound.op]
+    return COMPARED[bound.op](clocks[bound.clock], UNIT * bound.bound)
 
 
-def inside(zone: Zone, clocks: Values) -> bool:
-    """True if the valuation is in the strategy's zone."""
+def inside(zone: Zone, clocks: Mapping[str, Union[int, Fraction]], unit: int = 1) -> bool:
+    """True if the valuation is in the strategy's zone; `unit` is how much of the clocks is one time unit."""
     for c in zone:
         difference = (clocks[c.left] if c.left else 0) - (clocks[c.right] if c.right else 0)
-        if difference > c.bound or (c.strict and difference == c.bound):
+        bound = unit * c.bound
+        if difference > bound or (c.strict and difference == bound):
             return False
     return True
 
@@ -50,14 +59,15 @@ class PlayByPlay:
         }
         bounds = [b.bound for a in network.automata for e in a.edges for b in e.guard.clocks]
         bounds += [b.bound for a in network.automata for loc in a.locations for b in loc.invariant]
-        self.longest = 2 * max([3, *bounds]) + 3
+        self.longest = UNIT * (2 * max([3, *bounds]) + 3)
+        self._moves: Dict[Entry, Tuple[Move, ...]] = {}
 
     def broken(self, entries: int = 400) -> Optional[str]:
         """Why a play fails, or None if none is found within so many entries."""
         start: Entry = (
             tuple(a.initial for a in self.network.automata),
             tuple(v for _, v in self.network.variables),
-            tuple(Fraction(0) for _ in self.network.clocks),
+            (0,) * len(self.network.clocks),
         )
         after: Dict[Entry, List[Entry]] = {}
         pending = [start]
@@ -86,10 +96,10 @@ class PlayByPlay:
             raise Broken("no block")
         entered: Optional[List[Tuple[Command, Zone]]] = None
         for n in itertools.count():
-            now, between = self.later(entry, n * STEP / 2), n % 2 == 1
+            now, between = self.later(entry, n * HALFWAY), n % 2 == 1
             clocks = self.clocks(now)
-            ready = [(c, z) for c in block.commands for z in c.zones if inside(z, clocks)]
-            waits = any(inside(z, clocks) for z in block.wait)
+            ready = [(c, z) for c in block.commands for z in c.zones if inside(z, clocks, UNIT)]
+            waits = any(inside(z, clocks, UNIT) for z in block.wait)
             entered = ready if entered is None and ready else entered
             if entered is not None:
                 entered = [one for one in entered if one in ready]
@@ -103,11 +113,11 @@ class PlayByPlay:
                     yield from self.act(now, command)
             elif not waits:
                 raise Broken("not covered")
-            if not self.lasts(self.later(now, STEP / 2)):
+            if not self.lasts(self.later(now, HALFWAY)):
                 if entered is None:
                     self.check_obliged(now)
                 return
-            if n * STEP / 2 > self.longest:
+            if n * HALFWAY > self.longest:
                 waits_on = entered is None and not self.invariants(now)
                 if waits_on and self.objective.kind is not Kind.SAFETY:
                     raise Broken("waits for ever")
@@ -115,7 +125,7 @@ class PlayByPlay:
 
     def act(self, now: Entry, command: Command) -> Iterator[Entry]:
         """The command takes effect at any time within the reaction."""
-        for n in range(int(self.reaction / STEP) + 1):
+        for n in range(int(self.reaction * UNIT / STEP) + 1):
             then = self.later(now, n * STEP)
             if not self.lasts(then):  # time is blocked before the command comes: someone else has to move
                 self.check_obliged(self.later(now, (n - 1) * STEP))
@@ -132,13 +142,19 @@ class PlayByPlay:
             if not all(edge.controllable for _, edge in move):
                 yield self.after(now, move)
 
-    def moves(self, now: Entry) -> Iterator[Tuple[Tuple[str, Edge], ...]]:
+    def moves(self, now: Entry) -> Tuple[Move, ...]:
         """The joint moves that are enabled at a point."""
+        if now not in self._moves:
+            self._moves[now] = tuple(self._enabled(now))
+        return self._moves[now]
+
+    def _enabled(self, now: Entry) -> Iterator[Move]:
+        clocks = self.clocks(now)
         values = dict(zip((name for name, _ in self.network.variables), now[1]))
 
         def open_to(edge: Edge) -> bool:
             fits = all(any(values[t.variable] == t.value for t in clause) for clause in edge.guard.integers)
-            return fits and all(holds(b, self.clocks(now)) for b in edge.guard.clocks)
+            return fits and all(holds(b, clocks) for b in edge.guard.clocks)
 
         for automaton, place in zip(self.network.automata, now[0]):
             for edge in automaton.edges:
@@ -158,7 +174,7 @@ class PlayByPlay:
                     if self.lasts(now) and self.lasts(self.after(now, move)):
                         yield move
 
-    def after(self, now: Entry, move: Tuple[Tuple[str, Edge], ...]) -> Entry:
+    def after(self, now: Entry, move: Move) -> Entry:
         """The point after a joint move."""
         places = dict(zip((a.name for a in self.network.automata), now[0]))
         values = dict(zip((name for name, _ in self.network.variables), now[1]))
@@ -166,7 +182,7 @@ class PlayByPlay:
         for name, edge in move:
             places[name] = edge.target
             values.update(edge.assign)
-            clocks.update({x: Fraction(0) for x in edge.resets})
+            clocks.update({x: 0 for x in edge.resets})
         return tuple(places.values()), tuple(values.values()), tuple(clocks.values())
 
     def clocks(self, now: Entry) -> Values:
@@ -174,7 +190,7 @@ class PlayByPlay:
         return dict(zip(self.network.clocks, now[2]))
 
     @staticmethod
-    def later(now: Entry, time: Fraction) -> Entry:
+    def later(now: Entry, time: int) -> Entry:
         """The point after that time."""
         return now[0], now[1], tuple(x + time for x in now[2])
 
@@ -187,11 +203,12 @@ class PlayByPlay:
 
     def lasts(self, now: Entry) -> bool:
         """True within all invariants."""
-        return all(holds(b, self.clocks(now)) for _, b in self.invariants(now))
+        clocks = self.clocks(now)
+        return all(holds(b, clocks) for _, b in self.invariants(now))
 
     def check_obliged(self, now: Entry) -> None:
         """At the end of an invariant while waiting. Raises Broken unless someone is obliged to move."""
-        at_bound = {a.name for a, b in self.invariants(now) if self.clocks(now)[b.clock] == b.bound}
+        at_bound = {a.name for a, b in self.invariants(now) if self.clocks(now)[b.clock] == UNIT * b.bound}
         able = {m[0][0] for m in self.moves(now) if not all(edge.controllable for _, edge in m)}
         if not (at_bound <= able if self.objective.kind is Kind.SAFETY else at_bound & able):
             raise Broken("time is blocked")
