@@ -11,15 +11,16 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 LONGEST = (
-    "ros/test_missions", "ros/test_faults", "ros/test_links", "ros/test_nodes", "ros/test_robots", "ros/test_web",
-    "ros/test_fleet", "ros/test_received_missions", "workspace/test_generate", "ros/test_newcomer",
-    "ros/test_recording", "scenarios/test_scenarios", "proof/test_checker_random", "proof/test_invariant",
-    "synthesis/test_reference", "synthesis/test_native", "proof/test_smaller", "synthesis/test_verdicts",
-    "cli/test_progress", "cli/test_commands", "proof/test_checker", "solving/test_least_time", "transport/test_bundles",
-    "simulation/test_simulated_missions", "test_tutorial", "workspace/test_machines", "synthesis/test_plan",
-    "lsp/test_packaging", "test_setup", "language/test_hostile", "solving/test_verifytga", "ros/test_benchmarks",
+    "ros/test_missions", "ros/test_faults", "ros/test_links", "ros/test_nodes", "ros/test_web", "ros/test_fleet",
+    "ros/test_robots", "ros/test_newcomer", "ros/test_install_space", "ros/test_received_missions",
+    "ros/test_recording", "ros/test_ui_node", "ros/test_benchmarks", "scenarios/test_scenarios",
+    "simulation/test_simulated_missions", "proof/test_checker", "synthesis/test_verdicts",
+    "simulation/test_simulated_command", "proof/test_invariant", "runtime/test_hostile_requests",
+    "synthesis/test_native", "synthesis/test_engines", "solving/test_verifytga", "lsp/test_packaging",
+    "language/test_hostile", "cli/test_progress", "solving/test_least_time", "synthesis/test_plan", "test_tutorial",
+    "workspace/test_generate", "cli/test_commands", "transport/test_bundles",
 )
-"""Files that take more than some twenty seconds, the longest first; all others are short, in any order."""
+"""Files that take more than some ten seconds, the longest first; all others are short, in any order."""
 
 ROS_WORKERS = ("gw0", "gw1")
 """Workers that prefer tests on ROS: those wait much and compute little, so the others keep the processors busy, and a

@@ -50,22 +50,25 @@ def test_a_recorded_mission_is_complete_and_kept_to_its_scenario(ros: Ros, built
     assert replayed(journal, "--workspace", workspace)["kept"]
 
 
-def test_a_given_path_is_kept_and_no_file_is_overwritten(ros: Ros, built: Build, tmp_path: Path) -> None:
-    asked = tmp_path / "my mission.bag"
+@pytest.fixture(scope="module")
+def theft(ros: Ros, built: Build, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a mission of catch the thief that was to be recorded in a file that is already there."""
+    folder = tmp_path_factory.mktemp("theft")
+    asked = folder / "my mission.bag"
     asked.write_text("something dear")
-    with ros.master() as there:
-        command = f"{LAUNCH} record:='{asked}'"
-        done = ros.run(command, built("thesis/scenario_1"), ROS_HOME=str(tmp_path / "home"), **there)
-    assert "The goal is reached" in done.stdout, done.stdout
-    assert asked.read_text() == "something dear"
-    assert replayed(tmp_path / "my mission-2.bag")["kept"]
-
-
-def test_the_robot_is_told_what_wins_the_mission_at_once(ros: Ros, built: Build, tmp_path: Path) -> None:
-    workspace = built("thesis/catch_the_thief")
     launch = LAUNCH.replace("scenario_1", "catch_the_thief")
     with ros.master() as there:
-        done = ros.run(f"{launch} mode:=still record:=true", workspace, ROS_HOME=str(tmp_path), **there)
+        command = f"{launch} mode:=still record:='{asked}'"
+        done = ros.run(command, built("thesis/catch_the_thief"), ROS_HOME=str(folder / "home"), **there)
     assert "The goal is reached" in done.stdout, done.stdout
-    told = replayed(tmp_path / "pursue" / "catch_the_thief" / "mission.bag")
+    return folder
+
+
+def test_a_given_path_is_kept_and_no_file_is_overwritten(theft: Path) -> None:
+    assert (theft / "my mission.bag").read_text() == "something dear"
+    assert replayed(theft / "my mission-2.bag")["kept"]
+
+
+def test_the_robot_is_told_what_wins_the_mission_at_once(theft: Path) -> None:
+    told = replayed(theft / "my mission-2.bag")
     assert (told["kept"], told["won"]) == (True, True), told["verdict"]
