@@ -22,13 +22,11 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
 from pursue_gen.language import load
 from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from pursue_gen.workspace.packages import SHARED
 from tests.waiting import PATIENCE
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 SAY = Path(__file__).resolve().parent / "say.py"
-COMMON = ("pursue_msgs", "pursue_runtime")
-"""Packages that are the same in every workspace, with what the generated ones need of them."""
-
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
 
@@ -181,7 +179,7 @@ def make_whole(ros: Ros, workspace: Path, *targets: str) -> Path:
 
 def make(ros: Ros, workspace: Path) -> Path:
     """Builds it over a workspace of the packages that all have in common: those are built once in a session."""
-    found = [workspace / "src" / name for name in COMMON if (workspace / "src" / name).is_dir()]
+    found = [workspace / "src" / name for name in SHARED]
     digest = hashlib.sha256()
     for path in sorted(path for package in found for path in package.rglob("*") if path.is_file()):
         digest.update(f"{path.relative_to(workspace)}\n".encode() + hashlib.sha256(path.read_bytes()).digest())
@@ -201,7 +199,9 @@ def make(ros: Ros, workspace: Path) -> Path:
 
 def judged(ros: Ros, workspace: Path) -> List[str]:
     """Runs the workspace's own launch tests; the results that catkin_test_results found, all of them good."""
-    done = ros.run("catkin_make run_tests", workspace, 1800)
+    apart = any((workspace / "src").glob("*/CATKIN_IGNORE"))  # its common packages are in a workspace of their own
+    command = f"{'source devel/setup.bash; ' if apart else ''}catkin_make run_tests"
+    done = ros.run(command, workspace, 1800)
     verdict = ros.run("catkin_test_results --verbose --all build/test_results", workspace)
     assert verdict.returncode == 0, f"{verdict.stdout}\n{done.stdout[-20000:]}"
     return verdict.stdout.splitlines()

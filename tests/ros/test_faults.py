@@ -91,10 +91,10 @@ class Turn(NamedTuple):
 
 @pytest.fixture(scope="module")
 def turns(ros: Ros, scenario: Path, tmp_path_factory: pytest.TempPathFactory) -> Tuple[Stage, List[Turn]]:
-    """One mission in which each node is killed in turn."""
+    """One mission in which each node is killed in turn; a slow one, so that nodes are back before the next turn."""
     found = []
     folder = tmp_path_factory.mktemp("turns")
-    with staged(ros, scenario, folder, use_sim_time=True, speed=1.5, delays="middle", lost_after=FOR_EVER) as stage:
+    with staged(ros, scenario, folder, use_sim_time=True, speed=0.5, delays="middle", lost_after=FOR_EVER) as stage:
         for step, sign, nodes in TURNS:
             stage.until_step(step)
             states = stage.states()
