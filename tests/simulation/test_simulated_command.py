@@ -18,7 +18,7 @@ from stages import SCENARIOS
 
 from pursue_gen.synthesis.native import engine as native
 
-THIEF = SCENARIOS / "thesis" / "catch_the_thief.pur"
+FIRST, THIEF = (SCENARIOS / "thesis" / f"{name}.pur" for name in ("scenario_1", "catch_the_thief"))
 
 
 def called(*words: Any) -> "subprocess.CompletedProcess[str]":
@@ -41,7 +41,8 @@ def test_a_table_and_what_is_guaranteed() -> None:
 
 
 def test_jobs_do_not_change_what_comes_out() -> None:
-    alone, both = (called(THIEF, "--runs", 45, "--faults", "delay,loss,deaths", "--jobs", n, "--json") for n in (1, 2))
+    words = (FIRST, "--runs", 45, "--faults", "delay,loss,deaths", "--json")
+    alone, both = (called(*words, "--jobs", jobs) for jobs in (1, 2))
     assert alone.returncode == both.returncode == 0, alone.stderr + both.stderr
     assert json.loads(alone.stdout) == json.loads(both.stdout)
     facts = json.loads(alone.stdout)
