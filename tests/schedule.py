@@ -15,7 +15,7 @@ LONGEST = (
     "ros/test_robots", "ros/test_newcomer", "ros/test_install_space", "ros/test_received_missions",
     "ros/test_recording", "ros/test_ui_node", "ros/test_benchmarks", "scenarios/test_scenarios",
     "simulation/test_simulated_missions", "proof/test_checker", "synthesis/test_verdicts",
-    "simulation/test_simulated_command", "proof/test_invariant", "runtime/test_hostile_requests",
+    "simulation/test_simulated_command", "proof/test_invariant", "runtime/manager/test_hostile_requests",
     "synthesis/test_native", "synthesis/test_engines", "solving/test_verifytga", "lsp/test_packaging",
     "language/test_hostile", "cli/test_progress", "solving/test_least_time", "synthesis/test_plan", "test_tutorial",
     "workspace/test_generate", "cli/test_commands", "transport/test_bundles",

@@ -40,7 +40,10 @@ def test_the_master_knows_the_nodes_and_topics_of_the_report(ros: Ros, built: Bu
     scenario = load(str(SCENARIOS / "thesis" / "scenario_1.pur"))
     won = solve_scenario(scenario, Rules())
     some = topics(scenario, partition(won.strategy, won.network, scenario.agents))
-    expected = {t.name: set(t.publishers) for t in some}, {t.name: set(t.subscribers) for t in some}
+    expected = (
+        {t.name: set(t.publishers) for t in some},
+        {t.name: set(t.subscribers) for t in some if t.subscribers},
+    )
     with ros.master() as there:
         mission = ros.start(LAUNCH, built("thesis/scenario_1"), tmp_path / "log", **there)
         try:

@@ -23,7 +23,7 @@ needs_setup = pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has no
 def test_the_checkout_is_a_catkin_package(ros: Ros, tmp_path: Path) -> None:
     place = tmp_path / "src" / "pursue_gen"
     ignored = shutil.ignore_patterns("*.so", "__pycache__", ".*cache")
-    for name in ("pursue_gen", "templates", "bin"):
+    for name in ("pursue_gen", "pursue_runtime", "templates", "bin", "docs/diagnostics", "scenarios"):
         shutil.copytree(str(ROOT / name), str(place / name), ignore=ignored)
     for name in ("package.xml", "CMakeLists.txt"):
         shutil.copy(str(ROOT / name), str(place / name))
