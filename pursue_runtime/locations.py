@@ -1,6 +1,6 @@
 """Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`).
 
-The run time's only place for these two prefixes; the generator writes them in `pursue_gen.tga.names`.
+The only place for these two prefixes; the generator has them from here.
 """
 
 from __future__ import annotations
@@ -11,6 +11,11 @@ _MOVEMENT, _ACTION = "going_", "doing_"
 def movement(origin: str, destination: str) -> str:
     """Return the location of an agent that moves from one POI to another."""
     return f"{_MOVEMENT}{origin}_to_{destination}"
+
+
+def action(event: str, poi: str) -> str:
+    """Return the location of an agent in an action with a duration, at a POI."""
+    return f"{_ACTION}{event}_in_{poi}"
 
 
 def is_movement(location: str) -> bool:
@@ -36,3 +41,12 @@ def is_end(source: str, target: str) -> bool:
 def action_of(location: str) -> str:
     """Return the event of an action's location; other locations as they are."""
     return location[len(_ACTION) :].rsplit("_in_", 1)[0] if is_action(location) else location
+
+
+def in_words(location: str) -> str:
+    """Return where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
+    if is_movement(location):
+        return "on the way from " + location[len(_MOVEMENT) :].replace("_to_", " to ")
+    if is_action(location):
+        return "doing " + location[len(_ACTION) :].replace("_in_", " at ")
+    return f"at {location}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pursue_gen.language.scenario import Event
+from pursue_runtime import locations
 
 CLOCK_OBJECTIVE = "Cobj"
 CLOCK_REACH = "Creach"
@@ -13,7 +14,14 @@ STATES = "states"
 IDLE, AT_RISK, LOSE = "idle", "atRisk", "lose"
 """The locations of the objective's automaton: no duty, a deadline is running, a duty was missed."""
 
-_GOING, _DOING = "going_", "doing_"
+going, doing = locations.movement, locations.action
+"""The location on the way from one POI to another; the location at work, by event and POI."""
+
+is_going, is_doing, is_under_way = locations.is_movement, locations.is_action, locations.is_under_way
+"""True for a location on the way, for one at work, for either: its end takes time to come."""
+
+in_words = locations.in_words
+"""Where an agent is, in English."""
 
 
 def agent_clock(agent: str) -> str:
@@ -39,40 +47,6 @@ def state_value(state: str) -> str:
 def movement(agent: str, a: str, b: str) -> str:
     """The channel on which an agent sets off from a to b."""
     return f"{agent}_{a}2{b}"
-
-
-def going(a: str, b: str) -> str:
-    """The location on the way from a to b."""
-    return f"{_GOING}{a}_to_{b}"
-
-
-def doing(event: str, poi: str) -> str:
-    """The location at work at a POI."""
-    return f"{_DOING}{event}_in_{poi}"
-
-
-def is_going(location: str) -> bool:
-    """True for a location on the way, see `going`."""
-    return location.startswith(_GOING)
-
-
-def is_doing(location: str) -> bool:
-    """True for a location at work, see `doing`."""
-    return location.startswith(_DOING)
-
-
-def is_under_way(location: str) -> bool:
-    """True for a location whose end takes time to come: on the way or at work."""
-    return is_going(location) or is_doing(location)
-
-
-def in_words(location: str) -> str:
-    """Where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
-    if is_going(location):
-        return "on the way from " + location[len(_GOING) :].replace("_to_", " to ")
-    if is_doing(location):
-        return "doing " + location[len(_DOING) :].replace("_in_", " at ")
-    return f"at {location}"
 
 
 def done(event: str) -> str:
