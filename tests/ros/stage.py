@@ -89,6 +89,7 @@ class Stage:
         self.folder = folder
         self._start = start
         self.entries: List[Entry] = []
+        self._states: List[State] = []
         self.frozen: List[int] = []
         self._uri = uri
         self._read = 0
@@ -107,7 +108,10 @@ class Stage:
         self._read += whole
         for line in text[:whole].splitlines():
             with contextlib.suppress(ValueError):  # what is not an entry is a complaint of rospy's
-                self.entries.append(json.loads(line))
+                entry: Entry = json.loads(line)
+                self.entries.append(entry)
+                if entry["topic"] == STATE:  # read but once: `until` looks at all of them again and again
+                    self._states.append(read_state(entry["data"]))
         return self.entries
 
     def of(self, topic: str, sender: str = "") -> List[Entry]:
@@ -116,7 +120,8 @@ class Stage:
 
     def states(self) -> List[State]:
         """The states, in order."""
-        return [read_state(entry["data"]) for entry in self.of(STATE)]
+        self.look()
+        return list(self._states)
 
     def now(self) -> State:
         """The last state; before the first one, a state 0."""

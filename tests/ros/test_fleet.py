@@ -37,6 +37,9 @@ MACHINES = {
 UNIT = 0.5
 """Seconds per time unit."""
 
+COMMAND = 2.0
+"""Seconds between two commands that only ask: each keeps a processor busy that the robots wait for."""
+
 WAIT = f"--wait {PATIENCE}"
 UNCHANGED = 7
 
@@ -193,7 +196,7 @@ def fleet(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fleet]
             made.start(machine, f'{command} nodes:="{runs}"', machine)
         for robot in ("bot1", "bot3"):
             made.start(f"{robot}_goals", f"exec rostopic echo -p {robot}/move_base_simple/goal", "desk")
-        until(fleet.serves, made.logs)
+        until(fleet.serves, made.logs, pause=COMMAND)
         yield fleet
 
 
@@ -227,6 +230,6 @@ def test_while_one_robot_cannot_be_reached_nothing_changes_anywhere(fleet: Fleet
     fleet.rooms.mend("bot2")
     assert "bot2" in table
     assert fleet.files() == before
-    until(fleet.serves, fleet.made.logs)
+    until(fleet.serves, fleet.made.logs, pause=COMMAND)
     fleet.desk(f"send third.pur --to robots.yaml {WAIT}")
     fleet.play("third")

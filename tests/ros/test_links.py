@@ -28,12 +28,14 @@ LONG = pytest.param(200, marks=pytest.mark.skipif(os.environ.get("PURSUE_LONG_TE
 needs_namespaces = pytest.mark.skipif(bool(why_not()), reason=why_not())
 
 
-def until(done: Callable[[], object], told: Callable[[], str], seconds: float = PATIENCE) -> None:
-    """Waits until it is so; the test fails after so many seconds, with what was told until then."""
+def until(
+    done: Callable[[], object], told: Callable[[], str], seconds: float = PATIENCE, pause: float = 0.1
+) -> None:
+    """Waits until it is so, looking after each pause; the test fails after so many seconds, with what was told."""
     deadline = time.monotonic() + seconds
     while not done():
         assert time.monotonic() < deadline, f"not so after {seconds} s:\n{told()}"
-        time.sleep(0.1)
+        time.sleep(pause)
 
 
 class Nodes:
