@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Iterable
 
 import pytest
 from xdist.scheduler import LoadScopeScheduling
@@ -33,8 +33,13 @@ def rank(file: str) -> int:
     return LONGEST.index(name) if name in LONGEST else len(LONGEST)
 
 
+def best(files: Iterable[str], worker: str) -> str:
+    """The longest of these files that is of the kind that the worker prefers; of any kind where there is none."""
+    return min(files, key=lambda file: (("tests/ros/" in file) != (worker in ROS_WORKERS), rank(file)))
+
+
 class LongestFirst(LoadScopeScheduling):
-    """Gives a worker that has nothing left the longest file that is left, of its kind where there is one."""
+    """Gives a worker that has nothing left the best of the files that are left."""
 
     def __init__(self, config: pytest.Config, log: Any) -> None:
         super().__init__(config, log)
@@ -44,7 +49,5 @@ class LongestFirst(LoadScopeScheduling):
         return nodeid.partition("::")[0]
 
     def _assign_work_unit(self, node: Any) -> None:
-        prefers_ros = node.gateway.id in ROS_WORKERS
-        best = min(self.workqueue, key=lambda file: (("tests/ros/" in file) != prefers_ros, rank(file)))
-        self.workqueue.move_to_end(best, last=False)
+        self.workqueue.move_to_end(best(self.workqueue, node.gateway.id), last=False)
         super()._assign_work_unit(node)

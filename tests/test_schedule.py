@@ -1,0 +1,27 @@
+"""How tests are shared out among workers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("xdist", reason="pytest-xdist is not installed")
+from tests.schedule import LONGEST, best, rank
+
+TESTS = Path(__file__).resolve().parent
+
+
+def test_the_longest_files_are_there() -> None:
+    assert [name for name in LONGEST if not (TESTS / f"{name}.py").is_file()] == []
+
+
+def test_a_worker_gets_the_longest_file_of_its_kind_and_then_any() -> None:
+    long, short = "tests/ros/test_faults.py", "tests/ros/test_deaf.py"
+    slow, quick = "tests/scenarios/test_scenarios.py", "tests/test_files.py"
+    assert rank(long) < rank(slow) < rank(short) == rank(quick)
+    left = [quick, short, slow, long]
+    for worker, given in (("gw2", slow), ("gw0", long), ("gw2", quick), ("gw3", short)):
+        assert best(left, worker) == given
+        left.remove(given)
+    assert best([quick, slow], "gw1") == slow
