@@ -12,7 +12,9 @@ import tempfile
 from pathlib import Path
 from typing import Any, List, Mapping, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error
+import yaml
+
+from pursue_gen.diagnostics import PursueError, Span, error
 
 
 def read_text(file: Path, what: str) -> str:
@@ -63,16 +65,11 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
                 os.unlink(name)
 
 
-def compose_yaml(text: str, file: str, missing: Diagnostic, code: str, hint: str) -> Any:
+def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
     """The text as PyYAML's tree of nodes, None for an empty text; `file` is its name in messages.
 
-    Raises PursueError with `missing` where PyYAML is not installed (exit status 6), and with this code and hint where
-    the text is not YAML (exit status 2).
+    Raises PursueError with this code and hint where the text is not YAML (exit status 2).
     """
-    try:
-        import yaml
-    except ImportError:
-        raise PursueError([missing], exit_status=6) from None
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except (yaml.YAMLError, ValueError, RecursionError) as problem:

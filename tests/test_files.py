@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import sys
-from unittest import mock
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.files import compose_yaml, span_of
-
-pytest.importorskip("yaml", reason="PyYAML reads these files")
-MISSING = error("TRN012", "PyYAML is missing")
 
 
 @given(st.text(max_size=40) | st.text("{}[]:,-&*!|>'\"#%@ \n\tab", max_size=40))
 def test_any_text_is_a_tree_or_an_error_with_a_place_in_it(text: str) -> None:
     try:
-        root = compose_yaml(text, "some.yaml", MISSING, "TRN011", "write it so")
+        root = compose_yaml(text, "some.yaml", "TRN011", "write it so")
     except PursueError as problem:
         (found,) = problem.diagnostics
         assert problem.exit_status == 2 and found.code == "TRN011" and found.hint == "write it so"
@@ -31,7 +25,7 @@ def test_any_text_is_a_tree_or_an_error_with_a_place_in_it(text: str) -> None:
 
 
 def test_nodes_know_their_places() -> None:
-    root = compose_yaml("a: 1\nbc: [x, yz]\n", "some.yaml", MISSING, "TRN011", "")
+    root = compose_yaml("a: 1\nbc: [x, yz]\n", "some.yaml", "TRN011", "")
     key, value = root.value[1]
     assert span_of(key, "some.yaml") == Span("some.yaml", 2, 1, 2, 3)
     assert span_of(value.value[1], "some.yaml") == Span("some.yaml", 2, 9, 2, 11)
@@ -41,10 +35,4 @@ def test_nodes_know_their_places() -> None:
 @pytest.mark.parametrize("text", ["[" * 5000, "{" * 5000])
 def test_brackets_without_end_are_an_error(text: str) -> None:
     with pytest.raises(PursueError, match="this is not YAML"):
-        compose_yaml(text, "some.yaml", MISSING, "TRN011", "")
-
-
-def test_without_pyyaml_it_is_said_how_to_get_it() -> None:
-    with mock.patch.dict(sys.modules, {"yaml": None}), pytest.raises(PursueError) as problem:
-        compose_yaml("a: 1", "some.yaml", MISSING, "TRN011", "")
-    assert problem.value.exit_status == 6 and problem.value.diagnostics == (MISSING,)
+        compose_yaml(text, "some.yaml", "TRN011", "")

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
+import yaml
+
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import read_text
 
@@ -46,7 +48,7 @@ class Floor:
 
 
 def read_floor(file: Path) -> Floor:
-    """The floor plan of a yaml file of map_server. Raises PursueError (exit status 2; 6 where PyYAML is missing)."""
+    """The floor plan of a yaml file of map_server. Raises PursueError (exit status 2)."""
     data = _yaml(file)
     resolution = _number(file, data, "resolution")
     if not 0 < resolution < 1000:
@@ -68,11 +70,6 @@ def read_floor(file: Path) -> Floor:
 
 def _yaml(file: Path) -> Dict[str, Any]:
     text = read_text(file, "a map of map_server, such as map.yaml")
-    try:
-        import yaml
-    except ImportError:
-        hint = "pip install PyYAML (Debian: python3-yaml), or leave --map out"
-        raise PursueError([error("REP002", "PyYAML is missing, which reads map files", hint=hint)], 6) from None
     try:
         data = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as problem:

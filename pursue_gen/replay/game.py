@@ -9,6 +9,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Mapping, Optional, Tuple
 
+import yaml
+
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import read_text
 from pursue_gen.language import parse
@@ -83,16 +85,11 @@ def from_workspace(folder: Path) -> Source:
 
 
 def read_game(text: str, file: str) -> Mapping[str, Any]:
-    """The data in a game.yaml. Raises PursueError (exit status 2, or 6 where PyYAML is needed and not there)."""
+    """The data in a game.yaml. Raises PursueError (exit status 2)."""
     data: Any = None
-    with contextlib.suppress(ValueError, RecursionError):  # JSON is YAML, and needs no package
+    with contextlib.suppress(ValueError, RecursionError):  # JSON is YAML, and its reader is many times faster
         data = json.loads(text)
     if data is None:
-        try:
-            import yaml
-        except ImportError:
-            message, hint = f"reading {file} needs the Python package PyYAML", f"pip install PyYAML, or {NAME_IT}"
-            raise PursueError([error("RPL007", message, hint=hint)], 6) from None
         with contextlib.suppress(yaml.YAMLError, RecursionError):
             data = yaml.safe_load(text)
     if not isinstance(data, dict):

@@ -19,17 +19,12 @@ _FORM = "write NAME: [x, y, z, qx, qy, qz, qw]: metres on the map, and a unit qu
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
 _LOOSE = 0.05  # so much may a quaternion's length be off, as in scenarios
 _ROUNDING = 1e-9
-_MISSING = error(
-    "TRN012",
-    "PyYAML is missing, which reads files of poses",
-    hint="pip install PyYAML (Debian, Ubuntu: python3-yaml), or write the poses into the scenario",
-)
 
 
 def with_poses(scenario: Scenario, file: Path) -> Scenario:
     """The scenario with the poses of the file, which come before its own.
 
-    Raises PursueError (exit status 2) with the places of everything that is wrong; 6 where PyYAML is missing.
+    Raises PursueError (exit status 2) with the places of everything that is wrong.
     """
     poses = read_poses(file, tuple(poi.name for poi in scenario.pois))
     return replace(scenario, pois=tuple(replace(poi, pose=poses.get(poi.name, poi.pose)) for poi in scenario.pois))
@@ -39,7 +34,7 @@ def read_poses(file: Path, points: Tuple[str, ...]) -> Dict[str, Pose]:
     """The poses in a poses.yaml; `points` are the names that it may have. Raises as `with_poses`."""
     text = read_text(file, "a file of poses, such as config/poses.yaml of a workspace")
     reader = _Reader(str(file), points)
-    poses = reader.poses(compose_yaml(text, str(file), _MISSING, "TRN011", _FORM))
+    poses = reader.poses(compose_yaml(text, str(file), "TRN011", _FORM))
     if reader.findings:
         raise PursueError(reader.findings, exit_status=2)
     return poses

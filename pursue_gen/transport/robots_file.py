@@ -24,22 +24,19 @@ _HOST = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_.-]{0,251}[A-Za-z0-9_])?|[0-9A-Fa-f
 _STRING, _INTEGER, _BOOLEAN = "tag:yaml.org,2002:str", "tag:yaml.org,2002:int", "tag:yaml.org,2002:bool"
 _NULL, _FLOAT = "tag:yaml.org,2002:null", "tag:yaml.org,2002:float"
 _EXAMPLE = "robots:, and below it lines such as   bot1: {host: bot1.local}"
-_MISSING = error(
-    "TRN020", "PyYAML is missing, which reads robots.yaml", hint="pip install PyYAML (Debian: python3-yaml)"
-)
 
 Entries = Dict[str, Tuple[Any, Any]]
 """Key → its node and its value's."""
 
 
 def read_robots(file: Path) -> Tuple[Robot, ...]:
-    """The robots of a file, in its order. Raises PursueError: exit status 2, or 6 where PyYAML is missing."""
+    """The robots of a file, in its order. Raises PursueError (exit status 2)."""
     text = read_text(file, "a file of robots, such as robots.yaml")
     hint = f"write {_EXAMPLE}"
     if len(text) > _LARGEST:
         raise PursueError([error("TRN021", f"{file} has more than {_LARGEST} letters", hint=hint)], 2)
     reader = _Reader(file)
-    robots = reader.robots(compose_yaml(text, str(file), _MISSING, "TRN021", hint))
+    robots = reader.robots(compose_yaml(text, str(file), "TRN021", hint))
     if reader.findings:
         raise PursueError(reader.findings, 2)
     return robots

@@ -69,7 +69,7 @@ def generate(
         "expected": _expected(network, objective, scenario, controllers),
         "ui": _ui_settings(values, scenario),
         "controllers": _controllers(values),
-        "trace": f"- {{at: 2.0, do: {trace}}}\n".encode() if trace else b"[]\n",
+        "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
     files: Dict[str, bytes] = {}
     packages = _with_mission(_packages(scenario, subs, data, options), scenario)

@@ -31,11 +31,6 @@ _PATH = re.compile(r"~?/[A-Za-z0-9_./+-]*", re.ASCII)  # ssh gives it to a shell
 _KEYS = ("format", "master", "machines")
 _MACHINE_KEYS = ("nodes", "user", "env_loader")
 _EXAMPLE = "for example   bot1.local: {nodes: [controller_bot1], user: ros, env_loader: /home/ros/mission/devel/env.sh}"
-_MISSING = error(
-    "TRN044",
-    "PyYAML is missing, which reads machines.yaml",
-    hint="pip install PyYAML (Debian: python3-yaml), or leave --machines out",
-)
 
 
 @dataclass(frozen=True)
@@ -78,7 +73,7 @@ def nodes_of(controllers: Sequence[str]) -> Tuple[str, ...]:
 def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
     """What a machines.yaml says about these nodes, and what is to be told about it.
 
-    Raises PursueError with all that is wrong in it (exit status 2; 6 where PyYAML is missing).
+    Raises PursueError with all that is wrong in it (exit status 2).
     """
     return parse_machines(read_text(file, "a file of machines, such as machines.yaml"), str(file), nodes)
 
@@ -86,7 +81,7 @@ def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Dia
 def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
     """The same for a text; `file` is its name in messages."""
     reader = _Reader(file, nodes)
-    found = reader.read(compose_yaml(text, file, _MISSING, "TRN040", _EXAMPLE))
+    found = reader.read(compose_yaml(text, file, "TRN040", _EXAMPLE))
     if reader.problems:
         raise PursueError(in_order(reader.problems), 2)
     homeless = [node for node in nodes if node not in reader.placed]

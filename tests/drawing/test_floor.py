@@ -15,8 +15,6 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor, read_floor
 
-pytest.importorskip("yaml", reason="PyYAML reads map files")
-
 GOOD = "image: floor.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 from pathlib import Path
 from typing import Any, List, Tuple
 
@@ -142,21 +141,6 @@ def test_no_text_ends_in_anything_else_than_findings(tmp_path_factory: Any, data
     else:
         assert robots
         assert len({(robot.host, robot.port) for robot in robots}) == len(robots)
-
-
-def test_without_pyyaml_it_is_told_how_to_get_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without(name: str, *rest: Any) -> Any:
-        if name == "yaml":
-            raise ImportError(name)
-        return real(name, *rest)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(PursueError) as problem:
-        read(folder, GOOD)
-    assert problem.value.exit_status == 6
-    assert problem.value.diagnostics[0].code == "TRN020"
 
 
 def test_some_robots_are_chosen_in_the_order_of_the_file(folder: Path) -> None:
