@@ -21,7 +21,7 @@ from pursue_gen.cli.progress import in_words, progress_line
 from pursue_gen.synthesis.limits import PROVING, Progress
 from pursue_gen.synthesis.native import engine as native
 from tests.cli.test_commands import FIRST, ROOT, Outcome, called
-from tests.crowds import crowd
+from tests.large_scenarios import many_walkers
 
 ERASE = "\r\033[K"
 IMPATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = line._REDRAW = 0.0"
@@ -74,7 +74,7 @@ def on_terminal(
 @pytest.fixture(scope="module")
 def large(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("large") / "crowd.pur"
-    file.write_text(crowd(), encoding="utf-8")
+    file.write_text(many_walkers(), encoding="utf-8")
     return file
 
 

@@ -26,7 +26,7 @@ from pursue_gen.workspace.packages import SHARED
 from tests.waiting import PATIENCE
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
-SAY = Path(__file__).resolve().parent / "say.py"
+PUBLISH_EVENT = Path(__file__).resolve().parent / "publish_event.py"
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
 

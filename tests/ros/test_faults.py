@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Callable, Dict, List, NamedTuple, Tuple
 
 import pytest
+from launched_mission import EVENTS, LaunchedMission, launched
 from ros_world import Ros, generated, make
-from stage import EVENTS, Stage, staged
 
 from tests.waiting import PATIENCE
 
@@ -27,7 +27,7 @@ STEPS = [
 """Scenario 1 from start to goal, where every movement takes the middle of its window, and commands no time."""
 
 ORDERS = {"bot1": ["[0.0, 3.1]", "bot1_inb"], "bot2": ["[5.13, 0.0]", "bot2_ina"]}
-"""What each robot is told in it."""
+"""The orders that each robot gets in it."""
 
 FAKE_PLANNER = Path(__file__).resolve().parent / "fake_planner.py"
 
@@ -43,24 +43,24 @@ def scenario(built: Build) -> Path:
     return built("thesis/scenario_1")
 
 
-def told(stage: Stage) -> Dict[str, List[str]]:
-    """What each robot was told, by robot."""
-    return {robot: [order for who, order in stage.orders() if who == robot] for robot in ORDERS}
+def orders_of(run: LaunchedMission) -> Dict[str, List[str]]:
+    """The orders that each robot got, by robot."""
+    return {robot: [order for who, order in run.orders() if who == robot] for robot in ORDERS}
 
 
-def check_steps(stage: Stage) -> None:
+def check_steps(run: LaunchedMission) -> None:
     """Each step was taken once, each robot's in their order, and bot2 has waited for bot1. Apart from that either robot
     may be the first: commands may come late."""
-    steps = stage.steps()
+    steps = run.steps()
     for who in ("reachObj", "bot1", "bot2"):
         own, wanted = ([step for step in some if step.startswith(who)] for some in (steps, STEPS))
         assert own == wanted, steps
     assert len(steps) == len(STEPS) and steps.index("bot1_inbDONE") < steps.index("bot2_ina"), steps
 
 
-def check_time(stage: Stage) -> None:
+def check_time(run: LaunchedMission) -> None:
     """The states are one mission: numbers and stamps never go back, and clocks run with the stamps."""
-    states = [state for state in stage.states() if state.seq > 0]
+    states = [state for state in run.states() if state.seq > 0]
     for before, after in zip(states, states[1:]):
         passed = float(after["stamp"]) - float(before["stamp"])
         assert passed >= -1e-6 and after.seq >= before.seq, (before, after)
@@ -90,76 +90,78 @@ class Turn(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def turns(ros: Ros, scenario: Path, tmp_path_factory: pytest.TempPathFactory) -> Tuple[Stage, List[Turn]]:
+def turns(ros: Ros, scenario: Path, tmp_path_factory: pytest.TempPathFactory) -> Tuple[LaunchedMission, List[Turn]]:
     """One mission in which each node is killed in turn; a slow one, so that nodes are back before the next turn."""
     found = []
     folder = tmp_path_factory.mktemp("turns")
-    with staged(ros, scenario, folder, use_sim_time=True, speed=0.5, delays="middle", lost_after=FOR_EVER) as stage:
+    with launched(ros, scenario, folder, use_sim_time=True, speed=0.5, delays="middle", lost_after=FOR_EVER) as run:
         for step, sign, nodes in TURNS:
-            stage.until_step(step)
-            states = stage.states()
+            run.until_step(step)
+            states = run.states()
             before, known = states[-1].seq, len(states)
-            killed = [(node, stage.kill(node, sign)) for node in nodes]
+            killed = [(node, run.kill(node, sign)) for node in nodes]
             for node, process in killed:
-                stage.until_back(node, process)
-            heard = stage.until(lambda known=known: stage.states()[known:])
+                run.until_back(node, process)
+            heard = run.until(lambda known=known: run.states()[known:])
             found.append(Turn(before, [state.seq for state in heard]))
-        stage.until_over()
-    return stage, found
+        run.until_over()
+    return run, found
 
 
 @pytest.mark.parametrize("turn", range(len(TURNS)), ids=[f"{sign.name} {' '.join(nodes)}" for _, sign, nodes in TURNS])
-def test_after_a_kill_the_mission_goes_on_from_the_same_state(turns: Tuple[Stage, List[Turn]], turn: int) -> None:
+def test_after_a_kill_the_mission_goes_on_from_the_same_state(
+    turns: Tuple[LaunchedMission, List[Turn]], turn: int
+) -> None:
     before, heard = turns[1][turn]
     assert heard, "no state was heard until the node was back"
     assert heard[0] in (before, before + 1)
 
 
 def test_where_each_node_is_killed_in_turn_every_step_is_taken_once_and_in_order(
-    turns: Tuple[Stage, List[Turn]]
+    turns: Tuple[LaunchedMission, List[Turn]]
 ) -> None:
-    stage = turns[0]
-    check_steps(stage)
-    assert stage.now().status == "won" and "finished cleanly" in stage.verdict(), stage.output()
-    check_time(stage)
-    for robot, orders in told(stage).items():
+    run = turns[0]
+    check_steps(run)
+    assert run.now().status == "won" and "finished cleanly" in run.verdict(), run.output()
+    check_time(run)
+    for robot, orders in orders_of(run).items():
         assert list(dict.fromkeys(orders)) == ORDERS[robot]  # a controller that comes back says again what is under way
         assert len(orders) <= len(ORDERS[robot]) + 1
-    assert stage.crashes() == [], stage.output()
+    assert run.crashes() == [], run.output()
 
 
 def test_a_command_that_nobody_heard_is_said_until_it_is_answered(ros: Ros, scenario: Path, tmp_path: Path) -> None:
     """The observer is away when the first commands come, for longer than until they are said for the second time."""
-    with staged(ros, scenario, tmp_path, use_sim_time=True, speed=3, delays="middle") as stage:
-        stage.until_step("reachObj_going_initial_location2unlocked")
-        stage.kill("observer")
-        assert stage.until_over() == "won", stage.output()
-    check_steps(stage)
+    with launched(ros, scenario, tmp_path, use_sim_time=True, speed=3, delays="middle") as run:
+        run.until_step("reachObj_going_initial_location2unlocked")
+        run.kill("observer")
+        assert run.until_over() == "won", run.output()
+    check_steps(run)
 
 
 def test_all_nodes_may_be_killed_at_once(ros: Ros, scenario: Path, tmp_path: Path) -> None:
-    with staged(
+    with launched(
         ros, scenario, tmp_path, use_sim_time=True, speed=2, delays="middle", lost_after=FOR_EVER
-    ) as stage:
-        before = stage.until_step("bot2_c2a")
-        stage.until(lambda: float(stage.now()["stamp"]) > float(before["stamp"]))
-        processes = {node: stage.pid(node) for node in NODES}
+    ) as run:
+        before = run.until_step("bot2_c2a")
+        run.until(lambda: float(run.now()["stamp"]) > float(before["stamp"]))
+        processes = {node: run.pid(node) for node in NODES}
         for node in NODES:
-            stage.kill(node)
+            run.kill(node)
         for node, process in processes.items():
-            stage.until_back(node, process)
-        stage.until_step("bot2_ina")
-        sleeping = stage.kill("UI", signal.SIGSTOP)
-        stage.until(lambda: stage.now().status == "won")
+            run.until_back(node, process)
+        run.until_step("bot2_ina")
+        sleeping = run.kill("UI", signal.SIGSTOP)
+        run.until(lambda: run.now().status == "won")
         os.kill(sleeping, signal.SIGKILL)  # it never knew, and the observer is about to end
-        status = stage.until_over()
-    assert status == "won" and "finished cleanly" in stage.verdict(), stage.output()
+        status = run.until_over()
+    assert status == "won" and "finished cleanly" in run.verdict(), run.output()
     # The clock may be back long before the others: who is late then may make the mission hold.
-    holds = {state.seq for state in stage.states() if state.seq > before.seq and "event" not in state}
-    assert stage.now().seq == before.seq + 6 + len(holds)
-    check_steps(stage)
-    check_time(stage)
-    assert stage.crashes() == [], stage.output()
+    holds = {state.seq for state in run.states() if state.seq > before.seq and "event" not in state}
+    assert run.now().seq == before.seq + 6 + len(holds)
+    check_steps(run)
+    check_time(run)
+    assert run.crashes() == [], run.output()
 
 
 # Words that should not be ---------------------------------------------------------------------------------------------
@@ -180,26 +182,26 @@ NO_TEXT = ["ff", "c3", "eda080", "00ff00ff"]
 
 def test_words_that_should_not_be_harm_nothing(ros: Ros, scenario: Path, tmp_path: Path) -> None:
     """Each word of the mission comes three times, and among them is everything that nobody should say."""
-    with staged(ros, scenario, tmp_path, use_sim_time=True, speed=3, delays="middle") as stage:
-        stage.tell({"repeat": [0.0, 1.0]})
-        stage.until_step("bot2_c2a")
-        processes = {node: stage.pid(node) for node in NODES}
+    with launched(ros, scenario, tmp_path, use_sim_time=True, speed=3, delays="middle") as run:
+        run.order({"repeat": [0.0, 1.0]})
+        run.until_step("bot2_c2a")
+        processes = {node: run.pid(node) for node in NODES}
         # Of what is impossible two are ignored without a count.
         more = {"unreadable": len(UNREADABLE), "impossible": len(IMPOSSIBLE) - 2, "stale": len(STALE)}
-        least = {name: int(stage.values("observer").get(name, 0)) + number for name, number in more.items()}
-        stage.say(*UNREADABLE, *IMPOSSIBLE, *STALE)
-        stage.tell({"bytes": NO_TEXT})
-        stage.until(lambda: all(int(stage.values("observer").get(name, 0)) >= count for name, count in least.items()))
-        stage.until_step("bot1_inb")
-        stage.say("bot1_going_c_to_b2b", "bot2_going_c_to_a2a", "bot2_ina@7", *UNREADABLE, *STALE)
-        assert {node: stage.pid(node) for node in NODES} == processes
-        status = stage.until_over()
-        stage.until(lambda: stage.of(EVENTS, "observer"))
-    assert (status, told(stage)) == ("won", ORDERS), stage.output()
-    check_steps(stage)
-    check_time(stage)
-    assert [entry["data"] for entry in stage.of(EVENTS, "observer")] == ["Finish!"]
-    assert stage.crashes() == [] and len(stage.output()) < 200000
+        least = {name: int(run.values("observer").get(name, 0)) + number for name, number in more.items()}
+        run.publish(*UNREADABLE, *IMPOSSIBLE, *STALE)
+        run.order({"bytes": NO_TEXT})
+        run.until(lambda: all(int(run.values("observer").get(name, 0)) >= count for name, count in least.items()))
+        run.until_step("bot1_inb")
+        run.publish("bot1_going_c_to_b2b", "bot2_going_c_to_a2a", "bot2_ina@7", *UNREADABLE, *STALE)
+        assert {node: run.pid(node) for node in NODES} == processes
+        status = run.until_over()
+        run.until(lambda: run.of(EVENTS, "observer"))
+    assert (status, orders_of(run)) == ("won", ORDERS), run.output()
+    check_steps(run)
+    check_time(run)
+    assert [entry["data"] for entry in run.of(EVENTS, "observer")] == ["Finish!"]
+    assert run.crashes() == [] and len(run.output()) < 200000
 
 
 # Robots that do not do what they should -------------------------------------------------------------------------------
@@ -229,33 +231,33 @@ def either(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_early_and_late_robots_are_followed_failed_ones_replaced_and_where_nobody_is_left_it_stops(
     ros: Ros, either: Path, tmp_path: Path
 ) -> None:
-    """The robots are the witness: it says what becomes of their orders, each while the model has time for it."""
-    with staged(ros, either, tmp_path, simulate=False, use_sim_time=True, speed=2, lost_after=FOR_EVER) as stage:
-        stage.until_step("bot1_b2a")
-        stage.say("bot1_going_b_to_a2a")
-        assert stage.until_step("bot1_going_b_to_a2a")["clocks"]["Cbot2"] < 9, "the model says 10 and more"
-        stage.until(lambda: stage.values("observer").get("untimely") == "1")
-        stage.until_step("fetch")
-        assert told(stage)["bot2"] == []
+    """The test plays the robots: it reports what becomes of their orders, each while the model has time for it."""
+    with launched(ros, either, tmp_path, simulate=False, use_sim_time=True, speed=2, lost_after=FOR_EVER) as run:
+        run.until_step("bot1_b2a")
+        run.publish("bot1_going_b_to_a2a")
+        assert run.until_step("bot1_going_b_to_a2a")["clocks"]["Cbot2"] < 9, "the model says 10 and more"
+        run.until(lambda: run.values("observer").get("untimely") == "1")
+        run.until_step("fetch")
+        assert orders_of(run)["bot2"] == []
 
-        stage.say("bot1:_failed_")
-        stage.until(lambda: "plan" in stage.now())
-        hold = next(state for state in stage.states() if state.status == "holding" and "lost" in state)
+        run.publish("bot1:_failed_")
+        run.until(lambda: "plan" in run.now())
+        hold = next(state for state in run.states() if state.status == "holding" and "lost" in state)
         assert (hold["lost"], hold["reason"]) == ("bot1", "bot1 has failed; looking for another plan")
-        stage.until_step("bot2_c2b")
+        run.until_step("bot2_c2b")
 
-        stage.until(lambda: "bot2" in stage.values("observer").get("late", "").split())
-        assert (stage.now().status, stage.now()["lost"]) == ("running", "bot1")
-        stage.say("bot2_going_c_to_b2b")
-        stage.until_step("bot2_b2a")
-        orders = len(stage.orders())
-        stage.say("bot2:_failed_")
-        status = stage.until_over()
-        last = stage.now()
+        run.until(lambda: "bot2" in run.values("observer").get("late", "").split())
+        assert (run.now().status, run.now()["lost"]) == ("running", "bot1")
+        run.publish("bot2_going_c_to_b2b")
+        run.until_step("bot2_b2a")
+        orders = len(run.orders())
+        run.publish("bot2:_failed_")
+        status = run.until_over()
+        last = run.now()
     assert status == "stopped" and last["lost"] == "bot1,bot2", last
     assert "bot2 has failed" in last["reason"] and "no other plan: " in last["reason"]
-    assert len(stage.orders()) == orders and "exit code 1" in stage.verdict()
-    assert "The mission was stopped" in stage.output() and last["reason"] in stage.output()
+    assert len(run.orders()) == orders and "exit code 1" in run.verdict()
+    assert "The mission was stopped" in run.output() and last["reason"] in run.output()
 
 
 def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_reports(
@@ -264,20 +266,20 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
     """The plan goes to everybody before it is in force, and outlives the observer for who comes later."""
     request, leave = tmp_path / "request", tmp_path / "leave"
     planner = f"python3 {FAKE_PLANNER} {scenario / 'src'} {request} {leave}"
-    with staged(
+    with launched(
         ros, scenario, tmp_path, simulate=False, use_sim_time=True, speed=3, lost_after=8, planner=planner,
         planning_limit=PATIENCE,
-    ) as stage:
-        stage.until_step("bot2_c2a")
-        stage.say("bot1_going_c_to_b2b")
-        stage.until_step("bot1_inb")
-        stage.say("bot1_inbDONE")
-        hold = stage.until(lambda: stage.now().status == "holding" and stage.now())
+    ) as run:
+        run.until_step("bot2_c2a")
+        run.publish("bot1_going_c_to_b2b")
+        run.until_step("bot1_inb")
+        run.publish("bot1_inbDONE")
+        hold = run.until(lambda: run.now().status == "holding" and run.now())
         assert hold["lost"] == "bot2" and "looking for another plan" in hold["reason"]
-        stage.say(f"bot1:bot1_b2c@{hold.seq}")  # at another time it could be
-        stage.until(lambda: stage.values("observer").get("held") == "1")
+        run.publish(f"bot1:bot1_b2c@{hold.seq}")  # at another time it could be
+        run.until(lambda: run.values("observer").get("held") == "1")
         leave.touch()
-        running = stage.until(lambda: stage.now().status == "running" and stage.now())
+        running = run.until(lambda: run.now().status == "running" and run.now())
         assert (running["plan"], running["lost"], running.seq) == ("1", "bot2", hold.seq + 1)
         (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*")
         calls = [json.loads(line) for line in journal.read_text().rpartition("\n")[0].splitlines()[1:]]
@@ -286,16 +288,16 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
         assert has == {f"{node}:_plan_@1" for node in ("controller_bot1", "controller_bot2", "controllerObj")}
         assert json.loads(request.read_text())["excused"] == ["bot2"]
 
-        stage.until_back("observer", stage.kill("observer"))
-        stage.until_back("controller_bot2", stage.kill("controller_bot2"))
-        assert (stage.now()["plan"], stage.now().seq) == ("1", running.seq)
-        stage.say("bot2_going_c_to_a2a")
-        assert "lost" not in stage.until_step("bot2_ina")
-        stage.say("bot2_inaDONE")
-        status = stage.until_over()
-    assert (status, stage.steps()) == ("won", [step for step in STEPS if step != "bot2_going_c_to_a2a"][:6] + [
-        "bot2_going_c_to_a2a", "bot2_ina", "bot2_inaDONE"]), stage.output()
-    check_time(stage)
+        run.until_back("observer", run.kill("observer"))
+        run.until_back("controller_bot2", run.kill("controller_bot2"))
+        assert (run.now()["plan"], run.now().seq) == ("1", running.seq)
+        run.publish("bot2_going_c_to_a2a")
+        assert "lost" not in run.until_step("bot2_ina")
+        run.publish("bot2_inaDONE")
+        status = run.until_over()
+    assert (status, run.steps()) == ("won", [step for step in STEPS if step != "bot2_going_c_to_a2a"][:6] + [
+        "bot2_going_c_to_a2a", "bot2_ina", "bot2_inaDONE"]), run.output()
+    check_time(run)
 
 
 # Nodes that are gone for longer ---------------------------------------------------------------------------------------
@@ -304,52 +306,52 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
 def test_without_a_controller_the_mission_holds_and_goes_on_when_it_is_back(
     ros: Ros, scenario: Path, tmp_path: Path
 ) -> None:
-    with staged(
+    with launched(
         ros, scenario, tmp_path, use_sim_time=True, speed=2, delays="middle", silence=4, respawn=False
-    ) as stage:
-        stage.until_step("bot2_c2a")
-        frozen = stage.kill("controller_bot1", signal.SIGSTOP)
+    ) as run:
+        run.until_step("bot2_c2a")
+        frozen = run.kill("controller_bot1", signal.SIGSTOP)
         why = "controller_bot1 is silent"
-        hold = stage.until(lambda: next((state for state in stage.states() if state["reason"] == why), None))
-        before = [state for state in stage.states() if state.seq < hold.seq][-1]  # robots may have arrived meanwhile
+        hold = run.until(lambda: next((state for state in run.states() if state["reason"] == why), None))
+        before = [state for state in run.states() if state.seq < hold.seq][-1]  # robots may have arrived meanwhile
         assert hold.status == "holding" and hold.seq == before.seq + 1
         os.kill(frozen, signal.SIGCONT)
-        stage.until(lambda: stage.now().status == "running")
+        run.until(lambda: run.now().status == "running")
 
-        stage.until_step("bot1_inb")
-        stage.kill("controller_bot2")
-        hold = stage.until(lambda: stage.now()["reason"] == "controller_bot2 is silent" and stage.now())
-        assert hold.status == "holding" and "bot2_ina" not in stage.steps()
-        with stage.node("controller_bot2", "controller_bot2"):
-            stage.until_step("bot2_ina")
-            status = stage.until_over()
-    assert (status, told(stage)) == ("won", ORDERS), stage.output()
-    check_steps(stage)
-    check_time(stage)
+        run.until_step("bot1_inb")
+        run.kill("controller_bot2")
+        hold = run.until(lambda: run.now()["reason"] == "controller_bot2 is silent" and run.now())
+        assert hold.status == "holding" and "bot2_ina" not in run.steps()
+        with run.node("controller_bot2", "controller_bot2"):
+            run.until_step("bot2_ina")
+            status = run.until_over()
+    assert (status, orders_of(run)) == ("won", ORDERS), run.output()
+    check_steps(run)
+    check_time(run)
 
 
 def test_who_comes_later_sees_the_mission_and_a_stop_ends_everybody_with_status_1(
     ros: Ros, scenario: Path, tmp_path: Path
 ) -> None:
     """Nothing is started again here but by hand."""
-    with staged(ros, scenario, tmp_path, required=False, respawn=False, time_unit=6) as stage:
-        before = stage.until_step("bot2_c2a")
-        stage.kill("observer")
-        stage.say("Finish!")  # not the observer's
+    with launched(ros, scenario, tmp_path, required=False, respawn=False, time_unit=6) as run:
+        before = run.until_step("bot2_c2a")
+        run.kill("observer")
+        run.publish("Finish!")  # not the observer's
         time.sleep(2.5)
-        known = len(stage.states())
-        with stage.node("observer", "observer") as observer, stage.node("UI", "UI", "__name:=UI2") as late:
-            stage.until(lambda: "the mission runs" in late.output())
-            after = stage.until(lambda: stage.states()[known:])[-1]
+        known = len(run.states())
+        with run.node("observer", "observer") as observer, run.node("UI", "UI", "__name:=UI2") as late:
+            run.until(lambda: "the mission runs" in late.output())
+            after = run.until(lambda: run.states()[known:])[-1]
             assert (after.seq, after.status) == (before.seq, "running")
-            assert stage.pid("UI") and stage.pid("controller_bot1")
-            orders = stage.orders()
-            stage.say("_stop_")
+            assert run.pid("UI") and run.pid("controller_bot1")
+            orders = run.orders()
+            run.publish("_stop_")
             stopped = time.monotonic()
             assert (late.wait(), observer.wait()) == (1, 1)
-            stage.until_over()
+            run.until_over()
             assert time.monotonic() - stopped < 60  # some seconds, on a machine that does nothing else
-    assert "The mission was stopped" in late.output() and stage.orders() == orders
-    ended = dict(re.findall(r"\[(\w+)-\d+\] process has died \[pid \d+, exit code (-?\d+)", stage.output()))
+    assert "The mission was stopped" in late.output() and run.orders() == orders
+    ended = dict(re.findall(r"\[(\w+)-\d+\] process has died \[pid \d+, exit code (-?\d+)", run.output()))
     nodes = [node for node in NODES if node != "sim_clock"]
-    assert ended == {**dict.fromkeys(nodes, "1"), "observer": "-9"}, stage.output()
+    assert ended == {**dict.fromkeys(nodes, "1"), "observer": "-9"}, run.output()

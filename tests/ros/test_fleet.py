@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List
 
 import pytest
-from ros_world import SAY, Ros, make
-from stage import ready
+from launched_mission import ready
+from ros_world import PUBLISH_EVENT, Ros, make
 from test_links import Nodes, nodes, until
 
 from pursue_gen.language import load
@@ -143,7 +143,7 @@ class Fleet:
         """Says _start_ once every node is ready for the mission of this scenario."""
         runs = self.said("the mission runs")
         until(lambda: ready(self.made.log("base"), scenario), self.made.logs)
-        self.made.start("start", f"exec python3 {SAY} _start_", "desk")
+        self.made.start("start", f"exec python3 {PUBLISH_EVENT} _start_", "desk")
         until(lambda: self.said("the mission runs") > runs, self.made.logs)
 
     @contextlib.contextmanager

@@ -35,7 +35,7 @@ Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
 
-CRIER = Path(__file__).resolve().parent / "town_crier.py"
+BRIDGE = Path(__file__).resolve().parent / "topic_bridge.py"
 DESK, STRANGER = (Ed25519PrivateKey.from_private_bytes(bytes([number]) * 32) for number in (1, 2))
 
 
@@ -44,22 +44,22 @@ def state(seq: int, stamp: int, status: str) -> Dict[str, Any]:
     return {"seq": seq, "stamp": {"secs": stamp, "nsecs": 0}, "time_unit": 1.0, "status": status}
 
 
-class Town:
-    """A reader under roslaunch in namespace bot1, and a node that speaks and listens."""
+class RunningReader:
+    """A reader under roslaunch in namespace bot1, and a node that publishes and subscribes."""
 
-    def __init__(self, folder: Path, uri: str, crier: "subprocess.Popen[bytes]") -> None:
-        self.folder, self._uri, self._crier = folder, uri, crier
+    def __init__(self, folder: Path, uri: str, bridge: "subprocess.Popen[bytes]") -> None:
+        self.folder, self._uri, self._bridge = folder, uri, bridge
 
-    def say(self, topic: str, *texts: str) -> None:
-        """Publishes these."""
-        assert self._crier.stdin is not None
+    def publish(self, topic: str, *texts: str) -> None:
+        """Publishes these texts."""
+        assert self._bridge.stdin is not None
         for text in texts:
-            self._crier.stdin.write(json.dumps({"topic": topic, "data": text}).encode() + b"\n")
-        self._crier.stdin.flush()
+            self._bridge.stdin.write(json.dumps({"topic": topic, "data": text}).encode() + b"\n")
+        self._bridge.stdin.flush()
 
     def statuses(self) -> List[Dict[str, Any]]:
-        """What the reader has said so far."""
-        text = (self.folder / "heard").read_bytes()
+        """The statuses that the reader has published so far."""
+        text = (self.folder / "statuses").read_bytes()
         lines = text[: text.rfind(b"\n") + 1].splitlines()
         return [json.loads(json.loads(line)["data"]) for line in lines if line.startswith(b"{")]
 
@@ -67,9 +67,9 @@ class Town:
         """Waits until the last status is so."""
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
-            said = self.statuses()
-            if said and good(said[-1]):
-                return said[-1]
+            statuses = self.statuses()
+            if statuses and good(statuses[-1]):
+                return statuses[-1]
             time.sleep(0.05)
         log = (self.folder / "launch.log").read_text(errors="replace")
         raise AssertionError(f"not so after {PATIENCE} s: {self.statuses()[-1:]}\n{log[-4000:]}")
@@ -96,7 +96,7 @@ class Town:
 
 
 @contextlib.contextmanager
-def town(ros: Ros, workspace: Path, folder: Path) -> Iterator[Town]:
+def running_reader(ros: Ros, workspace: Path, folder: Path) -> Iterator[RunningReader]:
     keys = folder / "home" / "pursue" / "keys"
     keys.mkdir(parents=True)
     (keys / "desk.pub").write_text(write_public_key(DESK.public_key(), "desk"))
@@ -105,21 +105,22 @@ def town(ros: Ros, workspace: Path, folder: Path) -> Iterator[Town]:
         command = "source devel/setup.bash; exec roslaunch --skip-log-check pursue_reader pursue_reader.launch"
         command += " nodes:='observer, UI controller_bot1 controller_bot2'"
         launch = ros.start(command, workspace, folder / "launch.log", ROS_NAMESPACE="bot1", **there)
-        crier = subprocess.Popen(
-            ["bash", "-c", f"source devel/setup.bash; exec python3 {CRIER} /bot1/mission_status"],
-            cwd=workspace,
-            env={**ros.environment, **there},
-            stdin=subprocess.PIPE,
-            stdout=open(folder / "heard", "wb"),  # noqa: SIM115 (the child keeps it)
-            stderr=open(folder / "crier.log", "wb"),  # noqa: SIM115
-            start_new_session=True,
-        )
+        with open(folder / "statuses", "wb") as statuses, open(folder / "bridge.log", "wb") as log:
+            bridge = subprocess.Popen(
+                ["bash", "-c", f"source devel/setup.bash; exec python3 {BRIDGE} /bot1/mission_status"],
+                cwd=workspace,
+                env={**ros.environment, **there},
+                stdin=subprocess.PIPE,
+                stdout=statuses,
+                stderr=log,
+                start_new_session=True,
+            )
         try:
-            yield Town(folder, there["ROS_MASTER_URI"], crier)
+            yield RunningReader(folder, there["ROS_MASTER_URI"], bridge)
         finally:
-            if crier.stdin is not None:
-                crier.stdin.close()
-            for process in (launch, crier):
+            if bridge.stdin is not None:
+                bridge.stdin.close()
+            for process in (launch, bridge):
                 end(process)
 
 
@@ -129,36 +130,36 @@ def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, bu
     manifest = make_manifest("scenario_1", "0", ("controller_bot1", "controller_bot2"), data)
     digest, bundle = manifest.digest, pack(manifest, data, DESK)
     workspace = built("thesis/scenario_1")
-    with town(ros, workspace, tmp_path) as there:
+    with running_reader(ros, workspace, tmp_path) as there:
         first = there.until(lambda status: True)
         assert first["current"] == "" and first["answer"] is None and first["robot"] == "bot1"
         assert first["packages"] == ["UI", "controller_bot1", "controller_bot2", "observer"]
 
         strange = pack(manifest, data, STRANGER)
-        there.say("/bot1/local_mission", *(f"junk {number}" for number in range(200)))
-        there.say("/bot1/local_mission", there.order(PREPARE, digest, bundle, key=STRANGER))
-        there.say("/bot1/local_mission", there.order(PREPARE, digest, bundle, robot="bot2"))
-        there.say("/bot1/local_mission", there.order(PREPARE, digest, strange))
+        there.publish("/bot1/local_mission", *(f"junk {number}" for number in range(200)))
+        there.publish("/bot1/local_mission", there.order(PREPARE, digest, bundle, key=STRANGER))
+        there.publish("/bot1/local_mission", there.order(PREPARE, digest, bundle, robot="bot2"))
+        there.publish("/bot1/local_mission", there.order(PREPARE, digest, strange))
         refused = there.until(lambda status: status["answer"] is not None)
         assert refused["answer"]["code"] == "unknown_key" and refused["answer"]["ticket"] == first["ticket"]
         assert len(there.statuses()) == 2 and there.stored() == []
 
         prepare = there.order(PREPARE, digest, bundle)
-        there.say("/bot1/local_mission", prepare, prepare)
+        there.publish("/bot1/local_mission", prepare, prepare)
         prepared = there.until(lambda status: status["prepared"] == digest)
         assert prepared["answer"]["ok"] and prepared["answer"]["ticket"] == refused["ticket"]
-        there.say("/pursue/state", state(1, 1, "running"))
+        there.publish("/pursue/state", state(1, 1, "running"))
         there.until(lambda status: bool(status["mission_runs"]))
         commit = there.order(COMMIT, digest)
-        there.say("/bot1/local_mission", commit)
+        there.publish("/bot1/local_mission", commit)
         waiting = there.until(lambda status: status["next"] == digest)
         assert waiting["answer"]["code"] == "waiting" and waiting["current"] == ""
 
         there.kill()
         again = there.until(lambda status: status["answer"] is None and status["mission_runs"])
         assert (again["current"], again["next"], again["kept"]) == ("", digest, [digest])
-        there.say("/bot1/local_mission", prepare, commit)
-        there.say("/pursue/state", state(2, 9, "won"))
+        there.publish("/bot1/local_mission", prepare, commit)
+        there.publish("/pursue/state", state(2, 9, "won"))
         over = there.until(lambda status: status["current"] == digest)
         assert over["ticket"] == again["ticket"] and over["next"] is None and over["history"] == [""]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Dict, List, Mapping, Tuple
 
 import pytest
+from launched_mission import GOAL, LaunchedMission, launched, ready
 from ros_world import Ros, make
-from stage import GOAL, Stage, ready, staged
 
 from pursue_gen.language import load
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -92,52 +92,52 @@ class Store:
 class Day:
     """What one machine does from mission to mission."""
 
-    def __init__(self, stage: Stage) -> None:
-        self.stage = stage
+    def __init__(self, run: LaunchedMission) -> None:
+        self.run = run
 
     def last(self) -> Tuple[str, str]:
         """Mission and status of the last state."""
-        state = self.stage.now()
+        state = self.run.now()
         return str(state.get("mission", "")), state.status
 
     def until(self, mission: str, status: str) -> None:
         """Waits until such a state is the last one."""
-        self.stage.until(lambda: self.last() == (mission, status))
+        self.run.until(lambda: self.last() == (mission, status))
 
     def until_was(self, mission: str, status: str) -> None:
         """Waits until there was such a state: another one may soon follow."""
         wanted = (mission, status)
-        self.stage.until(lambda: wanted in [(state.get("mission"), state.status) for state in self.stage.states()])
+        self.run.until(lambda: wanted in [(state.get("mission"), state.status) for state in self.run.states()])
 
     def begin(self, mission: str, scenario: str) -> None:
         """Starts the mission of this scenario once everybody is ready for it."""
         self.until(mission, "waiting")
-        self.stage.until(lambda: ready(self.stage.output(), scenario))
-        self.stage.say("_start_")
+        self.run.until(lambda: ready(self.run.output(), scenario))
+        self.run.publish("_start_")
         self.until_was(mission, "running")
 
     def events(self, mission: str) -> List[str]:
         """What led to the mission's states, in order."""
-        states = [state for state in self.stage.states() if state.get("mission") == mission]
+        states = [state for state in self.run.states() if state.get("mission") == mission]
         taken = {state.seq: str(state["event"]) for state in states if "event" in state}
         return [taken[seq] for seq in sorted(taken)]
 
     def goals(self) -> List[Tuple[str, Tuple[float, float]]]:
         """Where robots were sent, in order."""
-        return [(entry["robot"], tuple(entry["data"])) for entry in self.stage.of(GOAL)]
+        return [(entry["robot"], tuple(entry["data"])) for entry in self.run.of(GOAL)]
 
 
 def test_what_the_desk_sends_is_played_after_the_mission_before_and_by_everybody(ros: Ros, tmp_path: Path) -> None:
     files = workspace_of("first", FIRST, tmp_path)
     first = mission_of("first", files)[0].digest
     workspace = make(ros, tmp_path / "ws")
-    store = Store(tmp_path / "stage" / "home")
+    store = Store(tmp_path / "run" / "home")
     second = store.put("second", workspace_of("second", SECOND, tmp_path))
     one, two = mission_id(first), mission_id(second)
     lab: Dict[str, object] = {"again": True, "received": True, "use_sim_time": True, "planner": "off"}
     lab.update({"speed": 3, "lost_after": 1000})  # an observer that is started again may take its time
-    with staged(ros, workspace, tmp_path / "stage", **lab) as stage:
-        day = Day(stage)
+    with launched(ros, workspace, tmp_path / "run", **lab) as run:
+        day = Day(run)
         day.begin(one, "first")
         day.until_was(one, "won")
         assert sorted(day.goals()) == [("bot1", (1.0, 0.0)), ("bot2", (0.0, 1.0))]
@@ -145,13 +145,13 @@ def test_what_the_desk_sends_is_played_after_the_mission_before_and_by_everybody
 
         store.switch(second)
         day.begin(two, "second")
-        stage.until(lambda: ("bot2", (7.0, 5.0)) in day.goals())
+        run.until(lambda: ("bot2", (7.0, 5.0)) in day.goals())
         store.switch("")  # the next one; this one goes on with what it has
-        observer, controller = stage.kill("observer"), stage.kill("controller_bot1")
-        stage.until_back("observer", observer)
-        stage.until_back("controller_bot1", controller)
+        observer, controller = run.kill("observer"), run.kill("controller_bot1")
+        run.until_back("observer", observer)
+        run.until_back("controller_bot1", controller)
         day.until_was(two, "won")
         assert day.events(two)[-1].startswith("seeX") and "seeZ" in day.events(two)
         assert dict(day.goals()[2:]) == {"bot2": (7.0, 5.0), "bot1": (5.0, 5.0)}
         day.until(one, "waiting")  # by now
-        assert stage.crashes() == []
+        assert run.crashes() == []

@@ -126,14 +126,14 @@ def test_the_address_of_the_page_is_told(package: Path, where: Dict[str, str]) -
     assert re.search(r"^The page is at http://[^/]+:\d+/\?token=[\w-]{20,}$", done.stdout, re.MULTILINE), done.stdout
 
 
-class Stage:
+class ObserverStub:
     """Plays the rest of the mission: whoever the UI waits for, and the observer's states."""
 
     def __init__(self, environment: Dict[str, str]) -> None:
-        code = (Path(__file__).parent / "ui_stage.py").read_text()
+        code = (Path(__file__).parent / "observer_stub.py").read_text()
         self.process = subprocess.Popen([sys.executable, "-c", code], env=environment, start_new_session=True)
 
-    def __enter__(self) -> "Stage":
+    def __enter__(self) -> "ObserverStub":
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -149,7 +149,7 @@ def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
 ) -> None:
     trace = tmp_path / "trace.yaml"
     trace.write_text("- {at: 0.1, do: thief_a2b}\n")
-    with Stage({**where, "STAGE_STATUS": status}):
+    with ObserverStub({**where, "LAST_STATUS": status}):
         done = run(package, where, "--trace", str(trace), "--wait", str(PATIENCE))
     assert done.returncode == code, done.stderr
     lines = [line.strip() for line in done.stdout.splitlines()]

@@ -40,7 +40,7 @@ from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.conftest import thesis_scenario
-from tests.crowds import crowd
+from tests.large_scenarios import many_walkers
 
 Game = Tuple[Network, Objective]
 AT_ONCE = {"seconds": Limits(seconds=1e-9), "memory": Limits(memory=1)}
@@ -113,7 +113,7 @@ def test_ctrl_c_while_the_progress_is_told_ends_an_engine(game: Game, engine: st
 
 @engines
 def test_of_a_large_game_it_is_told_how_far_it_got(engine: str) -> None:
-    scenario = parse(crowd(), "crowd.pur")
+    scenario = parse(many_walkers(), "crowd.pur")
     for seconds in (0.5, 5.0, 50.0):  # on a busy machine the time may be over before much is done
         with pytest.raises(PursueError) as failure:
             solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(seconds))
@@ -126,7 +126,7 @@ def test_of_a_large_game_it_is_told_how_far_it_got(engine: str) -> None:
 
 @engines
 def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
-    scenario = parse(crowd(), "crowd.pur")
+    scenario = parse(many_walkers(), "crowd.pur")
     most = memory_in_use() + 24
     with pytest.raises(PursueError) as failure:
         solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(1200, most))
@@ -142,7 +142,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
         from pursue_gen.synthesis.native import engine as native
         from pursue_gen.synthesis.game import compile_game
         from pursue_gen.tga import scenario_objective, translate
-        scenario = parse({crowd()!r}, "crowd.pur")
+        scenario = parse({many_walkers()!r}, "crowd.pur")
         game = compile_game(translate(scenario), scenario_objective(scenario))
         used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + (64 << 20), resource.RLIM_INFINITY))

@@ -11,7 +11,7 @@ from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.state import LOST, RUNNING, WAITING, SystemState
 from pursue_runtime.words import EVENTS, START, STATE
 
-UNIT = 10.0  # seconds; who hears of the start later than that skips what a trace says of its beginning
+UNIT = 10.0  # seconds; a node that learns of the start later than that skips the first entries of a trace
 begun = []
 
 
@@ -24,12 +24,12 @@ def publish(seq: int, passed: float, status: str, event: str = "", agent: str = 
     states.publish(message_of(SystemState(seq, stamp, where, values, clocks, event, agent, status, reason, UNIT)))
 
 
-def hear(message: String) -> None:
+def on_event(message: String) -> None:
     if message.data == START and not begun:
         begun.append(rospy.get_time())
         publish(1, 0.0, RUNNING)
     elif message.data == "thief_a2b":
-        publish(2, 3.0, os.environ["STAGE_STATUS"], "thief_a2b", "thief")
+        publish(2, 3.0, os.environ["LAST_STATUS"], "thief_a2b", "thief")
 
 
 def diagnose(_: object) -> None:
@@ -42,6 +42,6 @@ rospy.init_node("observer")
 states = rospy.Publisher(STATE, Message, queue_size=10, latch=True)
 diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
 publish(0, 0.0, WAITING)
-rospy.Subscriber(EVENTS, String, hear)
+rospy.Subscriber(EVENTS, String, on_event)
 rospy.Timer(rospy.Duration(0.2), diagnose)
 rospy.spin()

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A node of the tests: writes down whatever is said in a mission, and says what it is told, one JSON object a line.
+"""A node of the tests: logs the messages of a mission, and publishes what it reads, one JSON object a line.
 
 Standard output: {"at": seconds of a monotonic clock, "topic": …, "from": node, "data": …}, and for goals and actions
-"robot". Standard input: {"say": [texts]}, {"bytes": [hexadecimal texts]} (what is on the wire, right or wrong), or
-{"repeat": [seconds]}: from now on each word of another node is said again after so many seconds.
+"robot". Standard input: {"publish": [texts]}, {"bytes": [hexadecimal texts]} (what is on the wire, right or wrong), or
+{"repeat": [seconds]}: from now on each event of another node is published again after so many seconds.
 
-Usage: witness.py ROBOT…
+Usage: topic_logger.py ROBOT…
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class Bytes(String):
         buff.write(struct.pack(f"<I{len(self.data)}s", len(self.data), self.data))
 
 
-class Witness:
+class TopicLogger:
     """The node."""
 
     def __init__(self, robots: List[str]) -> None:
         self.lock = threading.Lock()
         self.delays: List[float] = []
-        self.voice = rospy.Publisher("pursue/events", String, queue_size=10000)
+        self.publisher = rospy.Publisher("pursue/events", String, queue_size=10000)
         self.raw = rospy.Publisher("pursue/events", Bytes, queue_size=1000)
         for topic, kind in (
             ("pursue/events", String),
@@ -45,18 +45,18 @@ class Witness:
             ("pursue/plan", String),
             ("/diagnostics", DiagnosticArray),
         ):
-            rospy.Subscriber(topic, kind, self.hear, callback_args=(topic, ""), queue_size=10000)
+            rospy.Subscriber(topic, kind, self.receive, callback_args=(topic, ""), queue_size=10000)
         for robot in robots:
             for topic, kind in (("move_base_simple/goal", PoseStamped), ("pursue/actions", String)):
-                rospy.Subscriber(f"{robot}/{topic}", kind, self.hear, callback_args=(topic, robot), queue_size=100)
+                rospy.Subscriber(f"{robot}/{topic}", kind, self.receive, callback_args=(topic, robot), queue_size=100)
 
-    def hear(self, message: Any, where: Any) -> None:
-        """Something was said."""
+    def receive(self, message: Any, where: Any) -> None:
+        """Logs a message; an event of another node is repeated where that is wanted."""
         topic, robot = where
         sender = message._connection_header["callerid"].strip("/")
         if topic == "pursue/events" and sender != rospy.get_name().strip("/"):
             for delay in self.delays:
-                threading.Timer(delay, self.voice.publish, (message.data,)).start()
+                threading.Timer(delay, self.publisher.publish, (message.data,)).start()
         self.write({"topic": topic, "from": sender, "robot": robot, "data": data_of(message)})
 
     def write(self, entry: Any) -> None:
@@ -64,17 +64,17 @@ class Witness:
         with self.lock:
             print(json.dumps({"at": time.monotonic(), **entry}), flush=True)
 
-    def obey(self, order: Any) -> None:
+    def execute(self, order: Any) -> None:
         """One line of the input."""
-        for text in order.get("say", ()):
-            self.voice.publish(text)
+        for text in order.get("publish", ()):
+            self.publisher.publish(text)
         for text in order.get("bytes", ()):
             self.raw.publish(Bytes(bytes.fromhex(text)))
         self.delays = order.get("repeat", self.delays)
 
 
 def data_of(message: Any) -> Any:
-    """What of a message is written down; of long texts the beginning."""
+    """What of a message is logged; of long texts the beginning."""
     if isinstance(message, DiagnosticArray):
         return [
             {"node": status.hardware_id, "level": status.level, "message": status.message,
@@ -87,11 +87,11 @@ def data_of(message: Any) -> Any:
 
 
 def main() -> None:
-    rospy.init_node("witness", disable_rosout=True)
-    witness = Witness(sys.argv[1:])
-    witness.write({"topic": "here", "from": "witness", "robot": "", "data": ""})
+    rospy.init_node("topic_logger", disable_rosout=True)
+    logger = TopicLogger(sys.argv[1:])
+    logger.write({"topic": "here", "from": "topic_logger", "robot": "", "data": ""})
     for line in sys.stdin:
-        witness.obey(json.loads(line))
+        logger.execute(json.loads(line))
 
 
 if __name__ == "__main__":

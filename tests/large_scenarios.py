@@ -1,9 +1,9 @@
-"""Scenarios that no solver is done with soon: many agents that walk about on their own."""
+"""Scenarios with state spaces that no solver explores soon: many agents that walk about on their own."""
 
 from __future__ import annotations
 
 
-def crowd(walkers: int = 7, pois: int = 8) -> str:
+def many_walkers(walkers: int = 7, pois: int = 8) -> str:
     """The text; each walker multiplies the states by more than its POIs. They keep the robot from its duty."""
     lines = [f'poi "p{k}"' for k in range(pois)]
     lines += [f"connect p{k} and p{(k + 1) % pois} distance {k % 3 + 2}" for k in range(pois)]

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A node of the tests: says what it is told on topics, and writes down what is said on others, of type String.
+"""A node of the tests: publishes what it reads, and prints what comes on other topics of type String.
 
 Standard input: one JSON object a line, {"topic": …, "data": …}, a text, or the fields of a SystemState; each topic is
-latched, and the first word on it waits until somebody listens. Standard output: the same for what is heard. Usage:
-town_crier.py TOPIC… (those it listens to).
+latched, and the first message on it waits for a subscriber. Standard output: the same for each message received. Usage:
+topic_bridge.py TOPIC… (those it subscribes to).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from std_msgs.msg import String
 
 
 def write(message: String, topic: str) -> None:
-    """Something was said."""
+    """Prints a message that was received."""
     sys.stdout.write(json.dumps({"topic": topic, "data": message.data}) + "\n")
     sys.stdout.flush()
 
@@ -35,20 +35,20 @@ def message_of(data: Any) -> genpy.Message:
 
 
 def main() -> None:
-    rospy.init_node("town_crier", disable_signals=True)
+    rospy.init_node("topic_bridge", disable_signals=True)
     for topic in sys.argv[1:]:
         rospy.Subscriber(topic, String, write, callback_args=topic, queue_size=1000)
-    voices: Dict[str, rospy.Publisher] = {}
+    publishers: Dict[str, rospy.Publisher] = {}
     for line in sys.stdin:
-        word = json.loads(line)
-        topic, message = word["topic"], message_of(word["data"])
-        if topic not in voices:
-            voices[topic] = rospy.Publisher(topic, type(message), queue_size=1000, latch=True)
+        entry = json.loads(line)
+        topic, message = entry["topic"], message_of(entry["data"])
+        if topic not in publishers:
+            publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1000, latch=True)
         deadline = time.monotonic() + 120
-        while not voices[topic].get_num_connections() and time.monotonic() < deadline:
+        while not publishers[topic].get_num_connections() and time.monotonic() < deadline:
             time.sleep(0.02)
-        voices[topic].publish(message)
-    rospy.signal_shutdown("all is said")
+        publishers[topic].publish(message)
+    rospy.signal_shutdown("the end of the input")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A node called like a controller: says each word that it reads on stdin; at `listen` it begins to hear the states."""
+"""A node with a controller's name: publishes each event on stdin; at `listen` it subscribes to the states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import rospy
 from std_msgs.msg import String
 
 rospy.init_node("controller_bot1")
-words = rospy.Publisher("pursue/events", String, queue_size=10)
+events = rospy.Publisher("pursue/events", String, queue_size=10)
 for line in sys.stdin:
     if line.strip() == "listen":
         rospy.wait_for_message("pursue/state", rospy.AnyMsg)
@@ -16,7 +16,7 @@ for line in sys.stdin:
         while not states.get_num_connections() and not rospy.is_shutdown():
             rospy.sleep(0.05)
     else:
-        while not words.get_num_connections() and not rospy.is_shutdown():
+        while not events.get_num_connections() and not rospy.is_shutdown():
             rospy.sleep(0.05)
-        words.publish(line.strip())
+        events.publish(line.strip())
     print(line.strip(), flush=True)

@@ -1,6 +1,4 @@
-"""A mission on a roscore of its own, under roslaunch, with a witness who writes down what is said: for tests that break
-things while it runs.
-"""
+"""A mission on a roscore of its own, under roslaunch, with a node that logs its topics, to inject faults."""
 
 from __future__ import annotations
 
@@ -20,12 +18,12 @@ from ros_world import Ros, end
 
 from tests.waiting import PATIENCE
 
-WITNESS = Path(__file__).resolve().parent / "witness.py"
+LOGGER = Path(__file__).resolve().parent / "topic_logger.py"
 EVENTS, STATE, GOAL, ACTION = "pursue/events", "pursue/system_state", "move_base_simple/goal", "pursue/actions"
 ENDED = ("won", "lost", "stopped")
 
-LAST_WORDS = 15.0
-"""Seconds after the end of a launch in which the witness may still write down what was said before it."""
+LOGGING_DELAY = 15.0
+"""Seconds after the end of a launch in which the logger may still log what was published before it."""
 
 INTERRUPTED = ("KeyboardInterrupt", "rospy.exceptions.ROSInitException", "rospy.exceptions.ROSInterruptException")
 """What a node dies of that is interrupted while it starts: as those do that were started again at the end."""
@@ -60,20 +58,20 @@ def read_state(text: str) -> State:
     return state
 
 
-def ready(said: str, scenario: str) -> bool:
+def ready(output: str, scenario: str) -> bool:
     """True where the UI that was started last is one of this scenario, and has found everybody ready."""
-    starts = list(re.finditer(r"^(\w+): waiting for ", said, re.MULTILINE))
-    return bool(starts) and starts[-1].group(1) == scenario and "All nodes are ready" in said[starts[-1].end():]
+    starts = list(re.finditer(r"^(\w+): waiting for ", output, re.MULTILINE))
+    return bool(starts) and starts[-1].group(1) == scenario and "All nodes are ready" in output[starts[-1].end():]
 
 
 class Node(NamedTuple):
-    """A node that was started by hand, and the file of what it says."""
+    """A node that was started by hand, and the file of its output."""
 
     process: "subprocess.Popen[bytes]"
     log: Path
 
     def output(self) -> str:
-        """What it has said."""
+        """Its output so far."""
         return self.log.read_text(errors="replace")
 
     def wait(self) -> int:
@@ -81,11 +79,11 @@ class Node(NamedTuple):
         return self.process.wait(PATIENCE)
 
 
-class Stage:
-    """A mission that runs. What was said is in `entries`, in the order of the witness's hearing."""
+class LaunchedMission:
+    """A mission that runs. Its messages are in `entries`, in the order in which the logger received them."""
 
     def __init__(self, folder: Path, uri: str, start: Callable[[str, Path], "subprocess.Popen[bytes]"]) -> None:
-        """`start` runs a command where the mission is; what it says goes to the file."""
+        """`start` runs a command where the mission is; its output goes to the file."""
         self.folder = folder
         self._start = start
         self.entries: List[Entry] = []
@@ -94,16 +92,16 @@ class Stage:
         self._uri = uri
         self._read = 0
         self._over = float("inf")
-        self.witness: Optional["subprocess.Popen[bytes]"] = None
+        self.logger: Optional["subprocess.Popen[bytes]"] = None
         self.launch: Optional["subprocess.Popen[bytes]"] = None
 
-    # What was said ----------------------------------------------------------------------------------------------------
+    # What was published -----------------------------------------------------------------------------------------------
 
     def look(self) -> List[Entry]:
-        """Reads on in the witness's account."""
-        with open(self.folder / "witness.jsonl", "rb") as account:
-            account.seek(self._read)
-            text = account.read()
+        """Reads what has been logged since the last call; all entries."""
+        with open(self.folder / "topics.jsonl", "rb") as log:
+            log.seek(self._read)
+            text = log.read()
         whole = text.rfind(b"\n") + 1
         self._read += whole
         for line in text[:whole].splitlines():
@@ -115,7 +113,7 @@ class Stage:
         return self.entries
 
     def of(self, topic: str, sender: str = "") -> List[Entry]:
-        """What was said on the topic, by this node or by anybody."""
+        """The messages on the topic, of this node or of all."""
         return [entry for entry in self.look() if entry["topic"] == topic and sender in ("", entry["from"])]
 
     def states(self) -> List[State]:
@@ -138,9 +136,9 @@ class Stage:
         return [events[seq] for seq in sorted(events)]
 
     def orders(self) -> List[Tuple[str, str]]:
-        """What robots were told, in order: (robot, action or place)."""
-        told = (entry for entry in self.look() if entry["topic"] in (GOAL, ACTION))
-        return [(entry["robot"], str(entry["data"])) for entry in told]
+        """The orders that robots got, in order: (robot, action or place)."""
+        orders = (entry for entry in self.look() if entry["topic"] in (GOAL, ACTION))
+        return [(entry["robot"], str(entry["data"])) for entry in orders]
 
     def values(self, node: str) -> Dict[str, str]:
         """The values of a node's last diagnostics."""
@@ -155,7 +153,7 @@ class Stage:
             if found:
                 return found
             if self.launch is not None and self.launch.poll() is not None:
-                self._over = min(self._over, time.monotonic() + LAST_WORDS)
+                self._over = min(self._over, time.monotonic() + LOGGING_DELAY)
             if time.monotonic() > min(deadline, self._over):
                 when = f"after {seconds} s" if self._over > deadline else "at the end"
                 raise AssertionError(f"not so {when}: {self.now()}\n{self.steps()}\n{self.output()[-6000:]}")
@@ -189,39 +187,39 @@ class Stage:
         found = re.findall(r"^Traceback .*\n(?: .*\n)*([\w.]+)", self.output(), re.MULTILINE)
         return [name for name in found if name not in INTERRUPTED]
 
-    # What is done -----------------------------------------------------------------------------------------------------
+    # What the test does -----------------------------------------------------------------------------------------------
 
-    def say(self, *texts: str) -> None:
-        """The witness publishes words, once the observer hears it."""
-        self.until(self.is_heard)
-        self.tell({"say": texts})
+    def publish(self, *texts: str) -> None:
+        """Publishes events through the logger, once the observer is connected to it."""
+        self.until(self.is_connected)
+        self.order({"publish": texts})
 
-    def is_heard(self) -> bool:
-        """True where the observer is connected to the witness, or there is none: no word waits for who comes later."""
+    def is_connected(self) -> bool:
+        """True where the observer is connected to the logger, or there is none: no event waits for a later one."""
         with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
             with xmlrpc.client.ServerProxy(self._uri) as master:
-                nodes: Any = [master.lookupNode("/stage", f"/{node}") for node in ("observer", "witness")]
+                nodes: Any = [master.lookupNode("/test", f"/{node}") for node in ("observer", "topic_logger")]
             if all(code == 1 for code, _, _ in nodes):
-                observer, witness = (uri for _, _, uri in nodes)
+                observer, logger = (uri for _, _, uri in nodes)
                 with xmlrpc.client.ServerProxy(observer) as slave:
-                    links: Any = slave.getBusInfo("/stage")
-                return any((link[1], link[4]) == (witness, f"/{EVENTS}") for link in links[2])
+                    links: Any = slave.getBusInfo("/test")
+                return any((link[1], link[4]) == (logger, f"/{EVENTS}") for link in links[2])
         return True
 
-    def tell(self, order: Mapping[str, Any]) -> None:
-        """An order for the witness (see there)."""
-        assert self.witness is not None and self.witness.stdin is not None
-        self.witness.stdin.write(json.dumps(order).encode() + b"\n")
-        self.witness.stdin.flush()
+    def order(self, order: Mapping[str, Any]) -> None:
+        """Gives the logger an order (see there)."""
+        assert self.logger is not None and self.logger.stdin is not None
+        self.logger.stdin.write(json.dumps(order).encode() + b"\n")
+        self.logger.stdin.flush()
 
     def pid(self, node: str) -> int:
         """The process of a node, as it says itself; 0 where none answers."""
         with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
             with xmlrpc.client.ServerProxy(self._uri) as master:
-                code, _, uri = master.lookupNode("/stage", f"/{node}")  # type: ignore[misc]
+                code, _, uri = master.lookupNode("/test", f"/{node}")  # type: ignore[misc]
             if code == 1:
                 with xmlrpc.client.ServerProxy(str(uri)) as slave:
-                    return int(slave.getPid("/stage")[2])  # type: ignore[index]
+                    return int(slave.getPid("/test")[2])  # type: ignore[index]
         return 0
 
     def kill(self, node: str, sign: signal.Signals = signal.SIGKILL) -> int:
@@ -246,10 +244,10 @@ class Stage:
     def until_back(self, node: str, old: int) -> None:
         """Waits until another process has the node's name, and says that it is ready."""
         process = self.until(lambda: self.pid(node) not in (0, old) and self.pid(node))
-        heard = len(self.look())
+        known = len(self.look())
         self.until(lambda: any(
             status["values"]["ready"] == "true"
-            for entry in self.look()[heard:]
+            for entry in self.look()[known:]
             if (entry["topic"], entry["from"]) == ("/diagnostics", node)
             for status in entry["data"]
         ) or self.launch is None or self.launch.poll() is not None)
@@ -257,35 +255,38 @@ class Stage:
 
 
 @contextlib.contextmanager
-def staged(
+def launched(
     ros: Ros, workspace: Path, folder: Path, robots: Sequence[str] = ("bot1", "bot2"), **arguments: object
-) -> Iterator[Stage]:
+) -> Iterator[LaunchedMission]:
     """A mission of the workspace with these launch arguments; whatever was started has ended afterwards."""
     folder.mkdir(parents=True, exist_ok=True)
     bringup = next((workspace / "src").glob("*_bringup")).name
     given = " ".join(f"{name}:={json.dumps(value)}" for name, value in {"wait": PATIENCE, **arguments}.items())
     with ros.master() as there:
         there = {**there, "ROS_HOME": str(folder / "home"), "ROS_LOG_DIR": str(folder / "log")}
-        stage = Stage(folder, there["ROS_MASTER_URI"], lambda command, log: ros.start(command, workspace, log, **there))
+        run = LaunchedMission(
+            folder, there["ROS_MASTER_URI"], lambda command, log: ros.start(command, workspace, log, **there)
+        )
         try:
-            stage.witness = subprocess.Popen(
-                ["python3", str(WITNESS), *robots],
-                env={**ros.environment, **there},
-                stdin=subprocess.PIPE,
-                stdout=open(folder / "witness.jsonl", "wb"),  # noqa: SIM115 (the child keeps it)
-                stderr=open(folder / "witness.log", "wb"),  # noqa: SIM115
-                start_new_session=True,
-            )
-            stage.until(lambda: stage.of("here"))
+            with open(folder / "topics.jsonl", "wb") as topics, open(folder / "topic_logger.log", "wb") as log:
+                run.logger = subprocess.Popen(
+                    ["python3", str(LOGGER), *robots],
+                    env={**ros.environment, **there},
+                    stdin=subprocess.PIPE,
+                    stdout=topics,
+                    stderr=log,
+                    start_new_session=True,
+                )
+            run.until(lambda: run.of("here"))
             command = f"source devel/setup.bash; exec roslaunch --skip-log-check {bringup} mission.launch {given}"
-            stage.launch = ros.start(command, workspace, folder / "launch.log", **there)
-            yield stage
+            run.launch = ros.start(command, workspace, folder / "launch.log", **there)
+            yield run
         finally:
-            for frozen in stage.frozen:
+            for frozen in run.frozen:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(frozen, signal.SIGCONT)
-            if stage.witness is not None and stage.witness.stdin is not None:
-                stage.witness.stdin.close()
-            for process in (stage.launch, stage.witness):
+            if run.logger is not None and run.logger.stdin is not None:
+                run.logger.stdin.close()
+            for process in (run.launch, run.logger):
                 if process is not None:
                     end(process)
