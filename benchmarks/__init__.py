@@ -1,1 +1,1 @@
-"""Measurements: what synthesis costs, and how that grows. `python benchmarks/synthesis.py --help` says how."""
+"""Measurements: what synthesis costs, and how that grows. `python -m benchmarks.synthesis --help` says how."""

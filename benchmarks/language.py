@@ -1,4 +1,4 @@
-"""Measures how long it takes to read, check and lay out scenarios: `python benchmarks/language.py`.
+"""Measures how long it takes to read, check and lay out scenarios: `python -m benchmarks.language`.
 
 The scenarios are made here: a floor of any size, and the same floor with a mistake in every few lines. The least time
 of several runs counts, in a process that has read a scenario before; the first one also builds the parser.
@@ -7,18 +7,16 @@ of several runs counts, in a process that has read a scenario before; the first 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from pathlib import Path
 from typing import Any, Callable, List, Sequence, Tuple
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures this checkout
+from benchmarks.tables import markdown
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.parser import read
 
-from benchmarks.tables import markdown  # noqa: E402
-from pursue_gen.language.checks import check_reading  # noqa: E402
-from pursue_gen.language.formatter import format_text  # noqa: E402
-from pursue_gen.language.parser import read  # noqa: E402
+ROOT = Path(__file__).resolve().parent.parent
 
 HEAD = ("text", "lines", "findings", "read, ms", "check, ms", "format, ms", "together, ms")
 

@@ -1,4 +1,4 @@
-"""Measures how fast a mission reacts on a real ROS master, and what it costs to wait: `python benchmarks/reaction.py`.
+"""Measures how fast a mission reacts on a real ROS master, and what it costs to wait: `python -m benchmarks.reaction`.
 
 docs/reaction.md says what is measured; `--out docs` writes it anew, and the figures in docs/benchmarks/reaction.json.
 """
@@ -15,11 +15,10 @@ import tempfile
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures this checkout
+from benchmarks.ros_world import World, generated, idle_load, world
+from benchmarks.synthesis import machine
 
-from benchmarks.ros_world import World, generated, idle_load, world  # noqa: E402
-from benchmarks.synthesis import machine  # noqa: E402
+ROOT = Path(__file__).resolve().parent.parent
 
 SCENARIO = """// A guest calls, the robot answers as soon as it may, again and again.
 poi "desk"

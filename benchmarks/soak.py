@@ -1,6 +1,6 @@
 """A mission of thousands of events in simulated time on a real ROS master: does memory grow, do clocks drift?
 
-`python benchmarks/soak.py` plays 10,000 events of a cleaning robot that is called again and again, at random moments,
+`python -m benchmarks.soak` plays 10,000 events of a cleaning robot that is called again and again, at random moments,
 and watches every node; `--out docs` writes what it found to docs/benchmarks/reaction.json and docs/reaction.md.
 """
 
@@ -19,12 +19,11 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures this checkout
+from benchmarks.ros_world import World, generated, resident_kib, world
+from benchmarks.synthesis import machine
+from pursue_gen.solving.rules import Rules
 
-from benchmarks.ros_world import World, generated, resident_kib, world  # noqa: E402
-from benchmarks.synthesis import machine  # noqa: E402
-from pursue_gen.solving.rules import Rules  # noqa: E402
+ROOT = Path(__file__).resolve().parent.parent
 
 SCENARIO = """// A cleaning robot that is called again and again, and has to rinse its mop before it wipes again.
 poi "office"

@@ -1,4 +1,4 @@
-"""Measures what synthesis costs: `python benchmarks/synthesis.py --help` lists the choices.
+"""Measures what synthesis costs: `python -m benchmarks.synthesis --help` lists the choices.
 
 Each game is decided and proven in a process of its own, with limits on time and memory, so that a slow one does not
 stop the table. The published scenarios (and TIGA's figures) are read where they are at hand: beside the project in
@@ -16,14 +16,13 @@ import sys
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))  # the script runs from anywhere, and measures this checkout
+from benchmarks import tables
+from benchmarks.families import FAMILIES
+from benchmarks.measure import GAMES, Bounds, Case, Row, measured
+from benchmarks.page import filled
+from benchmarks.tiga import NOTHING, Figures, figures
 
-from benchmarks import tables  # noqa: E402
-from benchmarks.families import FAMILIES  # noqa: E402
-from benchmarks.measure import GAMES, Bounds, Case, Row, measured  # noqa: E402
-from benchmarks.page import filled  # noqa: E402
-from benchmarks.tiga import NOTHING, Figures, figures  # noqa: E402
+ROOT = Path(__file__).resolve().parent.parent
 
 QUICK = ("CT1", "EB1", "WC1", "WC2a", "scenario 1", "scenario 4")
 

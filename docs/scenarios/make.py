@@ -1,6 +1,6 @@
 """Makes what pages on scenarios tell: verdicts, times, pictures, and what happens if something is changed.
 
-    python docs/scenarios/make.py [NAME ...]
+    python -m docs.scenarios.make [NAME ...]
 
 People write the pages, docs/scenarios/<name>.md; between two marks stands what is made here:
 
@@ -22,27 +22,26 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.layout import poses
+from pursue_gen.files import write_texts
+from pursue_gen.language import load, parse
+from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
+from pursue_gen.report import timeline
+from pursue_gen.report.recording import ending_words, simulated
+from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.runs import Case, case_of
+from pursue_gen.solving.least_time import Guarantee
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.solution import Solution, guaranteed
+from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Kind
+from pursue_gen.workspace import Options
 
-from pursue_gen.diagnostics import PursueError  # noqa: E402
-from pursue_gen.drawing import map_svg  # noqa: E402
-from pursue_gen.drawing.layout import poses  # noqa: E402
-from pursue_gen.files import write_texts  # noqa: E402
-from pursue_gen.language import load, parse  # noqa: E402
-from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario  # noqa: E402
-from pursue_gen.report import timeline  # noqa: E402
-from pursue_gen.report.recording import ending_words, simulated  # noqa: E402
-from pursue_gen.simulation.mission import Settings  # noqa: E402
-from pursue_gen.simulation.runs import Case, case_of  # noqa: E402
-from pursue_gen.solving.least_time import Guarantee  # noqa: E402
-from pursue_gen.solving.proving import prove  # noqa: E402
-from pursue_gen.solving.rules import Rules, played  # noqa: E402
-from pursue_gen.solving.solution import Solution, guaranteed  # noqa: E402
-from pursue_gen.synthesis.solve import Verdict, solve  # noqa: E402
-from pursue_gen.tga import scenario_objective, translate  # noqa: E402
-from pursue_gen.tga.network import Kind  # noqa: E402
-from pursue_gen.workspace import Options  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 SCENARIOS, DOCS = ROOT / "scenarios", ROOT / "docs"
 PAGES, INDEX = DOCS / "scenarios", DOCS / "scenarios.md"

@@ -15,7 +15,7 @@ def test_the_page_and_the_csv_show_the_data(project_root: Path) -> None:
     results = json.loads((data / "results.json").read_text())
     page = (project_root / "docs" / "benchmarks.md").read_text()
     assert set(re.findall(r"<!-- measured: ([a-z ]+) -->", page)) == set(PARTS)
-    assert filled(page, results) == page, "run: python benchmarks/synthesis.py --render --out docs"
+    assert filled(page, results) == page, "run: python -m benchmarks.synthesis --render --out docs"
     assert (data / "results.csv").read_text() == tables.as_csv(results["rows"])
 
 

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def test_hundreds_of_events_leave_memory_and_clocks_as_they_were(ros: Ros, tmp_path: Path) -> None:
-    command = f"{sys.executable} benchmarks/soak.py --events 250 --warm 100 --out {tmp_path} --machine m --date d"
+    command = f"{sys.executable} -m benchmarks.soak --events 250 --warm 100 --out {tmp_path} --machine m --date d"
     done = ros.run(command, ROOT, 900)
     assert done.returncode == 0, done.stdout
     found = json.loads((tmp_path / "benchmarks" / "reaction.json").read_text())["soak"]
@@ -26,7 +26,7 @@ def test_hundreds_of_events_leave_memory_and_clocks_as_they_were(ros: Ros, tmp_p
 
 
 def test_reactions_are_measured_beside_floor_and_thesis(ros: Ros, tmp_path: Path) -> None:
-    command = f"{sys.executable} benchmarks/reaction.py --events 20 --thesis-events 3 --idle 2 --out {tmp_path}"
+    command = f"{sys.executable} -m benchmarks.reaction --events 20 --thesis-events 3 --idle 2 --out {tmp_path}"
     done = ros.run(command, ROOT, 600)
     assert done.returncode in (0, 1), done.stdout
     assert "Traceback" not in done.stdout, done.stdout

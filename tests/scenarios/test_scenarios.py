@@ -19,7 +19,7 @@ from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tga import translation_notes
 
 FILES = make.scenario_files()
-AGAIN = "run: python docs/scenarios/make.py"
+AGAIN = "run: python -m docs.scenarios.make"
 LOST = {"two_officers", "two_rolling_bins"}
 """Kept on purpose."""
 
