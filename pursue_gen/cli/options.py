@@ -157,7 +157,7 @@ def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Cal
                 parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=kind))
                 types[name] = kind
         # typer reads both.
-        run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined] # only inspect knows it
         run.__annotations__ = types
         return run
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, ClassVar, Dict, List
+
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text, Whitespace
 
@@ -13,16 +15,16 @@ _VALUES = tuple(sorted(KEYWORDS[kind] for kind in _CONSTANTS))
 _OTHERS = tuple(sorted(word for kind, word in KEYWORDS.items() if kind not in FORMS and kind not in _CONSTANTS))
 
 
-class PursueLexer(RegexLexer):  # type: ignore[misc]
+class PursueLexer(RegexLexer):  # type: ignore[misc] # pygments has no types
     """For scenarios in PuRSUE-ML, `*.pur`."""
 
     name = "PuRSUE-ML"
-    aliases = ["pursue", "pursue-ml"]  # noqa: RUF012
-    filenames = ["*.pur"]  # noqa: RUF012
-    mimetypes = ["text/x-pursue"]  # noqa: RUF012
+    aliases: ClassVar[List[str]] = ["pursue", "pursue-ml"]
+    filenames: ClassVar[List[str]] = ["*.pur"]
+    mimetypes: ClassVar[List[str]] = ["text/x-pursue"]
     url = ""
 
-    tokens = {  # noqa: RUF012
+    tokens: ClassVar[Dict[str, Any]] = {
         "root": [
             (r"\s+", Whitespace),
             (r"//[ \t]*\[[^\n]*", Comment.Special),

@@ -38,7 +38,8 @@ KEYWORDS: Dict[str, str] = {
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
-_QUOTES = "“”„‟«»‘’‚'`´"  # noqa: RUF001
+QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
+"""Quotation marks that word processors and other languages put in place of straight ones."""
 _STARTERS = tuple(KEYWORDS[kind] for kind in FORMS)
 _INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in FORMS)
 _MEANT = {
@@ -147,7 +148,7 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
 def _stray(chunk: List[Token], index: int) -> str:
     """What to do about a sign that the language does not know."""
     text, before = str(chunk[index]), chunk[index - 1]
-    if text[0] in _QUOTES:
+    if text[0] in QUOTES:
         return 'use straight double quotes: "name"'
     if text == "." and before.type == "WORD" and index + 1 < len(chunk):
         return f"a name stands alone, without the agent it belongs to: write {shown(str(chunk[index + 1]))}"

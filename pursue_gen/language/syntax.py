@@ -56,7 +56,7 @@ def grammar() -> Lark:
     return Lark(text, parser="lalr", lexer="basic", start=["statement", "wrong"], propagate_positions=True)
 
 
-def read_statements(text: str, file: str) -> Tuple[List[Tree], List[Diagnostic]]:  # type: ignore[type-arg]
+def read_statements(text: str, file: str) -> Tuple[List[Tree[Token]], List[Diagnostic]]:
     """The trees of all statements that are well formed, and an error for each that is not, in file order."""
     statements = cut(text, file)
     return statements.trees, statements.findings

@@ -77,7 +77,8 @@ def _place(document: Document, offset: int) -> _Place:
     text = document.text
     before = [part.start for part in document.statements if part.start < offset]
     begin = before[-2] if len(before) > 1 else 0  # the cutter has to see one statement that is complete
-    start = offset - len(_WORD_BEFORE.search(text, begin, offset).group())  # type: ignore[union-attr]
+    word = _WORD_BEFORE.search(text, begin, offset)
+    start = word.start() if word else offset
     after = _WORD_AFTER.match(text, offset)
     end = after.end() if after and start < offset else offset
     tokens = all_tokens(text[begin:offset])

@@ -8,14 +8,14 @@ from typing import Iterator, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.messages import KEYWORDS, QUOTES
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, end_of
 
 Proposal = Tuple[str, Tuple[Edit, ...]]
 _MEANT = re.compile(r"did you mean (\w+)\?|\Awrite (\w+)[:;] ")
 """How hints say what was meant."""
-_QUOTES = re.compile("[“”„‟«»‘’‚'`´]+")  # noqa: RUF001
+_QUOTES = re.compile(f"[{QUOTES}]+")
 _FIRST_WORD = re.compile(r'"\s*[\w-]*')
 _SIGNS = {"COLON": ":", "COMMA": ",", "RPAR": ")"}
 

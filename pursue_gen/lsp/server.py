@@ -233,7 +233,7 @@ def _language_server() -> Any:
     try:
         from pygls.lsp.server import LanguageServer
     except ImportError:  # pygls 1
-        from pygls.server import LanguageServer  # type: ignore[attr-defined,no-redef]
+        from pygls.server import LanguageServer  # type: ignore[attr-defined,no-redef] # as above
     # The whole text with each change: pygls and editors do not agree on what ends a line in every text.
     return LanguageServer("pursue-gen", __version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full)
 

@@ -214,5 +214,5 @@ def test_pygments_gives_back_every_text() -> None:
 def test_pygments_finds_it_by_the_entry_point() -> None:
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert '[project.entry-points."pygments.lexers"]\npursue = "pursue_gen.language.lexer:PursueLexer"\n' in text
-    source = Path(ROOT / "pursue_gen" / "lexer.py").read_text(encoding="utf-8")
+    source = Path(ROOT / "pursue_gen" / "language" / "lexer.py").read_text(encoding="utf-8")
     assert "class PursueLexer(" in source

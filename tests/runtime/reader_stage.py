@@ -93,7 +93,7 @@ class Robot:
         self.store = Store(str(folder), keep, lambda *line: self.log.append(line))
         facts = reader_core.Machine("bot1", "own_scenario", packages, 10**6)
         keys = KeyFolder(str(self.folder / "keys"))
-        log: Callable[..., None] = lambda *line: self.log.append(line)  # noqa: E731
+        log: Callable[..., None] = lambda *line: self.log.append(line)
         self.reader = Reader(facts, self.store, keys, self.now, log, PATIENCE)
 
     def restart(self) -> None:

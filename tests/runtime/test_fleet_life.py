@@ -95,7 +95,7 @@ class Machine:
         missions = Missions(
             Source("0" * 12, str(own)), PACKAGES[self.name][0], str(self.folder)
         )
-        clock: Callable[[], float] = lambda: self.world.now  # noqa: E731
+        clock: Callable[[], float] = lambda: self.world.now
         self.follower = Follower(missions, "c", "controller", lambda *_: None, True, clock)
         self.missions = missions
         if self.name in BOTS:

@@ -64,15 +64,15 @@ def test_all_robots_change_and_the_observer_is_the_last() -> None:
 
 def test_progress_is_told_up_to_the_last_byte() -> None:
     robots = fleet()
-    heard: List[Tuple[str, int, int]] = []
+    reports: List[Tuple[str, int, int]] = []
     with serving(robots) as places:
-        told = lambda robot, sent, size: heard.append((robot.name, sent, size))  # noqa: E731
-        send(places, NEW, CONTENT, KEY, lambda _: None, told, QUICK)
+        progress = lambda robot, sent, size: reports.append((robot.name, sent, size))
+        send(places, NEW, CONTENT, KEY, lambda _: None, progress, QUICK)
     for robot in robots:
-        mine = [sent for name, sent, _ in heard if name == robot.name]
+        mine = [sent for name, sent, _ in reports if name == robot.name]
         assert mine == sorted(mine)
         assert mine[-1] == len(CONTENT)
-    assert {size for _, _, size in heard} == {len(CONTENT)}
+    assert {size for _, _, size in reports} == {len(CONTENT)}
 
 
 def test_one_that_cannot_be_reached_leaves_all_as_they_were() -> None:

@@ -76,8 +76,8 @@ class Controller:
     def __init__(self, shelf: Shelf, again: bool = False) -> None:
         self.logs: List[Tuple[str, str]] = []
         self.real = 0.0
-        log = lambda level, text: self.logs.append((level, text))  # noqa: E731
-        clock = lambda: self.real  # noqa: E731
+        log = lambda level, text: self.logs.append((level, text))
+        clock = lambda: self.real
         self.follower = Follower(shelf, "controller_bot", "controller_bot", log, again, clock)
 
     def see(self, seq: int, stamp: float, mission: str, status: str = "running", plan: int = 0) -> str:

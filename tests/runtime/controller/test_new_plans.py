@@ -66,7 +66,7 @@ def test_it_says_again_that_it_has_the_plan_while_the_mission_may_wait_for_that(
 
 def test_the_plan_in_force_is_kept_however_many_are_made_and_dropped() -> None:
     plans = Plans("own")
-    at = lambda number: plans.strategy_for(state(1, 0.0)._replace(plan=number))  # noqa: E731
+    at = lambda number: plans.strategy_for(state(1, 0.0)._replace(plan=number))
     for number in (1, 2, 3):
         plans.add(number, f"plan {number}")
     assert at(0) == "own"
@@ -77,7 +77,7 @@ def test_the_plan_in_force_is_kept_however_many_are_made_and_dropped() -> None:
 
 def test_an_older_plan_than_the_one_in_force_is_forgotten() -> None:
     plans = Plans("own")
-    at = lambda number: plans.strategy_for(state(1, 0.0)._replace(plan=number))  # noqa: E731
+    at = lambda number: plans.strategy_for(state(1, 0.0)._replace(plan=number))
     plans.add(1, "plan 1")
     assert at(1) == "plan 1"
     plans.add(2, "plan 2")

@@ -47,7 +47,7 @@ class RealReader:
     def __init__(self, keys: Path, say: Callable[[str], None]) -> None:
         self.lines: List[str] = []
         self.folder, self.there, self.say = keys.parent / "missions", True, say
-        log = lambda level, text: self.lines.append(text)  # noqa: E731
+        log = lambda level, text: self.lines.append(text)
         self.store = Store(str(self.folder), 5, log)
         facts = reader_core.Machine(ROBOT, "own", ("controller_bot1",), 1 << 20)
         self.core = Reader(facts, self.store, KeyFolder(str(keys)), 0.0, log)

@@ -318,7 +318,7 @@ def test_a_reader_that_does_not_answer_is_told_in_time(serve: Serve) -> None:
     told = send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64))
     assert (told.http, told.facts["code"]) == (504, "no_answer")
     robot.reader.answers = True
-    again = lambda: send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64))  # noqa: E731
+    again = lambda: send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64))
     until(lambda: again().http == 200, "the reader answers again")
 
 

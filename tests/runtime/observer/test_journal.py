@@ -34,7 +34,7 @@ class Life:
 
     def __init__(self, path: Path, header: Any = None) -> None:
         self.logs: List[Tuple[str, str]] = []
-        log = lambda level, message: self.logs.append((level, message))  # noqa: E731
+        log = lambda level, message: self.logs.append((level, message))
         cover = read_cover(read(COVER))
         chase = Model(read(CHASE))
         self.mission = Mission(chase, cover, log, on_uncovered="plan", controllers=["one"])

@@ -99,7 +99,7 @@ class Journey:
     def __init__(self, text: str = CHASE, cover: Any = None, **options: Any) -> None:
         self.logs: List[Tuple[str, str]] = []
         table = None if cover is None else read_cover(read(cover))
-        log = lambda level, message: self.logs.append((level, message))  # noqa: E731
+        log = lambda level, message: self.logs.append((level, message))
         self.mission = Mission(Model(read(text)), table, log, **options)
 
     def hear(self, word: str, now: float) -> Any:
