@@ -29,7 +29,7 @@ from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.report import timeline
-from pursue_gen.report.recording import ending_words, simulated
+from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.least_time import Guarantee
@@ -150,7 +150,7 @@ def _told_mission(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     if found.guarantee is None:
         how = how[:-1] + f" --until {UNTIL:g}`"
     picture = f"![A mission of {found.name}]({found.name}_mission.svg)"
-    end = ending_words(recording)
+    end = ending_text(recording)
     return f"{picture}\n\nSimulated mission {number}, {end} ({how} draws it and moves it on the map)."
 
 

@@ -1,7 +1,7 @@
-"""A mission on the map: where everybody is at every moment, with buttons to run through it; a still picture without.
+"""An animation of a mission on the map, with controls; without scripts a picture of its start.
 
-The picture that is drawn here shows the beginning. The script moves the marks along the connections; that an agent
-arrived is known from the recording, so it moves evenly from the moment it set off to the moment it was there.
+The picture that is drawn here shows the start. The script moves the marks along the connections; the times of departure
+and arrival are those of the recording, and between them an agent moves at an even speed.
 """
 
 from __future__ import annotations
@@ -21,37 +21,37 @@ from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.report import timeline
 from pursue_gen.report.html import Section, asset, data, page
-from pursue_gen.report.recording import Recording, Stay, Step, ending_words, stays
-from pursue_gen.report.timeline import event_words
+from pursue_gen.report.recording import Recording, Stay, Step, ending_text, stays
+from pursue_gen.report.timeline import event_text
 
 _ID = "animation"
 _AWAY = 28.0
-"""px from the middle of a place to the marks of those who are there."""
+"""Pixels from the centre of a POI to the marks of the agents that are there."""
 
 Point = Tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Leg:
-    """From one point of the picture to another, between two moments; standing still where the points are equal."""
+class Segment:
+    """A movement from point `a` to `b` (px), from `start` to `end` (time units); a stop where the points are equal."""
 
     start: float
     end: float
     a: Point
     b: Point
-    told: str
+    description: str
 
 
 def check_name(file: Path) -> None:
-    """Raises PursueError (exit status 2) for a file that is not called as a picture or a page is."""
+    """Raise PursueError (exit status 2) unless the file's name ends with .svg or .html."""
     if file.suffix not in (".svg", ".html"):
-        message = f"--timeline {file}: it is not known what that is to be"
+        message = f"--timeline {file}: the format is not known"
         hint = "name a file that ends with .svg (the timeline), or .html (a page with the timeline and an animation)"
         raise PursueError([error("REP010", message, hint=hint)], exit_status=2)
 
 
 def write(recording: Recording, file: Path) -> None:
-    """Writes the timeline (.svg), or a page with timeline and animation (.html). Raises PursueError (status 2)."""
+    """Write the timeline (.svg), or a page with timeline and animation (.html). Raises PursueError (exit status 2)."""
     check_name(file)
     if file.suffix == ".svg":
         write_texts({file: timeline.draw(recording)})
@@ -62,7 +62,7 @@ def write(recording: Recording, file: Path) -> None:
 
 def section(scenario: Scenario, recording: Recording, ident: str = _ID) -> Section:
     """The animation as a part of a page."""
-    film = {"end": recording.end, "agents": _tracks(scenario, recording), "steps": _steps(recording)}
+    content = {"end": recording.end, "agents": _tracks(scenario, recording), "steps": _steps(recording)}
     controls = (
         f'<div class="animation-controls" role="group" aria-label="Controls" hidden>'
         f'<button type="button" id="{ident}-back" aria-label="One step back">◀ step</button>'
@@ -74,20 +74,21 @@ def section(scenario: Scenario, recording: Recording, ident: str = _ID) -> Secti
         '<option value="2" selected>2</option><option value="5">5</option><option value="10">10</option>'
         "</select> time units a second</label></div>"
     )
-    told = f'<p id="{ident}-told" class="animation-told">0: it begins; {safe(ending_words(recording))} at the end</p>'
-    where = f'<ul id="{ident}-where" class="animation-where">{"".join(_who(scenario, recording))}</ul>'
+    ending = safe(ending_text(recording))
+    caption = f'<p id="{ident}-caption" class="animation-caption">0: start; {ending} at the end</p>'
+    where = f'<ul id="{ident}-where" class="animation-where">{"".join(_agent_lines(scenario, recording))}</ul>'
     shown = draw(scenario, recording, ident)
     picture = f'<div class="wide picture" tabindex="0" role="region" aria-label="Map">{shown}</div>'
-    note = '<noscript><p class="quiet">This is the beginning; without scripts it stands still.</p></noscript>'
-    body = f"{controls}{told}<figure>{picture}</figure>{where}{note}{data(f'{ident}-film', film)}"
+    note = '<noscript><p class="quiet">This is the start; the animation needs JavaScript.</p></noscript>'
+    body = f"{controls}{caption}<figure>{picture}</figure>{where}{note}{data(f'{ident}-movements', content)}"
     return Section(ident, "The mission on the map", body, asset("animation.css"), asset("animation.js"))
 
 
 def draw(scenario: Scenario, recording: Recording, ident: str = _ID) -> str:
-    """The map with everybody where they were at the beginning, as an SVG document."""
+    """The map with all agents where they were at the start, as an SVG document."""
     where, computed = poses(scenario)
     ground = map_svg.draw(replace(scenario, agents=()), where, computed, None, f"{ident}-map")
-    looks, tracks = agent_looks(recording.agents), _legs(scenario, recording)
+    looks, tracks = agent_looks(recording.agents), _segments(scenario, recording)
     marks = [_mark(agent, looks[agent.name], tracks[agent.name][0].a, k, len(scenario.agents), ident)
              for k, agent in enumerate(scenario.agents)]
     cut = ground.rindex("</svg>")
@@ -95,8 +96,8 @@ def draw(scenario: Scenario, recording: Recording, ident: str = _ID) -> str:
 
 
 def _mark(agent: Agent, look: AgentLook, at: Point, number: int, count: int, ident: str) -> str:
-    """An agent's shape and name around its own side of the place; the group is moved as a whole."""
-    dx, dy = _aside(number, count)
+    """An agent's shape and name on its own side of the POI; the group is moved as a whole."""
+    dx, dy = _offset(number, count)
     anchor = "middle" if abs(dx) < 9 else "start" if dx > 0 else "end"
     label = text(dx + (0 if anchor == "middle" else math.copysign(13, dx)), dy - (12 if anchor == "middle" else -5),
                  agent.name, "pg-strong pg-halo", anchor)
@@ -107,27 +108,28 @@ def _mark(agent: Agent, look: AgentLook, at: Point, number: int, count: int, ide
     return tag("g", busy, shape, label, class_="agent", id=f"{ident}-agent-{number}", transform=place)
 
 
-def _aside(number: int, count: int) -> Point:
-    """On which side of a place an agent stands: above it, spread from left to right, so that nobody hides another."""
+def _offset(number: int, count: int) -> Point:
+    """Offset of an agent's mark from its POI (px): above it, spread from left to right, so that none hides another."""
     if count == 1:
         return 0.0, -_AWAY
     angle = math.radians(-170 + 160 * number / (count - 1))
     return _AWAY * math.cos(angle), _AWAY * math.sin(angle)
 
 
-# What the script gets -------------------------------------------------------------------------------------------------
+# The data of the script -----------------------------------------------------------------------------------------------
 
 
 def _tracks(scenario: Scenario, recording: Recording) -> List[Dict[str, Any]]:
-    """For each agent its name, its side of a place, and its legs: [start, end, x, y, x, y, what it does, at work?]."""
-    legs, count = _legs(scenario, recording), len(scenario.agents)
+    """For each agent its name, its offset, and its segments: [start, end, x, y, x, y, description, acting?]."""
+    segments, count = _segments(scenario, recording), len(scenario.agents)
     return [
         {
             "name": agent.name,
-            "aside": [round(v, 1) for v in _aside(number, count)],
-            "legs": [
-                [leg.start, leg.end, *(round(v, 1) for v in (*leg.a, *leg.b)), leg.told, leg.told.startswith("doing ")]
-                for leg in legs[agent.name]
+            "offset": [round(v, 1) for v in _offset(number, count)],
+            "segments": [
+                [one.start, one.end, *(round(v, 1) for v in (*one.a, *one.b)), one.description,
+                 one.description.startswith("doing ")]
+                for one in segments[agent.name]
             ],
         }
         for number, agent in enumerate(scenario.agents)
@@ -135,56 +137,56 @@ def _tracks(scenario: Scenario, recording: Recording) -> List[Dict[str, Any]]:
 
 
 def _steps(recording: Recording) -> List[List[Any]]:
-    """The moments of the steps, and what happened then."""
+    """The times of the steps, and what happened then."""
     words = words_of(recording.scenario, recording.network)
-    told = [[step.at, _said(step, words, recording)] for step in recording.steps]
+    steps: List[List[Any]] = [[step.at, _step_text(step, words, recording)] for step in recording.steps]
     over = recording.steps[-1].at >= recording.end
-    return told if over else [*told, [recording.end, ending_words(recording)]]
+    return steps if over else [*steps, [recording.end, ending_text(recording)]]
 
 
-def _said(step: Step, words: Words, recording: Recording) -> str:
+def _step_text(step: Step, words: Words, recording: Recording) -> str:
     if not step.event:
-        return step.reason or ("it begins" if step is recording.steps[0] else step.status)
-    said = event_words(step, words, recording.network)
-    told = f"{step.agent} {said}" if step.agent in recording.agents else said
+        return step.reason or ("start" if step is recording.steps[0] else step.status)
+    event = event_text(step, words, recording.network)
+    sentence = f"{step.agent} {event}" if step.agent in recording.agents else event
     last = step is recording.steps[-1] and step.status != "running"
-    return f"{told}; {ending_words(recording)}" if last else told
+    return f"{sentence}; {ending_text(recording)}" if last else sentence
 
 
-def _who(scenario: Scenario, recording: Recording) -> List[str]:
-    """A line for each agent: where it is at the beginning."""
-    legs = _legs(scenario, recording)
-    return [f"<li><b>{safe(agent.name)}</b> <span>{safe(legs[agent.name][0].told)}</span></li>"
+def _agent_lines(scenario: Scenario, recording: Recording) -> List[str]:
+    """A line for each agent: where it is at the start."""
+    segments = _segments(scenario, recording)
+    return [f"<li><b>{safe(agent.name)}</b> <span>{safe(segments[agent.name][0].description)}</span></li>"
             for agent in scenario.agents]
 
 
-def _legs(scenario: Scenario, recording: Recording) -> Dict[str, List[Leg]]:
-    """What every agent does, on the picture."""
+def _segments(scenario: Scenario, recording: Recording) -> Dict[str, List[Segment]]:
+    """Agent → its movements and stops on the picture, in order of time."""
     words = words_of(scenario, recording.network)
     where, computed = poses(scenario)
     ground = map_svg.draw(replace(scenario, agents=()), where, computed)
     found = re.search(r'viewBox="0 0 ([\d.]+)', ground)
-    assert found is not None, "a picture has a size"
+    assert found is not None, "a map has a size"
     paper = map_svg.Paper(where, None, float(found.group(1)))
     places = {name: paper.point(pose.x, pose.y) for name, pose in where.items()}
-    return {agent.name: _legs_of(agent, recording, words, places) for agent in scenario.agents}
+    return {agent.name: _segments_of(agent, recording, words, places) for agent in scenario.agents}
 
 
-def _legs_of(agent: Agent, recording: Recording, words: Words, places: Mapping[str, Point]) -> List[Leg]:
-    legs = []
+def _segments_of(agent: Agent, recording: Recording, words: Words, places: Mapping[str, Point]) -> List[Segment]:
+    segments = []
     for stay in stays(recording, agent.name):
         part = words.parts.get(stay.what, ("at", agent.location.name))
-        told = words.place(agent.name, stay.what)
+        description = words.place(agent.name, stay.what)
         a = places[part[1]]
-        b = _reached(recording, stay, agent, a, places[part[2]], part) if part[0] == "way" else a
-        legs.append(Leg(stay.start, stay.end, a, b, told))
-    return legs
+        b = _end_point(recording, stay, agent, a, places[part[2]], part) if part[0] == "way" else a
+        segments.append(Segment(stay.start, stay.end, a, b, description))
+    return segments
 
 
-def _reached(
+def _end_point(
     recording: Recording, stay: Stay, agent: Agent, a: Point, b: Point, part: Tuple[str, ...]
 ) -> Point:
-    """Where a movement ends: at the other place, or on the way where the recording ends before (or it is given up)."""
+    """Where a movement ends: at the other POI, or on the way where the recording ends or the movement is given up."""
     after = next((step.locations.get(agent.name) for step in recording.steps if step.at >= stay.end), None)
     if stay.over and after == part[2]:
         return b

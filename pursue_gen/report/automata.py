@@ -34,8 +34,8 @@ def graph(automaton: Automaton) -> Optional[Graph]:
         source, target = (f"{ident}-l{numbers[name]}" for name in (edge.source, edge.target))
         style = "solid" if edge.controllable else "dashed"
         lines.append(arrow(source, target, f"{ident}-e{k}", "\n".join(_parts(edge)), style=style))
-    told = f"{len(automaton.locations)} locations, {len(automaton.edges)} edges; dashed edges are not ours"
-    return Graph(ident, f"Automaton {automaton.name}", told, lines)
+    description = f"{len(automaton.locations)} locations, {len(automaton.edges)} edges; dashed edges are not ours"
+    return Graph(ident, f"Automaton {automaton.name}", description, lines)
 
 
 def section(network: Network, scenario: Scenario) -> Section:
@@ -55,10 +55,10 @@ def _numbers(scenario: Scenario) -> str:
     """What the numbers mean that stand for places."""
     codes = positions(scenario.pois, scenario.connections)
     some = scenario.pois[:30]
-    told = ", ".join(f"{codes.at(poi.name)} {poi.name}" for poi in some) + (
+    names = ", ".join(f"{codes.at(poi.name)} {poi.name}" for poi in some) + (
         " …" if len(some) < len(scenario.pois) else ""
     )
-    result = f"P and an agent's name: where it is. {told}."
+    result = f"P and an agent's name: where it is. {names}."
     if scenario.connections:
         a, b = scenario.connections[0].a, scenario.connections[0].b
         result += f" On the way it is a negative number: {codes.going(a, b)} is from {a} to {b}."

@@ -41,8 +41,8 @@ def node(ident: str, label: str, **attributes: object) -> str:
 
 def arrow(source: str, target: str, ident: str, label: str = "", **attributes: object) -> str:
     """An arrow between two nodes; the lines of its label stand a little to its right."""
-    told = "\n".join(f"\u00a0\u00a0{line}" for line in label.split("\n")) if label else ""
-    more = {"id": ident, **({"label": told} if told else {}), **attributes}
+    indented = "\n".join(f"\u00a0\u00a0{line}" for line in label.split("\n")) if label else ""
+    more = {"id": ident, **({"label": indented} if indented else {}), **attributes}
     return f"{quoted(source)} -> {quoted(target)} [{_listed(more)}];"
 
 
@@ -81,10 +81,10 @@ def draw(graph: Graph) -> Optional[str]:
         )
     except (OSError, subprocess.SubprocessError):
         return None
-    return _ours(done.stdout.decode("utf-8", "replace"), graph)
+    return _with_head(done.stdout.decode("utf-8", "replace"), graph)
 
 
-def _ours(text: str, graph: Graph) -> Optional[str]:
+def _with_head(text: str, graph: Graph) -> Optional[str]:
     """Graphviz's SVG with our head: no program's name, titles that say something, sizes in pixels."""
     text = _TITLES.sub("", _UNWANTED.sub("", text)).replace(f'font-family="{_FONT}"', f'font-family="{FONT}"')
     found = _HEAD.search(text)

@@ -82,9 +82,9 @@ def table(heads: Sequence[object], rows: Sequence[Sequence[object]], caption: st
     kinds = [' class="number"' if right else "" for right in numbers]
     head = "".join(f'<th scope="col"{kind}>{safe(word)}</th>' for kind, word in zip(kinds, heads))
     body = "".join(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>\n" for row in rows)
-    told = f"<caption>{safe(caption)}</caption>" if caption else ""
+    caption_tag = f"<caption>{safe(caption)}</caption>" if caption else ""
     label = f' role="region" aria-label="{safe(caption)}"' if caption else ""
-    whole = f"<table>{told}<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
+    whole = f"<table>{caption_tag}<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
     return f'<div class="wide" tabindex="0"{label}>{whole}</div>'
 
 

@@ -52,8 +52,8 @@ def _converted(program: str, svg: str, zoom: float) -> bytes:
             check=True,
         )
     except (OSError, subprocess.SubprocessError) as problem:
-        said = getattr(problem, "stderr", None) or b""
-        reason = said.decode("utf-8", "replace").strip() or str(problem)
+        output = getattr(problem, "stderr", None) or b""
+        reason = output.decode("utf-8", "replace").strip() or str(problem)
         message = f"rsvg-convert could not make a PNG: {reason}"
         raise PursueError([error("REP004", message, hint=_HINT)], exit_status=6) from None
     return done.stdout

@@ -1,4 +1,4 @@
-"""What happened in one mission, whoever recorded it: a bag, a journal, or a simulated mission."""
+"""The steps of one mission: from a bag, from a journal, or from a simulation."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Recording:
 
     @property
     def status(self) -> str:
-        """How it stood at the end."""
+        """The status at the end."""
         return self.steps[-1].status if self.steps else WAITING
 
     @property
@@ -67,7 +67,7 @@ class Recording:
 
 @dataclass(frozen=True)
 class Stay:
-    """Something that lasted: from, to (time units), what, and whether it ended before the recording did."""
+    """A value that lasted: from `start` to `end` (time units); `over`: it ended before the recording did."""
 
     start: float
     end: float
@@ -75,21 +75,21 @@ class Stay:
     over: bool = True
 
 
-def ending_words(recording: Recording) -> str:
+def ending_text(recording: Recording) -> str:
     """How the mission ended, in a word or two."""
-    words = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
-    return words.get(recording.status, "end of the recording")
+    texts = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
+    return texts.get(recording.status, "end of the recording")
 
 
 def stays(recording: Recording, automaton: str) -> Tuple[Stay, ...]:
-    """Where an automaton was, one place after the other."""
+    """The locations of an automaton, in order of time."""
     return lasting(recording, ((step.at, step.locations.get(automaton, "")) for step in recording.steps))
 
 
-def lasting(recording: Recording, told: Iterable[Tuple[float, str]]) -> Tuple[Stay, ...]:
-    """What was so for how long, of (moment, what it is from then on); equal ones are joined."""
+def lasting(recording: Recording, changes: Iterable[Tuple[float, str]]) -> Tuple[Stay, ...]:
+    """The values and how long each lasted, from `changes` (time, value from then on); equal ones are joined."""
     found: List[Stay] = []
-    for at, what in told:
+    for at, what in changes:
         if found and found[-1].what == what:
             continue
         if found:
@@ -102,23 +102,23 @@ def lasting(recording: Recording, told: Iterable[Tuple[float, str]]) -> Tuple[St
 
 
 def from_record(record: MissionRecord, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
-    """What a bag or a journal holds; None where the mission never started in it."""
+    """The mission in a bag or a journal; None where it has not started."""
     return from_states(record.states, scenario, network, source)
 
 
 def from_states(
     states: Iterable[RecordedState], scenario: Scenario, network: Network, source: str, until: float = 0.0
 ) -> Optional[Recording]:
-    """The mission that these published states tell, at least until so many time units."""
+    """The mission with these published states; its end is at least `until` (time units)."""
     steps: List[Step] = []
-    begun: Optional[float] = None
+    started: Optional[float] = None
     seen: Dict[int, str] = {}
     for state in sorted(states, key=lambda state: state.seq):
         if state.status == WAITING or seen.get(state.seq) == state.status:
             continue
         seen[state.seq] = state.status
-        begun = state.stamp if begun is None else begun
-        at = max((state.stamp - begun) / state.unit, steps[-1].at if steps else 0.0)
+        started = state.stamp if started is None else started
+        at = max((state.stamp - started) / state.unit, steps[-1].at if steps else 0.0)
         steps.append(Step(at, state.locations, state.values, state.agent, state.event, state.status, state.reason,
                           state.plan, state.lost))
     if not steps:

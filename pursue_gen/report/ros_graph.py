@@ -22,7 +22,7 @@ _OBSERVER, _SIMULATOR = "/observer", "/simulator"
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic, its type, and the nodes that publish on it and listen to it, by their names."""
+    """A topic, its type, and the names of the nodes that publish and subscribe to it."""
 
     name: str
     kind: str
@@ -33,7 +33,7 @@ class Topic:
 def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]:
     """The topics of a mission with simulated robots, launched without options; `subs` are its controllers.
 
-    What the nodes publish and hear is described with the run time.
+    docs/run_time.md describes the topics.
     """
     controllers = tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI)
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
@@ -82,15 +82,15 @@ def section(some: Sequence[Topic]) -> Section:
     """The graph on the page, and the same as a table."""
     picture = graphviz.draw(graph(some))
     parts = [
-        "<p>The nodes of the generated workspace (ellipses) and the topics on which they speak (boxes), with simulated "
-        "robots. With real robots (<code>simulate:=false</code>) the robots themselves hear the goals instead of the "
+        "<p>The nodes of the generated workspace (ellipses) and the topics between them (boxes), with simulated "
+        "robots. With real robots (<code>simulate:=false</code>) the robots subscribe to the goals instead of the "
         "simulator.</p>"
     ]
     if picture is None:
         parts.append(f"<p>There is no picture here, only a table: {safe(graphviz.HOW_TO_GET)}.</p>")
     else:
-        parts.append(figure(picture, "As rqt_graph draws it; /diagnostics, on which every node speaks, is left out"))
+        parts.append(figure(picture, "As rqt_graph draws it; /diagnostics, on which every node publishes, is left out"))
     rows = [(t.name, t.kind, ", ".join(t.publishers), ", ".join(t.subscribers)) for t in some]
-    listed = table(("topic", "type", "who speaks", "who listens"), rows, "Topics of the mission")
+    listed = table(("topic", "type", "publishers", "subscribers"), rows, "Topics of the mission")
     parts.append(f"<details{'' if picture else ' open'}><summary>As a table</summary>{listed}</details>")
     return Section("ros", "The ROS graph", "\n".join(parts))

@@ -37,8 +37,8 @@
   // A situation: closed, one line; opened, what is done in it, what is waited for, and where that leads.
   const card = (n, before) => {
     const s = state(n);
-    const told = before === undefined ? where(s) : changed(state(before), s);
-    const box = make("details", { className: "state" }, make("summary", {}, `#${n}  ${told}`));
+    const summary = before === undefined ? where(s) : changed(state(before), s);
+    const box = make("details", { className: "state" }, make("summary", {}, `#${n}  ${summary}`));
     box.dataset.state = n;
     box.addEventListener("toggle", () => { if (box.open && !box.dataset.full) { box.dataset.full = 1; box.append(...inside(n, before)); } });
     return box;
@@ -63,7 +63,7 @@
   };
   const order = (c) => make("div", {}, make("span", { className: "ours" }), make("span", { className: "who" }, c.who),
     ` ${c.text}: `, ...times(c.when), ...(owners(c.number) ? [` (${owners(c.number)})`] : []));
-  const waiting = (s) => make("div", {}, make("span", { className: "waits" }), "nobody is told anything",
+  const waiting = (s) => make("div", {}, make("span", { className: "waits" }), "no command is due",
     ...(s.ours.length ? [": ", ...times(s.wait)] : []));
 
   // What a question says: of whom, and who is where. ---------------------------------------------------------------
@@ -84,16 +84,16 @@
     return exact >= 0 ? exact : names.findIndex((name) => name.toLowerCase() === word.toLowerCase());
   };
   const understand = (question) => {
-    const asked = { of: new Set(), places: new Map(), values: new Map(), unknown: [] };
+    const query = { of: new Set(), places: new Map(), values: new Map(), unknown: [] };
     const agentNames = agents.map((k) => book.automata[k].name);
     let who = null, how = "", hows = new Map(), value = null, or = false;
     for (const word of question.match(/[\p{L}\p{N}_]+/gu) || []) {
       const small = word.toLowerCase();
       const agent = findName(agentNames, word);
-      if (agent >= 0) { who = agents[agent]; how = ""; asked.of.add(who); continue; }
+      if (agent >= 0) { who = agents[agent]; how = ""; query.of.add(who); continue; }
       const variable = findName(book.variables, word);
-      if (variable >= 0) { value = variable; asked.values.set(variable, 1); continue; }
-      if (value !== null && (small === "false" || small === "not")) { asked.values.set(value, 0); continue; }
+      if (variable >= 0) { value = variable; query.values.set(variable, 1); continue; }
+      if (value !== null && (small === "false" || small === "not")) { query.values.set(value, 0); continue; }
       if (who !== null) {
         const all = book.automata[who].places.map((p) => p[1]);
         const name = all.flatMap((p) => p.slice(1)).find((one) => one === word) ||
@@ -103,9 +103,9 @@
           const rule = event ? "doing" : how === "doing" ? "at" : how;
           let found = new Set([...all.keys()].filter((k) => fits[rule](all[k], name)));
           if (!found.size && rule) found = new Set([...all.keys()].filter((k) => fits[""](all[k], name)));
-          const known = asked.places.get(who);
+          const known = query.places.get(who);
           if (known) found = or ? new Set([...known, ...found]) : new Set([...found].filter((k) => known.has(k)));
-          asked.places.set(who, found);
+          query.places.set(who, found);
           or = false;
           continue;
         }
@@ -113,35 +113,35 @@
       if (small === "or") or = true;
       if (["if", "when", "while", "once", "and"].includes(small)) { who = null; how = ""; value = null; }
       if (HOW[small]) how = HOW[small];
-      if (!SMALL.has(small)) asked.unknown.push(word);
+      if (!SMALL.has(small)) query.unknown.push(word);
     }
-    for (const k of asked.places.keys()) asked.of.delete(k);
-    return asked;
+    for (const k of query.places.keys()) query.of.delete(k);
+    return query;
   };
-  const matching = (asked) => [...book.states.keys()].filter((n) => {
+  const matching = (query) => [...book.states.keys()].filter((n) => {
     const s = state(n);
-    return [...asked.places].every(([k, good]) => good.has(s.places[k])) && [...asked.values].every(([k, v]) => s.values[k] === v);
+    return [...query.places].every(([k, good]) => good.has(s.places[k])) && [...query.values].every(([k, v]) => s.values[k] === v);
   });
-  const repeated = (asked) => {
-    const parts = [...asked.places].map(([k, good]) => `${book.automata[k].name} is ${[...good].map((p) => place(k, p)).join(" or ") || "nowhere"}`);
-    asked.values.forEach((v, k) => parts.push(`${book.variables[k]} is ${v ? "true" : "false"}`));
+  const repeated = (query) => {
+    const parts = [...query.places].map(([k, good]) => `${book.automata[k].name} is ${[...good].map((p) => place(k, p)).join(" or ") || "nowhere"}`);
+    query.values.forEach((v, k) => parts.push(`${book.variables[k]} is ${v ? "true" : "false"}`));
     return parts.join(" and ") || "anything";
   };
 
   // The answer: in few words for each agent that was asked about, then the situations. -------------------------------
-  const answer = (asked) => {
-    const found = matching(asked);
-    const told = found.filter((n) => !state(n).goal);
+  const answer = (query) => {
+    const found = matching(query);
+    const open = found.filter((n) => !state(n).goal);
     const out = at("found");
     out.replaceChildren();
     const box = make("div", { className: "strategy-answer" });
-    if (asked.unknown.length)
-      box.append(make("p", {}, `Not understood: ${asked.unknown.join(", ")}. Names are: ` +
+    if (query.unknown.length)
+      box.append(make("p", {}, `Not understood: ${query.unknown.join(", ")}. Names are: ` +
         `${agents.map((k) => book.automata[k].name).join(", ")}; where they can be is listed under “Choose places”.`));
-    box.append(make("p", {}, `${found.length} ${found.length === 1 ? "situation" : "situations"} of the strategy: ${repeated(asked)}.` +
-      (found.length > told.length ? ` In ${found.length - told.length} of them the goal is reached.` : "") +
+    box.append(make("p", {}, `${found.length} ${found.length === 1 ? "situation" : "situations"} of the strategy: ${repeated(query)}.` +
+      (found.length > open.length ? ` In ${found.length - open.length} of them the goal is reached.` : "") +
       (found.length ? "" : " This never happens while the strategy is followed.")));
-    for (const k of asked.of) if (told.length) box.append(summed(k, told));
+    for (const k of query.of) if (open.length) box.append(summed(k, open));
     out.append(box);
     let shown = 0;
     const more = make("button", { type: "button" }, "Show more");
@@ -194,10 +194,10 @@
   agents.forEach((k) => subject.append(make("option", { value: k }, book.automata[k].name)));
   at("choose").prepend(make("label", {}, "what is done by", subject));
   at("choose").addEventListener("change", () => {
-    const asked = { of: new Set(subject.value ? [Number(subject.value)] : []), places: new Map(), values: new Map(), unknown: [] };
-    selects.forEach((select, k) => { if (select && select.value) asked.places.set(k, new Set([Number(select.value)])); });
-    values.forEach((select, k) => { if (select.value) asked.values.set(k, Number(select.value)); });
-    answer(asked);
+    const query = { of: new Set(subject.value ? [Number(subject.value)] : []), places: new Map(), values: new Map(), unknown: [] };
+    selects.forEach((select, k) => { if (select && select.value) query.places.set(k, new Set([Number(select.value)])); });
+    values.forEach((select, k) => { if (select.value) query.values.set(k, Number(select.value)); });
+    answer(query);
   });
   at("form").addEventListener("submit", (event) => {
     event.preventDefault();

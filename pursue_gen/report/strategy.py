@@ -8,72 +8,73 @@ from pursue_gen.drawing.look import safe
 from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node
 from pursue_gen.report.html import Section, asset, data, figure
-from pursue_gen.report.strategy_data import Book, Situation, as_json, shown_name, size
+from pursue_gen.report.strategy_data import Situation, StrategyData, as_json, shown_name, size
 
 MOST_STATES = 40
 """A strategy with more situations is no picture that anybody can read; the tree and the search have no such limit."""
 
 
-def section(book: Book) -> Section:
-    """The part of the page; its script makes situations when somebody looks at them, so large ones stay usable."""
-    states, commands = size(book)
+def section(strategy: StrategyData) -> Section:
+    """The section of the page; its script builds a situation only when it is opened, since there may be many."""
+    states, commands = size(strategy)
     parts = [
         f"<p>The strategy knows {states:,} situations and gives {commands:,} commands in them. Open a situation to see "
         "what is commanded, under which clocks, what is waited for, and where each of these leads.</p>",
         "<noscript><p>The search and the tree need JavaScript, which is switched off in this browser.</p></noscript>",
         '<div id="strategy-live" hidden>',
-        _form(book),
+        _form(strategy),
         '<div id="strategy-found" aria-live="polite"></div>',
         "<h3>From the start</h3>",
         '<div id="strategy-tree"></div>',
         "</div>",
         "<p class='quiet'>Times are in units of the scenario. “Last step” of an agent: when it last set off, arrived, "
         "began or finished something.</p>",
-        *_picture(book),
-        data("strategy-data", as_json(book)),
+        *_picture(strategy),
+        data("strategy-data", as_json(strategy)),
     ]
     body = "\n".join(parts)
     return Section("strategy", "The strategy", body, asset("strategy.css"), asset("strategy.js"))
 
 
-def graph(book: Book) -> Optional[Graph]:
+def graph(strategy: StrategyData) -> Optional[Graph]:
     """The whole strategy as a graph; None where it is too large to be read."""
-    if len(book.situations) > MOST_STATES:
+    if len(strategy.situations) > MOST_STATES:
         return None
-    lines = [_state(book, k, situation) for k, situation in enumerate(book.situations)]
+    lines = [_state(strategy, k, situation) for k, situation in enumerate(strategy.situations)]
     count = 0
-    for k, situation in enumerate(book.situations):
+    for k, situation in enumerate(strategy.situations):
         for step in (*situation.commands, *situation.others):
-            ours = bool(step.when)
-            who = shown_name(*book.automata[step.who][:2])
-            when = "\nor ".join(book.zones[zone][1] for zone in step.when)
-            label = f"{who} {step.words}" + (f"\n{when}" if ours else "")
+            commanded = bool(step.when)
+            who = shown_name(*strategy.automata[step.who][:2])
+            when = "\nor ".join(strategy.zones[zone][1] for zone in step.when)
+            label = f"{who} {step.words}" + (f"\n{when}" if commanded else "")
             names = f"strategy-graph-s{k}", f"strategy-graph-s{step.target}", f"strategy-graph-e{count}"
-            lines.append(arrow(*names, label, style="solid" if ours else "dashed", penwidth=1.6 if ours else 1))
+            style, width = ("solid", 1.6) if commanded else ("dashed", 1)
+            lines.append(arrow(*names, label, style=style, penwidth=width))
             count += 1
     return Graph("strategy-graph", "The strategy", "Full arrows are commands, dashed ones what may happen", lines)
 
 
-def example(book: Book) -> str:
-    """A question that can be asked of this strategy."""
-    robots = [name for name, kind, _ in book.automata if kind == "robot"]
-    movers = [(name, kind, [p for _, p in places if p[:1] == ("way",)]) for name, kind, places in book.automata]
+def example(strategy: StrategyData) -> str:
+    """An example of a question about this strategy; "" where there is none."""
+    robots = [name for name, kind, _ in strategy.automata if kind == "robot"]
+    movers = [(name, kind, [p for _, p in places if p[:1] == ("way",)]) for name, kind, places in strategy.automata]
     others = [(f"the {name}", ways) for name, kind, ways in movers if kind == "other" and ways]
     others += [(name, ways) for name, kind, ways in movers if kind == "robot" and name not in robots[-1:] and ways]
     if not robots or not others:
         return ""
     name, ways = others[0]
-    asked = next((robot for robot in reversed(robots) if robot != name), robots[0])
-    return f"what will {asked} do if {name} goes to {ways[0][2]}?"
+    subject = next((robot for robot in reversed(robots) if robot != name), robots[0])
+    return f"what will {subject} do if {name} goes to {ways[0][2]}?"
 
 
-def _form(book: Book) -> str:
-    hint = example(book)
+def _form(strategy: StrategyData) -> str:
+    hint = example(strategy)
     places = f' placeholder="{safe(hint)}"' if hint else ""
-    told = f" For example: <em>{safe(hint)}</em>" if hint else ""
+    example_html = f" For example: <em>{safe(hint)}</em>" if hint else ""
     return (
         '<form id="strategy-form" role="search">'
-        f'<label for="strategy-question">Ask the strategy.{told}</label>'
+        f'<label for="strategy-question">Ask the strategy.{example_html}</label>'
         f'<div class="strategy-ask"><input id="strategy-question" type="search" autocomplete="off"{places}>'
         '<button type="submit">Find</button></div>'
         "<details><summary>Choose places</summary>"
@@ -81,8 +82,8 @@ def _form(book: Book) -> str:
     )
 
 
-def _picture(book: Book) -> List[str]:
-    drawn = graph(book)
+def _picture(strategy: StrategyData) -> List[str]:
+    drawn = graph(strategy)
     picture = None if drawn is None else graphviz.draw(drawn)
     if drawn is None:
         return []
@@ -92,9 +93,9 @@ def _picture(book: Book) -> List[str]:
     return [f"<details open><summary>As a picture</summary>{figure(picture, caption)}</details>"]
 
 
-def _state(book: Book, number: int, situation: Situation) -> str:
+def _state(strategy: StrategyData, number: int, situation: Situation) -> str:
     lines = [f"#{number}"]
-    for (name, kind, places), place in zip(book.automata, situation.places):
+    for (name, kind, places), place in zip(strategy.automata, situation.places):
         if kind in ("robot", "person", "other"):
             lines.append(f"{name} {places[place][0]}")
     if situation.goal:

@@ -18,10 +18,10 @@ Key = Tuple[Tuple[str, str, str, str], ...]
 
 
 @dataclass(frozen=True)
-class Step:
-    """Something that may be done or happen: by which automaton, in words, when (numbers of zones), and where it leads.
+class Transition:
+    """A command, or an uncontrollable move: its automaton's number, its text, the numbers of its zones, its target.
 
-    `when` is empty for what nobody of ours decides. `target` is the number of a state.
+    `when` is empty for an uncontrollable move. `target` is the number of a situation.
     """
 
     who: int
@@ -34,21 +34,20 @@ class Step:
 class Situation:
     """A discrete state: `places` are locations' numbers, `values` those of the scenario's states (0 or 1).
 
-    `wait`: zones in which nobody is told anything; `commands`: ours; `others`: what else may happen. `goal`: it is
-    over, and well.
+    `wait`: zones in which no command is due; `others`: the uncontrollable moves. `goal`: the goal is reached.
     """
 
     places: Tuple[int, ...]
     values: Tuple[int, ...]
     wait: Tuple[int, ...] = ()
-    commands: Tuple[Step, ...] = ()
-    others: Tuple[Step, ...] = ()
+    commands: Tuple[Transition, ...] = ()
+    others: Tuple[Transition, ...] = ()
     goal: bool = False
 
 
 @dataclass(frozen=True)
-class Book:
-    """All situations, the first one of the play first; zones as (words, exact text).
+class StrategyData:
+    """All situations, the initial one first; zones as (words, exact text).
 
     `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`.
     """
@@ -60,50 +59,50 @@ class Book:
     situations: Tuple[Situation, ...]
 
 
-def book_of(scenario: Scenario, won: Solution, reach_obj: str) -> Book:
-    """The book of a solution; `reach_obj` as for `partition`, which tells who gives a command."""
-    maker = _Maker(scenario, won)
+def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
+    """The data of a solution's strategy; `reach_obj` as for `partition`, which decides the controller of a command."""
+    builder = _Builder(scenario, won)
     subs = partition(won.strategy, won.network, scenario.agents, reach_obj=reach_obj)
     owners: Dict[str, Tuple[str, ...]] = {}
     for sub in subs:
         for agent in sub.agents:
-            told = "told by the user interface" if sub.controller == UI else sub.controller
-            owners[agent] = (*owners.get(agent, ()), told)
+            owner = "instructed by the user interface" if sub.controller == UI else sub.controller
+            owners[agent] = (*owners.get(agent, ()), owner)
     automata = tuple(
-        (a.name, _kind(scenario, a.name), tuple(maker.place(a.name, place) for place in a.locations))
-        for a in maker.game.automata
+        (a.name, _kind(scenario, a.name), tuple(builder.place(a.name, place) for place in a.locations))
+        for a in builder.game.automata
     )
-    situations = maker.situations()
+    situations = builder.situations()
     variables = tuple(state.name for state in scenario.states)
-    return Book(automata, variables, owners, tuple(maker.zones), situations)
+    return StrategyData(automata, variables, owners, tuple(builder.zones), situations)
 
 
-def as_json(book: Book) -> Dict[str, Any]:
-    """The book for the page's script: short keys, each text once."""
+def as_json(data: StrategyData) -> Dict[str, Any]:
+    """The data for the page's script: short keys, each text once."""
     texts: Dict[str, int] = {}
 
-    def steps(some: Tuple[Step, ...]) -> List[List[Any]]:
+    def steps(some: Tuple[Transition, ...]) -> List[List[Any]]:
         return [[s.who, texts.setdefault(s.words, len(texts)), s.target, list(s.when)] for s in some]
 
     situations = [
         [list(s.places), list(s.values), list(s.wait), steps(s.commands), steps(s.others), int(s.goal)]
-        for s in book.situations
+        for s in data.situations
     ]
     return {
         "automata": [
             {"name": name, "shown": shown_name(name, kind), "kind": kind, "places": places}
-            for name, kind, places in book.automata
+            for name, kind, places in data.automata
         ],
-        "variables": list(book.variables),
-        "controllers": {name: list(owners) for name, owners in book.controllers.items()},
-        "zones": [list(zone) for zone in book.zones],
+        "variables": list(data.variables),
+        "controllers": {name: list(owners) for name, owners in data.controllers.items()},
+        "zones": [list(zone) for zone in data.zones],
         "texts": list(texts),
         "states": situations,
     }
 
 
-class _Maker:
-    """Numbers states and zones as they come."""
+class _Builder:
+    """Numbers situations and zones in the order in which they are met."""
 
     def __init__(self, scenario: Scenario, won: Solution) -> None:
         self.game: Game = compile_game(won.network, won.objective, won.reaction)
@@ -153,15 +152,15 @@ class _Maker:
             first = command.moves[0]
             key = tuple((m.automaton, m.edge.source, m.edge.target, str(m.edge.sync)) for m in command.moves)
             who = next(k for k, a in enumerate(self.game.automata) if a.name == first.automaton)
-            told = self.words.move(first.automaton, first.edge)
-            commands.append(Step(who, told, self._numbered(command.zones), number(targets[key])))
+            text = self.words.move(first.automaton, first.edge)
+            commands.append(Transition(who, text, self._numbered(command.zones), number(targets[key])))
         others = []
         for move in moves:
             known = move.target in self._blocks or is_goal(self.game, move.target)
             if not move.controllable and known:  # others cannot happen while the strategy is followed
                 edge = self.game.origins[move.edges[0]]
-                told = self.words.move(self.game.automata[move.owner].name, edge)
-                others.append(Step(move.owner, told, (), number(move.target)))
+                text = self.words.move(self.game.automata[move.owner].name, edge)
+                others.append(Transition(move.owner, text, (), number(move.target)))
         return Situation(
             state.locations, values, self._numbered(block.wait), tuple(commands), tuple(others), goal=False
         )
@@ -183,14 +182,14 @@ class _Maker:
         return State(locations, tuple(value for _, value in state.values))
 
 
-def size(book: Book) -> Tuple[int, int]:
-    """How many situations say what to do, and how many commands there are."""
-    told = [s for s in book.situations if s.commands or s.wait]
-    return len(told), sum(len(s.commands) for s in told)
+def size(data: StrategyData) -> Tuple[int, int]:
+    """How many situations the strategy covers, and how many commands it has."""
+    covered = [s for s in data.situations if s.commands or s.wait]
+    return len(covered), sum(len(s.commands) for s in covered)
 
 
 def shown_name(name: str, kind: str) -> str:
-    """How an automaton is called before people."""
+    """The name of an automaton on the page."""
     return {"goal": "the goal", "deadline": "the objective"}.get(kind, name)
 
 

@@ -96,7 +96,7 @@ def section(
 
 def _policy(one: CommandsTable, first: bool) -> str:
     owner = {DEDICATED: "a controller of their own has them", ALL: "every robot has them"}
-    told = owner.get(one.reach_obj, f"{one.reach_obj} has them")
+    policy = owner.get(one.reach_obj, f"{one.reach_obj} has them")
     heads = ["controller", "commands", "%", "lines", "%"]
     thesis = one.reach_obj == one.thesis_reach_obj
     heads += ["thesis: commands", "%", "lines", "%"] if thesis else []
@@ -111,7 +111,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
             cells += [figure.lines, _share(figure.lines, general.thesis.lines)] if figure else ["-", "-"]
         rows.append(cells)
     end = ", as in the thesis" if thesis and first else ""
-    return table(heads, rows, f"The objective's commands: {told}{end}")
+    return table(heads, rows, f"The objective's commands: {policy}{end}")
 
 
 def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times]) -> str:
@@ -127,12 +127,12 @@ def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times])
             seconds = thesis.centralized if one.controllers == CENTRALIZED else thesis.distributed
             found.append("not reached" if seconds is None else _number(seconds))
         rows.append([label, *found])
-    told = table(heads, rows, "In time units from the start")
+    times = table(heads, rows, "In time units from the start")
     note = "<p class='quiet'>Simulated without faults, with the code of the generated controllers; what nobody "
     note += "controls does anything, the worst, or nothing."
     if thesis:
         note += " The thesis measured its own programs once, in seconds; its interface cut movements short."
-    return f"{told}{note}</p>" if missions else told
+    return f"{times}{note}</p>" if missions else times
 
 
 def _safety(missions: Sequence[Measured]) -> str:

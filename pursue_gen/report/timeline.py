@@ -10,7 +10,7 @@ from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language.scenario import Respond
 from pursue_gen.replay.record import HOLDING, LOST, STOPPED, WON
 from pursue_gen.report.html import Section, table
-from pursue_gen.report.recording import Recording, Stay, Step, ending_words, lasting, stays
+from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.words import event_word
@@ -19,8 +19,8 @@ _WIDTH, _WIDEST = 960.0, 2000.0
 _ROW, _BAR, _TOP = 54.0, 16.0, 54.0
 _SIDE, _RIGHT = 24.0, 30.0
 _LETTER, _BOLD = 7.0, 8.0  # px, a generous guess at how wide a small letter is, and a bold one
-_DAY = 70.0  # px between two marks of the time axis, at least
-_ROOMY = 0.8  # this part of the bars gets room for its whole label, if the picture is not too wide then
+_TICK = 70.0  # px between two marks of the time axis, at least
+_LABELLED = 0.8  # this part of the bars gets room for its whole label, if the picture is not too wide then
 
 _ID = "timeline"
 
@@ -69,14 +69,14 @@ def draw(recording: Recording, ident: str = _ID) -> str:
         body.append(tag("g", *head, inner, class_="lane", data_lane=lane.name))
     body += _end(recording, scale, _TOP + _ROW * len(rows))
     title = f"{recording.scenario.name}: {recording.source}"
-    told = f"{len(recording.steps)} steps in {_time(recording.end)} time units; {ending_words(recording)}"
-    return svg(scale.width, height, title, told, [*_heading(recording, title, told), *body], ident)
+    description = f"{len(recording.steps)} steps in {_time(recording.end)} time units; {ending_text(recording)}"
+    return svg(scale.width, height, title, description, [*_heading(recording, title, description), *body], ident)
 
 
 def section(recording: Recording, ident: str = _ID) -> Section:
     """The timeline as a part of a page, with a table of all steps."""
     words = words_of(recording.scenario, recording.network)
-    rows = [(_time(step.at), step.agent, _said(step, words, recording.network)) for step in recording.steps]
+    rows = [(_time(step.at), step.agent, _step_text(step, words, recording.network)) for step in recording.steps]
     steps = table(("Time", "Who", "What"), rows, "All steps; times in time units since the start")
     caption = "Bars are movements and actions, lines are waits; times are in time units since the start."
     picture = (
@@ -103,7 +103,7 @@ def _scale(recording: Recording, words: Words) -> Scale:
         if stay.over and stay.end > stay.start and _bar_label(words, stay.what)
     )
     wanted = sorted(bars)
-    roomy = end * wanted[int(_ROOMY * (len(wanted) - 1))] if wanted else 0.0
+    roomy = end * wanted[int(_LABELLED * (len(wanted) - 1))] if wanted else 0.0
     inner = min(max(_WIDTH - left - _RIGHT - 40, roomy), _WIDEST)
     return Scale(left, inner / end, left + inner + _RIGHT + 40, end)
 
@@ -119,14 +119,14 @@ def _names(recording: Recording) -> List[str]:
     return [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules), "deadline"]
 
 
-def _heading(recording: Recording, title: str, told: str) -> Iterator[str]:
+def _heading(recording: Recording, title: str, description: str) -> Iterator[str]:
     yield text(12, 20, title, "pg-strong", "start")
-    yield text(12 + 9.2 * len(title) + 16, 20, told, "pg-small", "start")
+    yield text(12 + 9.2 * len(title) + 16, 20, description, "pg-small", "start")
 
 
 def _axis(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
     """The marks of the time axis, above and below."""
-    step = _nice(_DAY / scale.unit)
+    step = _nice(_TICK / scale.unit)
     count = int(scale.end / step + 1e-9)
     for k in range(count + 1):
         at = k * step
@@ -142,7 +142,7 @@ def _end(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
     x = scale.x(recording.end)
     yield tag("line", x1=x, y1=_TOP - 8, x2=x, y2=bottom + 6, stroke="#1b1f24", stroke_width=3, class_="end")
     anchor = "end" if x > scale.width - 160 else "start"
-    yield text(x + (-6 if anchor == "end" else 6), bottom + 34, f"{ending_words(recording)}, {_time(recording.end)}",
+    yield text(x + (-6 if anchor == "end" else 6), bottom + 34, f"{ending_text(recording)}, {_time(recording.end)}",
                "pg-strong pg-halo", anchor)
 
 
@@ -157,8 +157,8 @@ def _lanes(
         fill = f"url(#{ident}-fill-{number})"
         lanes.append(Lane(agent, tuple(_agent(recording, words, scale, agent, looks[agent], fill)), agent))
     for state in recording.scenario.states:
-        told = ((step.at, str(step.values.get(names.state_value(state.name), 0))) for step in recording.steps)
-        found = [stay for stay in lasting(recording, told) if stay.what == "1"]
+        changes = ((step.at, str(step.values.get(names.state_value(state.name), 0))) for step in recording.steps)
+        found = [stay for stay in lasting(recording, changes) if stay.what == "1"]
         lanes.append(Lane(state.name, tuple(_box(scale, stay, "true") for stay in found)))
     for rule in recording.scenario.rules:
         found = list(stays(recording, rule.name))
@@ -190,12 +190,12 @@ def _agent(
         if step.agent != agent or before.locations.get(agent) != step.locations.get(agent):
             continue
         x, label = scale.x(step.at), step.event
-        told = tag("title", safe(f"{agent}: {label} at {_time(step.at)}"))
+        tooltip = tag("title", safe(f"{agent}: {label} at {_time(step.at)}"))
         shown = mark(look, x, 28, 8.0, stroke="#ffffff", stroke_width=1.5)
         room = x - len(label) * _LETTER / 2
         under = text(x, 50, label, "pg-small pg-strong") if room > free else ""
         free = x + len(label) * _LETTER / 2 if under else free
-        yield tag("g", told, shown, under, class_="instant")
+        yield tag("g", tooltip, shown, under, class_="instant")
 
 
 def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
@@ -207,8 +207,8 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
     for stay in stays(recording, names.OBJECTIVE):
         if stay.what == names.AT_RISK:
             due = stay.start + safety.deadline
-            told = f"{safety.response.name} due by {_time(due)}"
-            parts.append(_box(scale, stay, f"due by {_time(due)}", told))
+            tooltip = f"{safety.response.name} due by {_time(due)}"
+            parts.append(_box(scale, stay, f"due by {_time(due)}", tooltip))
             if due <= recording.end:
                 x = scale.x(due)
                 parts.append(tag("path", d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
@@ -232,16 +232,16 @@ def _course(recording: Recording, scale: Scale) -> Iterator[Lane]:
 # The parts of a lane --------------------------------------------------------------------------------------------------
 
 
-def _bar(scale: Scale, stay: Stay, label: str, colour: str, fill: str, told: str, border: float) -> str:
+def _bar(scale: Scale, stay: Stay, label: str, colour: str, fill: str, tooltip: str, border: float) -> str:
     x, width = scale.x(stay.start), max(2.0, scale.unit * (stay.end - stay.start))
     rect = tag("rect", x=x, y=20.0, width=width, height=_BAR, rx=3, fill=fill, stroke=colour, stroke_width=border)
-    return tag("g", _title(stay, told), rect, label, class_="bar")
+    return tag("g", _title(stay, tooltip), rect, label, class_="bar")
 
 
-def _box(scale: Scale, stay: Stay, label: str, told: str = "") -> str:
+def _box(scale: Scale, stay: Stay, label: str, tooltip: str = "") -> str:
     x, width = scale.x(stay.start), max(2.0, scale.unit * (stay.end - stay.start))
     rect = tag("rect", x=x, y=22.0, width=width, height=12.0, rx=2, fill="#d0d7de", stroke="#57606a", stroke_width=1.5)
-    return tag("g", _title(stay, told or label), rect, _label(x, width, label), class_="box")
+    return tag("g", _title(stay, tooltip or label), rect, _label(x, width, label), class_="box")
 
 
 def _line(scale: Scale, stay: Stay, label: str, kind: str = "turn", moved: float = 0.0) -> str:
@@ -266,21 +266,21 @@ def _short(label: str, letters: float) -> str:
     return label[: most - 1] + "…" if most >= 6 else ""
 
 
-def _title(stay: Stay, told: str) -> str:
+def _title(stay: Stay, tooltip: str) -> str:
     until = f"to {_time(stay.end)}" if stay.over else "to the end"
-    return tag("title", safe(f"{told}, {_time(stay.start)} {until}"))
+    return tag("title", safe(f"{tooltip}, {_time(stay.start)} {until}"))
 
 
-def _said(step: Step, words: Words, network: Network) -> str:
-    """A step in words."""
+def _step_text(step: Step, words: Words, network: Network) -> str:
+    """What happened in a step, in a sentence."""
     if not step.event:
-        told = {WON: "the goal is reached", LOST: "it is lost", STOPPED: "it is stopped", HOLDING: "it is held"}
-        what = told.get(step.status, "the mission runs")
+        texts = {WON: "the goal is reached", LOST: "it is lost", STOPPED: "it is stopped", HOLDING: "it is held"}
+        what = texts.get(step.status, "the mission runs")
         return f"{what}: {step.reason}" if step.reason else what
-    return event_words(step, words, network)
+    return event_text(step, words, network)
 
 
-def event_words(step: Step, words: Words, network: Network) -> str:
+def event_text(step: Step, words: Words, network: Network) -> str:
     """What the agent did, in words."""
     found: Dict[str, str] = {}
     for automaton in network.automata:

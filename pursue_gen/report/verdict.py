@@ -18,7 +18,7 @@ from pursue_gen.solving.solution import Solution
 
 @dataclass(frozen=True)
 class Lost:
-    """A scenario that is not won: what the solver said, and what explains it (None: it was not looked for)."""
+    """A scenario that is not won: the solver's findings, and their explanation (None: not looked for)."""
 
     findings: Sequence[Diagnostic]
     explanation: Optional[Explanation]
@@ -63,24 +63,24 @@ def _lost(lost: Lost) -> List[str]:
     return parts + (_explained(lost.explanation) if lost.explanation else [])
 
 
-def _explained(told: Explanation) -> List[str]:
+def _explained(explanation: Explanation) -> List[str]:
     parts = ["<h3>What would change that</h3>"]
-    if told.changes:
+    if explanation.changes:
         items = []
-        for change in told.changes:
+        for change in explanation.changes:
             notes = [f"line {change.span.line}"] if change.span else []
             if change.next_lost != change.before:
                 notes.insert(0, f"{change.next_lost} is not enough")
-            told_so = f" ({'; '.join(notes)})" if notes else ""
-            items.append(f"<li>{safe(change.sentence + told_so)}</li>")
+            note = f" ({'; '.join(notes)})" if notes else ""
+            items.append(f"<li>{safe(change.sentence + note)}</li>")
         parts.append(f"<p>Each of these alone (found by solving again):</p><ul>{''.join(items)}</ul>")
     else:
         parts.append("<p>No single small change that was tried would change that.</p>")
-    for title, entries in (("Not enough alone", told.lost), ("Not decided in the time", told.undecided)):
+    for title, entries in (("Not enough alone", explanation.lost), ("Not decided in the time", explanation.undecided)):
         if entries:
             parts.append(f"<p>{title}: {safe('; '.join(entries))}.</p>")
     parts.append("<h3>How it goes wrong, for example</h3>")
-    rows = [(time_text(line.at), line.who, line.text) for line in told.play]
+    rows = [(time_text(line.at), line.who, line.text) for line in explanation.play]
     none = "<p>A play that shows it was not computed in the time.</p>"
     return [*parts, table(("time (units)", "who", "what"), rows) if rows else none]
 

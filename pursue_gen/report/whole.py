@@ -15,7 +15,7 @@ from pursue_gen.report import animation, automata, graphviz, ros_graph, strategy
 from pursue_gen.report.commands import CommandsTable
 from pursue_gen.report.html import Section, figure, page
 from pursue_gen.report.recording import Recording
-from pursue_gen.report.strategy_data import Book, book_of
+from pursue_gen.report.strategy_data import StrategyData, strategy_data_of
 from pursue_gen.report.tables import Measured
 from pursue_gen.report.verdict import Lost
 from pursue_gen.solving.rules import Rules
@@ -25,7 +25,7 @@ from pursue_gen.tga.network import Network
 
 @dataclass(frozen=True)
 class Report:
-    """Everything that is told. `network` is the game as it is played under `rules`.
+    """The content of a report. `network` is the game as it is played under `rules`.
 
     A scenario that is won has `won`, `margin` (sentences), `tables` and `missions` (empty: not simulated); one that is
     not has `lost`. `reach_obj`: who gets the objective's commands. `floor`: what lies under the map. `recording`: the
@@ -52,7 +52,7 @@ def report_page(report: Report) -> str:
     if report.recording is not None:
         sections += [timeline.section(report.recording), animation.section(scenario, report.recording)]
     if won is not None:
-        sections.append(strategy.section(_book(report, won)))
+        sections.append(strategy.section(_strategy_data(report, won)))
         sections.append(tables.section(scenario, won, report.tables, report.missions))
     sections.append(automata.section(report.network, scenario))
     if won is not None:
@@ -68,7 +68,7 @@ def pictures(report: Report) -> Dict[str, str]:
         found["timeline"] = timeline.draw(report.recording, "timeline-picture")
     graphs = {f"automaton_{a.name}": automata.graph(a) for a in report.network.automata}
     if report.won is not None:
-        graphs["strategy"] = strategy.graph(_book(report, report.won))
+        graphs["strategy"] = strategy.graph(_strategy_data(report, report.won))
         graphs["ros_graph"] = ros_graph.graph(_topics(report, report.won))
     for name, graph in graphs.items():
         if graph is not None:
@@ -78,8 +78,8 @@ def pictures(report: Report) -> Dict[str, str]:
 
 def _map(report: Report) -> Section:
     _, computed = poses(report.scenario)
-    told = f"Positions are {'computed from the distances' if computed else 'those of the scenario, in metres'}."
-    shown = figure(_map_svg(report, "map-picture"), f"{told} Distances stand at the connections.")
+    positions = f"Positions are {'computed from the distances' if computed else 'those of the scenario, in metres'}."
+    shown = figure(_map_svg(report, "map-picture"), f"{positions} Distances stand at the connections.")
     return Section("map", "The map", shown)
 
 
@@ -88,8 +88,8 @@ def _map_svg(report: Report, ident: str = "") -> str:
     return map_svg.draw(report.scenario, where, computed, report.floor, ident)
 
 
-def _book(report: Report, won: Solution) -> Book:
-    return book_of(report.scenario, won, report.reach_obj)
+def _strategy_data(report: Report, won: Solution) -> StrategyData:
+    return strategy_data_of(report.scenario, won, report.reach_obj)
 
 
 def _topics(report: Report, won: Solution) -> Sequence[ros_graph.Topic]:

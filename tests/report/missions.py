@@ -27,14 +27,14 @@ def mission(name: str, opponent: str = "random", seed: int = 3, until: float = 1
     return simulated(case, seed)
 
 
-def made_up(*told: Tuple[float, str, str, Dict[str, str], str], end: float = 20.0) -> Recording:
-    """A mission of scenario 1: moment, agent, event, who is elsewhere from then on, status."""
+def made_up(*changes: Tuple[float, str, str, Dict[str, str], str], end: float = 20.0) -> Recording:
+    """A mission of scenario 1: time, agent, event, new locations from then on, status."""
     scenario = load(SCENARIOS / "thesis" / "scenario_1.pur")
     network = played(translate(scenario), Rules())
     places = {automaton.name: automaton.initial for automaton in network.automata}
     values = dict(network.variables)
     steps: List[Step] = [Step(0.0, dict(places), values)]
-    for at, agent, event, changes, status in told:
-        places = {**places, **changes}
+    for at, agent, event, moved, status in changes:
+        places = {**places, **moved}
         steps.append(Step(at, dict(places), values, agent, event, status))
     return Recording(scenario, network, tuple(steps), end, "made up")

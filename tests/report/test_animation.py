@@ -40,7 +40,7 @@ def test_without_scripts_it_shows_the_beginning() -> None:
 
 
 def test_agents_at_one_place_do_not_hide_each_other() -> None:
-    sides = [animation._aside(number, 4) for number in range(4)]
+    sides = [animation._offset(number, 4) for number in range(4)]
     assert len({(round(x), round(y)) for x, y in sides}) == 4
     assert all(y < 0 for _, y in sides)
 
@@ -97,7 +97,7 @@ def test_the_slider_moves_the_agents_along_their_ways(window: "browsers.Browser"
     for k in (0, 1):
         assert half[k] == pytest.approx((at_c[k] + at_b[k]) / 2, abs=30)
     assert window.value("document.querySelector('#animation-agent-0 .busy').getAttribute('visibility')") == "visible"
-    assert "bot1 begins bot1_inb" in window.text("#animation-told")
+    assert "bot1 begins bot1_inb" in window.text("#animation-caption")
     assert "doing bot1_inb at b" in window.text("#animation-where")
     assert window.complaints == []
 
@@ -121,7 +121,7 @@ def test_steps_go_from_event_to_event(window: "browsers.Browser") -> None:
     assert window.text("#animation-now") == "11"
     window.click("#animation-back")
     assert window.text("#animation-now") == "1"
-    assert "bot1 sets off from c to b" in window.text("#animation-told")
+    assert "bot1 sets off from c to b" in window.text("#animation-caption")
 
 
 @in_browser

@@ -25,7 +25,7 @@ reach_objective: do catch after 0
 """
 
 
-class Told(NamedTuple):
+class Result(NamedTuple):
     status: int
     out: str
     err: str
@@ -37,15 +37,15 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def pursue(*words: object) -> Told:
-    """The command line; `err` holds all that was said."""
+def pursue(*words: object) -> Result:
+    """The command line; `err` holds all that was message."""
     done = CliRunner().invoke(app, [str(word) for word in words])
-    return Told(done.exit_code, done.stdout, done.output)
+    return Result(done.exit_code, done.stdout, done.output)
 
 
 def test_the_page_goes_to_the_file_or_beside_and_is_named_on_stdout(tmp_path: Path) -> None:
-    told = pursue("report", FIRST, "--html", "--runs", 0)
-    assert (told.status, told.out.split()[0]) == (0, "scenario_1_report.html")
+    result = pursue("report", FIRST, "--html", "--runs", 0)
+    assert (result.status, result.out.split()[0]) == (0, "scenario_1_report.html")
     assert (tmp_path / "scenario_1_report.html").read_text().startswith("<!DOCTYPE html>")
     assert pursue("report", FIRST, "--html", "there/page.html", "--runs", 0).status == 0
     assert (tmp_path / "there" / "page.html").read_bytes() == (tmp_path / "scenario_1_report.html").read_bytes()
@@ -62,21 +62,21 @@ def test_a_page_replaces_a_page_and_nothing_else(tmp_path: Path) -> None:
 
 def test_a_lost_scenario_gets_its_page_too(tmp_path: Path) -> None:
     (tmp_path / "lost.pur").write_text(LOST)
-    told = pursue("report", "lost.pur", "--html")
-    assert told.status == 0 and "SYN021" in told.err
+    result = pursue("report", "lost.pur", "--html")
+    assert result.status == 0 and "SYN021" in result.err
     assert "It cannot be met" in (tmp_path / "lost_report.html").read_text()
 
 
 @pytest.mark.skipif(not (graphviz.installed() and available()), reason="graphviz or a maker of PNGs is missing")
 def test_every_picture_is_written_twice(tmp_path: Path) -> None:
-    told = pursue("report", CELL, "--pictures", "pictures")
-    assert told.status == 0
+    result = pursue("report", CELL, "--pictures", "pictures")
+    assert result.status == 0
     names = {file.stem for file in (tmp_path / "pictures").iterdir()}
     assert {"map", "strategy", "ros_graph"} < names
     assert {file.name for file in (tmp_path / "pictures").iterdir()} == {
         f"{n}.{end}" for n in names for end in ("svg", "png")
     }
-    assert all((tmp_path / line).is_file() for line in told.out.split() if line.startswith("pictures/"))
+    assert all((tmp_path / line).is_file() for line in result.out.split() if line.startswith("pictures/"))
 
 
 @pytest.mark.skipif(not graphviz.installed(), reason="graphviz is missing")
@@ -85,13 +85,13 @@ def test_without_a_program_for_pngs_pictures_are_written_as_svg_with_a_warning(
 ) -> None:
     monkeypatch.setattr(png.shutil, "which", lambda name: None if name == "rsvg-convert" else f"/usr/bin/{name}")
     monkeypatch.setitem(sys.modules, "cairosvg", None)
-    told = pursue("report", CELL, "--pictures", "pictures")
-    assert told.status == 0
-    assert "warning REP003" in told.err and "librsvg2-bin" in told.err
+    result = pursue("report", CELL, "--pictures", "pictures")
+    assert result.status == 0
+    assert "warning REP003" in result.err and "librsvg2-bin" in result.err
     files = {file.name for file in (tmp_path / "pictures").iterdir()}
     assert {"map.svg", "strategy.svg", "ros_graph.svg"} < files
     assert {Path(name).suffix for name in files} == {".svg"}
-    assert {Path(line).name for line in told.out.splitlines()} == files
+    assert {Path(line).name for line in result.out.splitlines()} == files
 
 
 @pytest.mark.skipif(not available(), reason="a maker of PNGs is missing")
@@ -99,15 +99,15 @@ def test_without_graphviz_the_rest_is_written_and_the_status_is_6(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(graphviz.shutil, "which", lambda name: None if name == "dot" else f"/usr/bin/{name}")
-    told = pursue("report", FIRST, "--pictures", "pictures")
-    assert told.status == 6 and "apt install graphviz" in told.err
+    result = pursue("report", FIRST, "--pictures", "pictures")
+    assert result.status == 6 and "apt install graphviz" in result.err
     assert {file.name for file in (tmp_path / "pictures").iterdir()} == {
         f"{name}.{end}" for name in ("map", "timeline") for end in ("svg", "png")
     }
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("page.html",), "--html page.html"),
         (("--map", "map.yaml"), "--html or --pictures"),
@@ -115,7 +115,7 @@ def test_without_graphviz_the_rest_is_written_and_the_status_is_6(
         (("--html", "--map", "none.yaml"), "none.yaml"),
     ],
 )
-def test_options_without_meaning_are_refused(tmp_path: Path, words: Tuple[str, ...], said: str) -> None:
-    told = pursue("report", FIRST, *words)
-    assert told.status == 2 and said in told.err
+def test_options_without_meaning_are_refused(tmp_path: Path, words: Tuple[str, ...], message: str) -> None:
+    result = pursue("report", FIRST, *words)
+    assert result.status == 2 and message in result.err
     assert not list(tmp_path.iterdir())

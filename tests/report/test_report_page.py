@@ -69,7 +69,7 @@ def opened(there: Browser, folder: Path, text: str) -> Browser:
     return there
 
 
-def asked(there: Browser, question: str) -> str:
+def answer_to(there: Browser, question: str) -> str:
     """What the strategy answers, the situations left out."""
     there.value("document.getElementById('strategy-question').value = " + repr(question))
     there.click("#strategy-form button")
@@ -125,18 +125,18 @@ def test_a_scenario_that_cannot_be_won_is_explained() -> None:
 @needs_browser
 def test_a_question_in_plain_words_is_answered(there: Browser, tmp_path: Path, catch: str) -> None:
     opened(there, tmp_path, catch)
-    told = asked(there, "What will polBot2 do if the thief goes to d?")
-    assert "thief is on the way from c to d or on the way from a to d" in told
-    assert "polBot2 (controller_polBot2)" in told and "polBot2 sets off from a to d" in told
+    answer = answer_to(there, "What will polBot2 do if the thief goes to d?")
+    assert "thief is on the way from c to d or on the way from a to d" in answer
+    assert "polBot2 (controller_polBot2)" in answer and "polBot2 sets off from a to d" in answer
     shown = there.value(
         "[...document.querySelectorAll('#strategy-found > .state > summary')].map((s) => s.textContent)"
     )
     assert shown and all(re.search("thief on the way from [ac] to d", one) for one in shown)
-    assert "thief is at c" in asked(there, "polBot1 when thief is at c")
-    assert "thief is at c or at a" in asked(there, "what happens when the thief is at c or a?")
-    assert "thief is on the way from c to d." in asked(there, "polBot1 if the thief goes from c to d")
-    assert "Not understood: dragon" in asked(there, "what will polBot1 do if the dragon goes to d?")
-    assert "never happens" in asked(there, "polBot1 at a and polBot2 at a and thief at b")
+    assert "thief is at c" in answer_to(there, "polBot1 when thief is at c")
+    assert "thief is at c or at a" in answer_to(there, "what happens when the thief is at c or a?")
+    assert "thief is on the way from c to d." in answer_to(there, "polBot1 if the thief goes from c to d")
+    assert "Not understood: dragon" in answer_to(there, "what will polBot1 do if the dragon goes to d?")
+    assert "never happens" in answer_to(there, "polBot1 at a and polBot2 at a and thief at b")
     assert there.complaints == []
 
 
@@ -144,14 +144,14 @@ def test_a_question_in_plain_words_is_answered(there: Browser, tmp_path: Path, c
 def test_the_answer_is_that_of_the_data(there: Browser, tmp_path: Path, catch: str) -> None:
     """Counted once more, without the page's own search."""
     opened(there, tmp_path, catch)
-    told = asked(there, "polBot1 if the thief is at c")
+    answer = answer_to(there, "polBot1 if the thief is at c")
     count = there.value(
         "(() => { const b = JSON.parse(document.getElementById('strategy-data').textContent);"
         "const k = b.automata.findIndex((a) => a.name === 'thief');"
         "const c = b.automata[k].places.findIndex((p) => p[0] === 'at c');"
         "return b.states.filter((s) => s[0][k] === c).length; })()"
     )
-    assert f"{count} situations" in told
+    assert f"{count} situations" in answer
 
 
 @needs_browser
@@ -176,8 +176,8 @@ def test_places_can_be_chosen_from_lists(there: Browser, tmp_path: Path) -> None
         "s.value = '1'; s.dispatchEvent(new Event('change', { bubbles: true })); })()"
     )
     assert "waiting is true" in there.text(".strategy-answer")
-    assert "helper (controller_helper): " in asked(there, "helper when waiting is true").replace(":", ": ")
-    assert "helper is doing bring at ward." in asked(there, "helper doing bring")
+    assert "helper (controller_helper): " in answer_to(there, "helper when waiting is true").replace(":", ": ")
+    assert "helper is doing bring at ward." in answer_to(there, "helper doing bring")
     assert there.value("window.hacked === undefined") and there.complaints == []
 
 
@@ -186,7 +186,7 @@ def test_places_can_be_chosen_from_lists(there: Browser, tmp_path: Path) -> None
 def test_nothing_is_wider_than_the_screen(there: Browser, tmp_path: Path, catch: str, width: int) -> None:
     opened(there, tmp_path, catch)
     there.screen(width, 800)
-    asked(there, "polBot2 if the thief goes to d")
+    answer_to(there, "polBot2 if the thief goes to d")
     there.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     there.wait("document.querySelectorAll('#strategy-found .state ul').length > 0")
     assert there.value("document.documentElement.scrollWidth <= innerWidth")

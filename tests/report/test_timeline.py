@@ -30,8 +30,8 @@ def lanes(svg: str) -> Dict[str, ElementTree.Element]:
     return {g.get("data-lane", ""): g for g in groups if g.get("class") == "lane"}
 
 
-def told(lane: ElementTree.Element, kind: str) -> List[str]:
-    """What is told of the parts of a kind: bar, wait, instant, box, turn."""
+def tooltips(lane: ElementTree.Element, kind: str) -> List[str]:
+    """The tooltips of the parts of a kind: bar, wait, instant, box, turn."""
     parts = (g for g in lane.iter(f"{SVG}g") if g.get("class") == kind)
     return [title.text or "" for g in parts for title in g.iter(f"{SVG}title")]
 
@@ -61,8 +61,8 @@ def test_movements_actions_and_waits_stand_in_their_order() -> None:
         (15.25, "bot1", "bot1_inbDONE", {"bot1": "b"}, RUNNING),
     )
     lane = lanes(draw(made))["bot1"]
-    assert told(lane, "bar") == ["from c → b, 1 to 10.5", "bot1_inb at b, 12 to 15.25"]
-    assert told(lane, "wait") == ["at c, 0 to 1", "at b, 10.5 to 12", "at b, 15.25 to the end"]
+    assert tooltips(lane, "bar") == ["from c → b, 1 to 10.5", "bot1_inb at b, 12 to 15.25"]
+    assert tooltips(lane, "wait") == ["at c, 0 to 1", "at b, 10.5 to 12", "at b, 15.25 to the end"]
     (a, b), (c, d) = ends(lane)
     unit = (b - a) / 9.5
     assert (d - c) == pytest.approx(3.25 * unit, abs=0.05)
@@ -71,13 +71,13 @@ def test_movements_actions_and_waits_stand_in_their_order() -> None:
 
 def test_what_takes_no_time_is_a_mark() -> None:
     lane = lanes(draw(mission("thesis/catch_the_thief")))["polBot2"]
-    (mark,) = told(lane, "instant")
+    (mark,) = tooltips(lane, "instant")
     assert mark.startswith("polBot2: catch at ")
 
 
 def test_deadlines_run_until_they_are_met() -> None:
     made = mission("ecobot/ecobot")
-    boxes = told(lanes(draw(made))["deadline"], "box")
+    boxes = tooltips(lanes(draw(made))["deadline"], "box")
     begun = [stay.start for stay in stays(made, "obj") if stay.what == "atRisk"]
     assert begun and len(boxes) == len(begun)
     for box, start in zip(boxes, begun):
@@ -86,7 +86,7 @@ def test_deadlines_run_until_they_are_met() -> None:
 
 
 def test_rules_tell_whose_turn_it_is() -> None:
-    turns = told(lanes(draw(mission("thesis/scenario_1")))["rule1"], "turn")
+    turns = tooltips(lanes(draw(mission("thesis/scenario_1")))["rule1"], "turn")
     assert [turn.partition(",")[0] for turn in turns] == [
         "next: bot1_inb", "during bot1_inb", "next: bot2_ina", "during bot2_ina", "next: bot1_inb"]
 
@@ -101,7 +101,7 @@ def test_holding_and_new_plans_have_a_lane_where_there_are_any() -> None:
     made = made_up((4.0, "", "", {}, HOLDING), (9.0, "", "", {}, RUNNING))
     made = replace(made, steps=(*made.steps[:2], replace(made.steps[2], plan=1)))
     lane = lanes(draw(made))["course"]
-    assert told(lane, "box") == ["holding, 4 to 9"]
+    assert tooltips(lane, "box") == ["holding, 4 to 9"]
     assert "plan 1" in [element.text for element in lane.iter(f"{SVG}text")]
     assert "course" not in lanes(draw(made_up()))
 
@@ -130,8 +130,8 @@ def test_a_part_of_a_page_has_the_steps_as_a_table() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(0, 100), st.sampled_from("abc")), min_size=1, max_size=12))
-def test_what_lasts_follows_on_each_other_without_gaps(told_: List[Tuple[float, str]]) -> None:
-    ordered = sorted(told_, key=lambda pair: pair[0])
+def test_what_lasts_follows_on_each_other_without_gaps(changes: List[Tuple[float, str]]) -> None:
+    ordered = sorted(changes, key=lambda pair: pair[0])
     made = made_up(end=100.0)
     found = lasting(made, ordered)
     assert found[-1].end == 100.0 and not found[-1].over
@@ -168,8 +168,8 @@ def test_a_bag_is_drawn_as_it_was(tmp_path: Path) -> None:
     made = from_record(record, game.scenario, game.network, bag.name)
     assert made is not None and made.status == WON
     found = lanes(draw(made))
-    assert told(found["bot1"], "bar") == ["from c → b, 1.1 to 10.4", "bot1_inb at b, 11.5 to 14.8"]
-    assert told(found["bot2"], "bar") == ["from c → a, 1.1 to 10.9", "bot2_ina at a, 14.9 to 21.3"]
+    assert tooltips(found["bot1"], "bar") == ["from c → b, 1.1 to 10.4", "bot1_inb at b, 11.5 to 14.8"]
+    assert tooltips(found["bot2"], "bar") == ["from c → a, 1.1 to 10.9", "bot2_ina at a, 14.9 to 21.3"]
 
 
 # The commands ---------------------------------------------------------------------------------------------------------
