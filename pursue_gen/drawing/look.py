@@ -153,6 +153,6 @@ def svg(width: float, height: float, title: str, description: str, body: Iterabl
         f'width="{number(width)}" height="{number(height)}" style="max-width:100%;height:auto"'
         + (f' id="{safe(ident)}">' if ident else ">")
     )
-    told = f"<title>{safe(title)}</title>\n<desc>{safe(description)}</desc>\n<style>{STYLE}</style>"
+    texts = f"<title>{safe(title)}</title>\n<desc>{safe(description)}</desc>\n<style>{STYLE}</style>"
     ground = tag("rect", width="100%", height="100%", fill=PAPER)
-    return "\n".join([head, told, ground, *body, "</svg>"]) + "\n"
+    return "\n".join([head, texts, ground, *body, "</svg>"]) + "\n"

@@ -26,7 +26,7 @@ def draw(
     floor: Optional[Floor] = None,
     ident: str = "",
 ) -> str:
-    """The map as an SVG document; `computed` says under it that the poses were not given but computed.
+    """The map as an SVG document; `computed` adds a note that the poses were computed, not given.
 
     `floor` is drawn under it, `ident` is the picture's id in a page.
     """
@@ -41,7 +41,7 @@ def draw(
     body += _standing(scenario, places, looks)
     above, below = _room(scenario, places, paper.height)
     for agent in scenario.agents:
-        lines = _wrapped(_told(agent), width - 150)
+        lines = _wrapped(_description(agent), width - 150)
         body += _legend(agent, looks[agent.name], lines, below)
         below += _LINE * len(lines) + 8
     notes = [_anywhere(scenario)] if _anywhere(scenario) else []
@@ -51,10 +51,10 @@ def draw(
             body.append(text(20, below + 12, line, "pg-small", "start"))
             below += _LINE
     title = f"Map of {scenario.name}"
-    told = f"{len(places)} places, {len(scenario.connections)} connections, {len(scenario.agents)} agents"
+    description = f"{len(places)} places, {len(scenario.connections)} connections, {len(scenario.agents)} agents"
     if above:  # many agents start at a place near the upper rim
         body = [tag("g", "\n".join(body), transform=f"translate(0 {above:.2f})")]
-    return svg(width, above + below + 10, title, told, body, ident)
+    return svg(width, above + below + 10, title, description, body, ident)
 
 
 class Paper:
@@ -147,7 +147,7 @@ def _legend(agent: Agent, look: AgentLook, lines: List[str], top: float) -> List
     return [mark(look, 20, top + 7, 7.0), line, *words]
 
 
-def _told(agent: Agent) -> str:
+def _description(agent: Agent) -> str:
     """What an agent is and can do, in a sentence."""
     parts = [f"{agent.name}: {kind_words(agent)}, {speed_words(agent)}"]
     if agent.can_do:

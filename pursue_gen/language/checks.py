@@ -15,7 +15,7 @@ from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
-"""What can be said only of a scenario that could be read as a whole."""
+"""Codes of findings that need a scenario that was read as a whole."""
 
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
@@ -51,7 +51,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += part(scenario)
     codes = {f.code for f in findings}
     if not whole:
-        return _told(in_order(f for f in findings if f.code not in _OF_THE_WHOLE))
+        return _presentable(in_order(f for f in findings if f.code not in _OF_THE_WHOLE))
     if not codes & {"PML103", "PML104"}:  # the rest stands on names that mean one thing
         doubtful = _doubtful(scenario) if "PML110" in codes else frozenset()
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
@@ -59,11 +59,11 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_rules(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
-    return _told(in_order(findings))
+    return _presentable(in_order(findings))
 
 
-def _told(findings: Tuple[Diagnostic, ...]) -> Tuple[Diagnostic, ...]:
-    """The findings as they can be shown, or as many of them as anybody reads: names may hold any sign, and be long."""
+def _presentable(findings: Tuple[Diagnostic, ...]) -> Tuple[Diagnostic, ...]:
+    """The first MOST_FINDINGS findings with printable texts: names may hold any character, and be long."""
     findings = tuple(replace(f, message=shown(f.message, 300), hint=shown(f.hint, 900)) for f in findings)
     rest = findings[MOST_FINDINGS:]
     if not any(f.severity is Severity.ERROR for f in rest):

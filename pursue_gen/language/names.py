@@ -86,17 +86,17 @@ def _instead(
     lost: FrozenSet[str],
 ) -> str:
     """What to write in place of a name that is not known as this kind of thing."""
-    ours = known[kind]
+    declared = known[kind]
     agent, _, rest = name.partition("_")
-    if kind == "event" and rest in ours and agent in known["agent"]:
+    if kind == "event" and rest in declared and agent in known["agent"]:
         return f"write {rest}: an event is named without its agent"
-    if kind == "event" and name[: -len("DONE")] in ours and name.endswith("DONE"):
+    if kind == "event" and name[: -len("DONE")] in declared and name.endswith("DONE"):
         return f"write {name[: -len('DONE')]}: with an event that takes time, its end counts by itself"
     close = similar.to(name) or closest(name, tuple(sorted(lost)[:_COMPARED]))
     if close:
         capitals = " (capitals matter)" if close.lower() == name.lower() else ""
         return f"did you mean {close}?{capitals}"
-    some = ", ".join(list(ours)[:_SOME]) + (", …" if len(ours) > _SOME else "")
+    some = ", ".join(list(declared)[:_SOME]) + (", …" if len(declared) > _SOME else "")
     if elsewhere:
         another = f'declare {_a(kind)} with another name: {_keyword(kind)} "…"'
         return f"write the name of {_a(kind)}: {some}" if some else another

@@ -116,7 +116,7 @@ class Dependency:
 
 @dataclass(frozen=True)
 class Agent:
-    """A robot (controllable), a human ally (controllable and human) or an agent that nobody controls.
+    """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
     `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves.
     """

@@ -24,7 +24,7 @@ _WIDEST = 500
 """Events in one rule."""
 _SPLIT = "split the rule into several rules"
 MOST_FINDINGS = 1000
-"""Errors that are told; after so many the file is no scenario."""
+"""The most errors that are reported; with more of them the file is no scenario."""
 
 _OPENS = frozenset(("HUMAN", "CONTROLLABLE", "MOBILE"))
 _ENDS = frozenset("WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLABORATIVE CONTROLLABLE HUMAN".split())
@@ -35,7 +35,7 @@ _ENDS = frozenset("WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLAB
 class Statements:
     """A text cut into statements: the trees of those that are well formed, an error for each other one, in file order.
 
-    `lost` are the names in the others: nobody knows whether they would have been declared there.
+    `lost` are the names in the others: they may have been declared there.
     """
 
     trees: List[Any]
@@ -86,7 +86,7 @@ def too_large(file: str) -> Diagnostic:
 def too_many(span: Optional[Span]) -> Diagnostic:
     """More errors than anybody reads."""
     hint = "is this a scenario? If so, mend the first errors and check again"
-    return error("PML018", f"there are more than {MOST_FINDINGS} errors; the rest is not told", span, hint)
+    return error("PML018", f"there are more than {MOST_FINDINGS} errors; the rest is not shown", span, hint)
 
 
 class _Reader:

@@ -1,4 +1,4 @@
-"""Checks texts beside the server's main thread: the latest version of each, and never two at once."""
+"""Checks texts in a thread of its own: the latest version of each, one at a time."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from typing import Callable, Dict
 from pursue_gen.lsp.document import Document
 
 PAUSE = 0.1
-"""Seconds that a text rests before it is checked: one types faster than one reads."""
+"""Seconds between a change of a text and its check: one types faster than one reads."""
 
 
 class Checker:
-    """A thread of its own, which ends with the program, that hands checked texts to `tell(uri, document)`."""
+    """A daemon thread that passes texts to `publish(uri, document)`, which checks them and sends the findings."""
 
-    def __init__(self, tell: Callable[[str, Document], None]) -> None:
-        self._tell = tell
+    def __init__(self, publish: Callable[[str, Document], None]) -> None:
+        self._publish = publish
         self._waiting: Dict[str, Document] = {}
         self._wake = threading.Condition()
         threading.Thread(target=self._work, daemon=True).start()
 
-    def ask(self, uri: str, document: Document) -> None:
-        """Checks a text soon; an older one of the same address that still waits is left out."""
+    def request(self, uri: str, document: Document) -> None:
+        """Queue a text for its check; it replaces an older version that still waits."""
         with self._wake:
             self._waiting[uri] = document
             self._wake.notify()
 
-    def forget(self, uri: str) -> None:
-        """Leaves out what waits."""
+    def cancel(self, uri: str) -> None:
+        """Remove a text from the queue."""
         with self._wake:
             self._waiting.pop(uri, None)
 
@@ -39,9 +39,9 @@ class Checker:
                     self._wake.wait()
             time.sleep(PAUSE)
             with self._wake:
-                asked, self._waiting = self._waiting, {}
-            for uri, document in asked.items():
+                texts, self._waiting = self._waiting, {}
+            for uri, document in texts.items():
                 try:
-                    self._tell(uri, document)
+                    self._publish(uri, document)
                 except Exception:  # a text that cannot be checked must not end the thread
                     continue

@@ -10,8 +10,8 @@ from lark import Token
 
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.forms import FORMS, MEANINGS
 from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, kind_behind, statements
-from pursue_gen.lsp.words import FORMS, MEANINGS
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
@@ -154,7 +154,7 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
 
 
 def _statements(document: Document, place: _Place) -> List[Completion]:
-    """Whole statements, with choices of names where names are asked for."""
+    """Whole statements, with choices of names where names belong."""
     items = []
     for token, forms in FORMS.items():
         for form in forms:
@@ -180,7 +180,7 @@ def fill_in(words: str, names: Dict[str, List[str]], plain: bool = False) -> str
         choices = [] if given else names.get(what, [])[:_MOST_CHOICES]
         if not choices:
             return f"${{{number}:{example}}}"
-        # where the form asks twice, the second hole begins with another name than the first
+        # where a name belongs twice, the second hole begins with another name than the first
         turn = words[: match.start()].count(match.group()) % len(choices)
         turned = choices[turn:] + choices[:turn]
         return f"${{{number}|" + ",".join(_SPECIAL.sub(r"\\\g<0>", name) for name in turned) + "|}"

@@ -1,4 +1,4 @@
-"""A text in an editor, and what can be known about it; each part is worked out when it is asked for, once."""
+"""A text in an editor with what is derived from it; each part is computed once, when it is first used."""
 
 from __future__ import annotations
 

@@ -25,15 +25,15 @@ from pursue_gen.language.scenario import (
     State,
 )
 from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.forms import MEANINGS
 from pursue_gen.lsp.tokens import Statement
-from pursue_gen.lsp.words import MEANINGS
 
 _MOST_LINES = 12
 
 
 @dataclass(frozen=True)
 class Hover:
-    """What to tell about text[start:end]."""
+    """The explanation of text[start:end]."""
 
     markdown: str
     start: int
@@ -41,7 +41,7 @@ class Hover:
 
 
 def hover(document: Document, offset: int) -> Optional[Hover]:
-    """What stands at an offset, in plain words; None where there is nothing to say."""
+    """The explanation of what stands at an offset; None where there is none."""
     occurrence = document.occurrence_at(offset)
     if occurrence is not None:
         text = _about(document.scenario, occurrence.kind, occurrence.name)
@@ -57,8 +57,8 @@ def hover(document: Document, offset: int) -> Optional[Hover]:
         form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     if token.type == "NUMBER" and part is not None and token.isdigit() and len(token) <= len(str(MOST)):
-        told = _number(document.scenario, part, start, int(token))
-        return Hover(told, start, start + len(token)) if told else None
+        text = _number(document.scenario, part, start, int(token))
+        return Hover(text, start, start + len(token)) if text else None
     return None
 
 
@@ -80,9 +80,9 @@ def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
         "state": (scenario.states, _state),
         "agent": (scenario.agents, _agent),
     }
-    found, told = parts[kind]
+    found, explain = parts[kind]
     part = next((part for part in found if getattr(part, "name", None) == name), None)
-    return None if part is None else "\n".join(told(scenario, part))
+    return None if part is None else "\n".join(explain(scenario, part))
 
 
 def _listed(lines: List[str]) -> List[str]:

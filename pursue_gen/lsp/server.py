@@ -33,34 +33,34 @@ _REQUEST_FAILED = -32803
 
 
 def serve(pages: Optional[str] = None) -> int:
-    """Serves an editor until it leaves; the exit status: 0 if it took leave as the protocol has it, else 1."""
+    """Serve an editor until it exits; return the exit status: 0 after the protocol's shutdown request, else 1."""
     logging.disable(logging.CRITICAL)  # what goes wrong is answered; on stderr editors show it as a failure
     session = Session(pages)
     with suppress(SystemExit), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:  # how pygls 1 ends
         session.server.start_io(stdout=answers)  # which it closes
-    return 0 if session.left else 1
+    return 0 if session.is_shut_down else 1
 
 
 class Session:
-    """An editor, its open scenarios, and what it can do."""
+    """An editor, its open scenarios, and its capabilities."""
 
     def __init__(self, pages: Optional[str] = None) -> None:
         self.pages = pages
-        self.left = False
+        self.is_shut_down = False
         self.documents: Dict[str, Document] = {}
-        self._telling = threading.Lock()  # a text that was closed has no findings any more, not even late ones
+        self._publishing = threading.Lock()  # a text that was closed has no findings any more, not even late ones
         self.server = _language_server()
         self.checker = Checker(self._publish)
         self._related = self._snippets = False
         self._encoding = "utf-16"
         self._register()
 
-    # What the editor tells --------------------------------------------------------------------------------------------
+    # Notifications ----------------------------------------------------------------------------------------------------
 
     def initialize(self, params: lsp.InitializeParams) -> None:
-        """Notes what the editor can show."""
-        told = _as_dict(params.initialization_options)
-        self.pages = str(told["docs"]) if told.get("docs") else self.pages
+        """Store the capabilities of the editor."""
+        options = _as_dict(params.initialization_options)
+        self.pages = str(options["docs"]) if options.get("docs") else self.pages
         text = params.capabilities.text_document
         if text is not None and text.publish_diagnostics is not None:
             self._related = bool(text.publish_diagnostics.related_information)
@@ -68,12 +68,12 @@ class Session:
         self._snippets = item is not None and bool(item.snippet_support)
 
     def initialized(self, _params: lsp.InitializedParams) -> None:
-        """Notes how it counts columns, which has been settled by now."""
+        """Store how the editor counts columns, which is negotiated by now."""
         encoding = self.server.workspace.position_encoding
         self._encoding = str(getattr(encoding, "value", encoding))
 
     def opened(self, params: Any) -> None:
-        """A text was opened or changed."""
+        """Check a text that was opened or changed."""
         uri = params.text_document.uri
         source = self.server.workspace.get_text_document(uri).source
         address = urlsplit(uri)
@@ -81,29 +81,29 @@ class Session:
         version = params.text_document.version
         document = Document.of(source, name, address.scheme == "file", self._encoding, version)
         self.documents[uri] = document
-        self.checker.ask(uri, document)
+        self.checker.request(uri, document)
 
     def closed(self, params: lsp.DidCloseTextDocumentParams) -> None:
-        """A text was closed: its findings go away."""
+        """Clear the findings of a text that was closed."""
         uri = params.text_document.uri
-        self.checker.forget(uri)
-        with self._telling:
+        self.checker.cancel(uri)
+        with self._publishing:
             self.documents.pop(uri, None)
             self._send(uri, None, [])
 
-    def leave(self, _params: None) -> None:
-        """The editor takes leave."""
-        self.left = True
+    def shutdown(self, _params: None) -> None:
+        """The protocol's shutdown request."""
+        self.is_shut_down = True
 
-    # What the editor asks ---------------------------------------------------------------------------------------------
+    # Requests ---------------------------------------------------------------------------------------------------------
 
     def complete(self, document: Document, params: lsp.CompletionParams) -> lsp.CompletionList:
-        """What may be written here."""
+        """Proposals for the text at a position."""
         items = complete(document, convert.offset_of(document, params.position))
         return lsp.CompletionList(False, convert.completion_items(document, items, self._snippets))
 
     def hover(self, document: Document, params: lsp.HoverParams) -> Optional[lsp.Hover]:
-        """What this means."""
+        """The explanation of the word at a position."""
         found = hover(document, convert.offset_of(document, params.position))
         if found is None:
             return None
@@ -111,40 +111,40 @@ class Session:
         return lsp.Hover(text, convert.range_of(document, found.start, found.end))
 
     def define(self, document: Document, params: lsp.DefinitionParams) -> List[lsp.Location]:
-        """Where this is declared."""
+        """The declaration of the name at a position."""
         places = definition(document, convert.offset_of(document, params.position))
         return convert.locations(document, params.text_document.uri, places)
 
     def refer(self, document: Document, params: lsp.ReferenceParams) -> List[lsp.Location]:
-        """Where this is used."""
+        """The uses of the name at a position."""
         places = same_name(document, convert.offset_of(document, params.position))
         wanted = [place for place in places if params.context.include_declaration or not place.declares]
         return convert.locations(document, params.text_document.uri, wanted)
 
     def highlight(self, document: Document, params: lsp.DocumentHighlightParams) -> List[lsp.DocumentHighlight]:
-        """Where else this stands."""
+        """All places of the name at a position."""
         return convert.highlights(document, same_name(document, convert.offset_of(document, params.position)))
 
     def prepare_rename(self, document: Document, params: lsp.PrepareRenameParams) -> Optional[lsp.Range]:
-        """What would be renamed."""
+        """The range of the name that would be renamed."""
         here = document.occurrence_at(convert.offset_of(document, params.position))
         return convert.range_of(document, here.start, here.end) if here is not None else None
 
     def rename(self, document: Document, params: lsp.RenameParams) -> lsp.WorkspaceEdit:
-        """Another name for this."""
+        """The edits that rename the name at a position."""
         edits = rename(document, convert.offset_of(document, params.position), params.new_name)
         return lsp.WorkspaceEdit(changes={params.text_document.uri: convert.text_edits(document, edits)})
 
     def outline(self, document: Document, _params: lsp.DocumentSymbolParams) -> List[lsp.DocumentSymbol]:
-        """What there is."""
+        """The declarations as an outline."""
         return convert.document_symbols(document, symbols(document))
 
     def fold(self, document: Document, _params: lsp.FoldingRangeParams) -> List[lsp.FoldingRange]:
-        """What can be folded away."""
+        """The ranges that can be folded."""
         return convert.folding_ranges(folds(document))
 
     def format(self, document: Document, _params: lsp.DocumentFormattingParams) -> List[lsp.TextEdit]:
-        """The text in good layout; nothing while it has syntax errors, which are shown anyway."""
+        """The edit that formats the text; none while it has syntax errors, which are shown anyway."""
         try:
             text = format_text(document.text, document.file)
         except PursueError:
@@ -153,7 +153,7 @@ class Session:
         return convert.text_edits(document, edits)
 
     def fix(self, document: Document, params: lsp.CodeActionParams) -> List[lsp.CodeAction]:
-        """What can be done about the findings here."""
+        """The quick fixes for the findings in a range."""
         wanted = params.context.only
         if wanted is not None and not any(str(getattr(k, "value", k)) in ("", "quickfix") for k in wanted):
             return []
@@ -161,56 +161,57 @@ class Session:
         return convert.code_actions(document, params.text_document.uri, fixes(document, start, end), self.pages)
 
     def draw(self, params: Any) -> Dict[str, str]:
-        """The map."""
+        """The map as SVG, or the reason why there is none."""
         document = self.documents.get(str(_as_dict(params).get("uri")))
         if document is None:
             return {"message": "this scenario is not open"}
         try:
             return {"svg": picture(document)}
         except PursueError as problem:
-            return {"message": _in_words(problem)}
+            return {"message": _message(problem)}
 
-    # Plumbing ---------------------------------------------------------------------------------------------------------
+    # Registration -----------------------------------------------------------------------------------------------------
 
     def _register(self) -> None:
-        def note(method: str) -> Callable[[Callable[[Any], None]], None]:
-            # pygls notes something on what it calls, which methods do not bear
+        def notification(method: str) -> Callable[[Callable[[Any], None]], None]:
+            # pygls sets attributes on its callbacks, which bound methods do not have
             return lambda call: self.server.feature(method)(lambda params: call(params))
 
-        note(lsp.INITIALIZE)(self.initialize)
-        note(lsp.INITIALIZED)(self.initialized)
-        note(lsp.TEXT_DOCUMENT_DID_OPEN)(self.opened)
-        note(lsp.TEXT_DOCUMENT_DID_CHANGE)(self.opened)
-        note(lsp.TEXT_DOCUMENT_DID_CLOSE)(self.closed)
-        note(lsp.SHUTDOWN)(self.leave)
-        self._answers(MAP, self.draw)
-        self._asks(lsp.TEXT_DOCUMENT_COMPLETION, self.complete, lsp.CompletionOptions(trigger_characters=[" ", '"']))
-        self._asks(lsp.TEXT_DOCUMENT_HOVER, self.hover)
-        self._asks(lsp.TEXT_DOCUMENT_DEFINITION, self.define)
-        self._asks(lsp.TEXT_DOCUMENT_REFERENCES, self.refer)
-        self._asks(lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, self.highlight)
-        self._asks(lsp.TEXT_DOCUMENT_PREPARE_RENAME, self.prepare_rename)
-        self._asks(lsp.TEXT_DOCUMENT_RENAME, self.rename, lsp.RenameOptions(prepare_provider=True))
-        self._asks(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, self.outline)
-        self._asks(lsp.TEXT_DOCUMENT_FOLDING_RANGE, self.fold)
-        self._asks(lsp.TEXT_DOCUMENT_FORMATTING, self.format)
+        notification(lsp.INITIALIZE)(self.initialize)
+        notification(lsp.INITIALIZED)(self.initialized)
+        notification(lsp.TEXT_DOCUMENT_DID_OPEN)(self.opened)
+        notification(lsp.TEXT_DOCUMENT_DID_CHANGE)(self.opened)
+        notification(lsp.TEXT_DOCUMENT_DID_CLOSE)(self.closed)
+        notification(lsp.SHUTDOWN)(self.shutdown)
+        self._register_answer(MAP, self.draw)
+        triggers = lsp.CompletionOptions(trigger_characters=[" ", '"'])
+        self._register_request(lsp.TEXT_DOCUMENT_COMPLETION, self.complete, triggers)
+        self._register_request(lsp.TEXT_DOCUMENT_HOVER, self.hover)
+        self._register_request(lsp.TEXT_DOCUMENT_DEFINITION, self.define)
+        self._register_request(lsp.TEXT_DOCUMENT_REFERENCES, self.refer)
+        self._register_request(lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, self.highlight)
+        self._register_request(lsp.TEXT_DOCUMENT_PREPARE_RENAME, self.prepare_rename)
+        self._register_request(lsp.TEXT_DOCUMENT_RENAME, self.rename, lsp.RenameOptions(prepare_provider=True))
+        self._register_request(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, self.outline)
+        self._register_request(lsp.TEXT_DOCUMENT_FOLDING_RANGE, self.fold)
+        self._register_request(lsp.TEXT_DOCUMENT_FORMATTING, self.format)
         kinds = [lsp.CodeActionKind.QuickFix]
-        self._asks(lsp.TEXT_DOCUMENT_CODE_ACTION, self.fix, lsp.CodeActionOptions(code_action_kinds=kinds))
+        self._register_request(lsp.TEXT_DOCUMENT_CODE_ACTION, self.fix, lsp.CodeActionOptions(code_action_kinds=kinds))
 
-    def _asks(self, method: str, answer: Callable[[Document, Any], Any], options: Any = None) -> None:
-        """Answers a request about an open text; one about any other gets no answer but null."""
+    def _register_request(self, method: str, answer: Callable[[Document, Any], Any], options: Any = None) -> None:
+        """Register a request about an open text; the answer for any other text is null."""
 
         def answered(params: Any) -> Any:
             document = self.documents.get(params.text_document.uri)
             try:
                 return None if document is None else answer(document, params)
             except PursueError as problem:
-                raise JsonRpcException(_in_words(problem), _REQUEST_FAILED) from None
+                raise JsonRpcException(_message(problem), _REQUEST_FAILED) from None
 
-        self._answers(method, answered, options)
+        self._register_answer(method, answered, options)
 
-    def _answers(self, method: str, answer: Callable[[Any], Any], options: Any = None) -> None:
-        """Registers an answer, worked out beside the main thread: a long one holds up nothing."""
+    def _register_answer(self, method: str, answer: Callable[[Any], Any], options: Any = None) -> None:
+        """Register a request that is answered in a worker thread, so that a long one delays no other."""
 
         def answered(params: Any) -> Any:
             return answer(params)
@@ -218,9 +219,9 @@ class Session:
         self.server.feature(method, options)(self.server.thread()(answered))
 
     def _publish(self, uri: str, document: Document) -> None:
-        """Tells the findings about a text, if it is still the one in the editor."""
+        """Send the findings of a text, if it is still the one in the editor."""
         found = [convert.diagnostic(document, uri, f, self.pages, self._related) for f in document.findings]
-        with self._telling:
+        with self._publishing:
             if self.documents.get(uri) is document:
                 self._send(uri, document.version, found)
 
@@ -238,7 +239,7 @@ def _language_server() -> Any:
     return LanguageServer("pursue-gen", __version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full)
 
 
-def _in_words(problem: PursueError) -> str:
+def _message(problem: PursueError) -> str:
     first = problem.diagnostics[0]
     return f"{first.message} ({first.hint})" if first.hint else first.message
 

@@ -56,7 +56,7 @@ def deleted(document: Document, part: Statement) -> Tuple[Edit, ...]:
 def ordered(document: Document) -> Tuple[Edit, ...]:
     """The edit that brings the statements into the original's order; comments stay with the statement they precede.
 
-    None where a statement cannot be read: nobody knows where it ends.
+    None where a statement cannot be read: its end is not known.
     """
     if document.reading.scenario is None:
         return ()

@@ -39,7 +39,7 @@ _USED: Dict[Tuple[str, str], str] = {
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 
-_NOT_ASKED = frozenset({"HUMAN", "TRUE", "FALSE"})  # no name stands behind these
+_WITHOUT_NAME = frozenset({"HUMAN", "TRUE", "FALSE"})  # no name stands behind these
 
 
 @dataclass(frozen=True)
@@ -110,8 +110,8 @@ def kind_behind(tokens: Sequence[Token]) -> Optional[str]:
     """What a name stands for that is used behind these tokens of one statement; None: no name is used there."""
     if not tokens:
         return None
-    asked = [token.type for token in tokens if token.type in KEYWORDS and token.type not in _NOT_ASKED]
-    return _USED.get((tokens[0].type, asked[-1])) if asked else None
+    keywords = [token.type for token in tokens if token.type in KEYWORDS and token.type not in _WITHOUT_NAME]
+    return _USED.get((tokens[0].type, keywords[-1])) if keywords else None
 
 
 def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
@@ -142,7 +142,7 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
         if index == 1 and token.type == "NAME" and part.kind in DECLARED:
             name = str(token)[1:-1]
             found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
-        elif token.type in KEYWORDS and token.type not in _NOT_ASKED:
+        elif token.type in KEYWORDS and token.type not in _WITHOUT_NAME:
             kind = _USED.get((part.kind, token.type))
         elif kind is not None and token.type in ("WORD", "HUMAN") and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))

@@ -1,8 +1,8 @@
-"""Who gets which command of a strategy.
+"""The distribution of a strategy's commands to controllers.
 
 A command belongs to the automaton that makes its first move. A priori ends (a timer that decides when a robot has
-arrived) are for the `general` controller only: elsewhere the robot tells, see the thesis's section 4.2.2. The commands
-of the objectives' automata (`reachObj`, `obj`) are no robot's: the policies for them are the thesis's three.
+arrived) are for the `general` controller only: elsewhere the robot reports them (thesis, section 4.2.2). The commands
+of the objectives' automata (`reachObj`, `obj`) belong to no robot: the policies for them are the thesis's three.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def partition(
     robot's.
 
     Raises PursueError for an unknown shape or policy (exit status 2), for a counter-strategy, and for a command of an
-    automaton that nobody controls.
+    uncontrollable automaton.
     """
     robots = tuple(agent.name for agent in agents if agent.is_robot)
     humans = tuple(agent.name for agent in agents if agent.controllable and agent.human)

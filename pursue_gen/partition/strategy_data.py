@@ -1,6 +1,6 @@
-"""What the nodes of a mission are told of a strategy, as plain data: in YAML files, and in JSON where plans change.
+"""A strategy as plain data for the nodes of a mission: in YAML files, and in JSON for a new plan.
 
-The format is described with the run time.
+docs/run_time.md describes the format.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state the zones in which the strategy says something, wait or command."""
+    """For each state the zones in which the strategy is defined, wait or command."""
     cover = []
     for block in strategy.blocks:
         zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]

@@ -11,7 +11,7 @@ from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.replanning.request import Request, read_request
-from pursue_gen.replanning.start import begun, late
+from pursue_gen.replanning.start import network_from, passed_bounds
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
@@ -39,10 +39,10 @@ def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
         game = played(ideal, request.rules)
     except PursueError as problem:  # a slack that is none
         raise PursueError(problem.diagnostics, 2) from None
-    network = begun(game, request)
-    over = _over(network, objective)
-    if over:
-        return _lost(over)
+    network = network_from(game, request)
+    reason = _reason_lost(network, objective)
+    if reason:
+        return _lost(reason)
     start = time.monotonic()
     try:
         verdict = solve(network, objective, request.rules.reaction, limits=limits)
@@ -68,7 +68,7 @@ def _lost(why: str) -> Dict[str, Any]:
     return {"format": 1, "won": False, "why": why}
 
 
-def _over(network: Network, objective: Objective) -> str:
+def _reason_lost(network: Network, objective: Objective) -> str:
     """Why the mission is lost already; "" if it is not."""
     places = [(automaton.name, automaton.initial) for automaton in network.automata]
     if objective.bad in places and objective.goal not in places:
@@ -77,12 +77,12 @@ def _over(network: Network, objective: Objective) -> str:
 
 
 def _cannot_be_met(game: Network, request: Request) -> str:
-    """One sentence: what nobody can promise from here, and on whom it would depend."""
+    """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
     clocks = {name: request.clocks[name] + request.ahead for name in game.clocks}
     agents = [agent.name for agent in request.scenario.agents]
     over: Dict[str, str] = {}
     for automaton in game.automata:
-        for bound in late(automaton, request.locations[automaton.name], clocks):
+        for bound in passed_bounds(automaton, request.locations[automaton.name], clocks):
             over[automaton.name] = f"{bound.clock} is {float(clocks[bound.clock]):g}, at most {bound.bound} is allowed"
     for name, why in over.items():
         if name not in agents:
@@ -95,5 +95,5 @@ def _cannot_be_met(game: Network, request: Request) -> str:
 def _objective(scenario: Scenario) -> str:
     """What is to be met, in the author's words."""
     lines = scenario.text.split("\n")
-    told = (part.span.line for part in (scenario.reach, scenario.safety) if part is not None)
-    return " and ".join(f"'{lines[line - 1].split('//')[0].strip()}'" for line in told)
+    found = (part.span.line for part in (scenario.reach, scenario.safety) if part is not None)
+    return " and ".join(f"'{lines[line - 1].split('//')[0].strip()}'" for line in found)

@@ -1,4 +1,4 @@
-"""What is asked for: the game of a workspace, and where its mission is. Read from JSON, see docs/run_time.md."""
+"""A request for a plan: the game of a workspace and the state of its mission. Read from JSON, see docs/run_time.md."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
 
 SECONDS = 10.0
-"""So long a plan is looked for where the request does not say."""
+"""The default limit of the search for a plan, in seconds."""
 
 _LONGEST = 1e9
-"""No clock of a mission shows more time units."""
+"""The largest value of a clock, in time units."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Request:
 
 
 def read_request(data: object) -> Request:
-    """The request in what JSON holds. Raises PursueError (exit status 2) that says what was expected where."""
+    """The request in the JSON data. Raises PursueError (exit status 2) with what was expected where."""
     request = _object(data, "the request")
     _format(request, "the request")
     game = _object(_of(request, "game", "the request"), "game")
@@ -133,7 +133,7 @@ def _text(data: Mapping[str, Any], key: str, name: str) -> str:
 
 
 def _time(value: Any, name: str) -> Fraction:
-    """Exact to a millionth of a time unit: what differs by less is the same moment."""
+    """Exact to a millionth of a time unit: times that differ by less are equal."""
     if not _is_number(value) or not 0 <= value <= _LONGEST:
         raise wrong(f"{name} is {_shown(value)}", "a number of time units, 0 or more")
     return Fraction(round(Fraction(value) * 1_000_000), 1_000_000)

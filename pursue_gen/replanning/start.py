@@ -1,4 +1,4 @@
-"""A network that starts where a mission is."""
+"""The network of a game with the state of a mission as its initial state."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pursue_gen.zones.scale import least_common_multiple
 T = TypeVar("T")
 
 _FINEST = 10
-"""Clocks are told apart to a part of a time unit that is no longer than the tenth."""
+"""The grid of clock values has at least so many points in a time unit."""
 
 
-def begun(network: Network, request: Request) -> Network:
-    """The network at the place of the request, `ahead` time units later, and what nobody can count on taken away.
+def network_from(network: Network, request: Request) -> Network:
+    """The network in the state of the request, `ahead` time units later, without the moves that cannot be relied on.
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
     than the model allows may stay. Raises PursueError (exit status 2) for a place that the network does not have.
@@ -32,7 +32,7 @@ def begun(network: Network, request: Request) -> Network:
         moved = replace(automaton, initial=here, home=automaton.home or automaton.initial)
         if automaton.name in request.excused:
             moved = _idle(_unbounded(moved, here), here, clocks)
-        elif automaton.name in agents and late(automaton, here, clocks):
+        elif automaton.name in agents and passed_bounds(automaton, here, clocks):
             moved = _unbounded(moved, here)
         automata.append(moved)
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
@@ -41,7 +41,7 @@ def begun(network: Network, request: Request) -> Network:
     return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
 
 
-def late(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Tuple[ClockBound, ...]:
+def passed_bounds(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Tuple[ClockBound, ...]:
     """The bounds of the location that the clocks have passed."""
     bounds = next(location.invariant for location in automaton.locations if location.name == here)
     return tuple(bound for bound in bounds if not _holds(bound, clocks))
@@ -50,7 +50,8 @@ def late(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Tup
 def region(
     clocks: Mapping[str, Fraction], beyond: Mapping[str, Fraction], grid: int
 ) -> Tuple[Constraint, ...]:
-    """The clock values that no bound on the grid (parts of a time unit) tells from these; above `beyond` all are one.
+    """The clock values that no bound on the grid (parts of a time unit) distinguishes from these; above `beyond`
+    all are equal.
 
     Measured clocks are not exact, and who wins from one of these points wins from all of them.
     """
@@ -69,7 +70,7 @@ def region(
 
 
 def _place(network: Network, request: Request) -> Tuple[Dict[str, str], Dict[str, int], Dict[str, Fraction]]:
-    """Locations, values and clocks of everything in the network; what else the request names is nobody's."""
+    """Locations, values and clocks of everything in the network; other names in the request are ignored."""
     for automaton in network.automata:
         here = _known(request.locations, automaton.name, "location")
         names = [location.name for location in automaton.locations]
@@ -100,7 +101,7 @@ def _unbounded(automaton: Automaton, here: str) -> Automaton:
 
 
 def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Automaton:
-    """Where it is, nobody commands it, and what it does may end too early."""
+    """The automaton without commands in its location, where a movement or action may end too early."""
     edges: List[Edge] = []
     for edge in automaton.edges:
         if edge.source == here and is_end(edge):

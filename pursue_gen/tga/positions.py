@@ -1,4 +1,4 @@
-"""The numbers that say where an agent is.
+"""The numbers of an agent's positions.
 
 POIs count from 1. On the way from POI i to POI j the original writes the digits of both, negative: -ij; at work at
 POI i: -ii. With ten POIs or more two ways may get one number (-111 is 1 to 11 and 11 to 1). Where that happens, or a
@@ -22,7 +22,7 @@ Way = Tuple[str, str]
 
 @dataclass(frozen=True)
 class Positions:
-    """The numbers of a scenario's positions. `note` tells when they are not the original's."""
+    """The numbers of a scenario's positions. `note`: a remark where they are not the original's."""
 
     pois: Mapping[str, int]
     ways: Mapping[Way, int]

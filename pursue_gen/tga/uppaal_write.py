@@ -123,7 +123,7 @@ def _transition(template: minidom.Element, edge: Edge, ids: Dict[str, str], plac
     for number, (kind, text) in enumerate(_labels(edge)):
         _add(transition, "label", text, (middle_x + 18, middle_y - 51 + 17 * number), kind=kind)
     if edge.source == edge.target:
-        # Without nails a loop has no length, and nobody would see it.
+        # Without nails a loop has no length, and could not be seen.
         for dx in (-30, 30):
             _add(transition, "nail", "", (x + dx, y - 50))
 

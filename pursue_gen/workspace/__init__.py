@@ -42,7 +42,7 @@ def write_workspace(
 def machines_for(
     file: Path, scenario: Scenario, network: Network, strategy: Strategy, options: Options
 ) -> Tuple[Options, Tuple[Diagnostic, ...]]:
-    """The options with the machines of a machines.yaml, and what is to be told about it.
+    """The options with the machines of a machines.yaml, and warnings about it.
 
     Raises PursueError for a file that cannot be used, and what `partition` raises.
     """

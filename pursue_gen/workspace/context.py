@@ -1,12 +1,12 @@
-"""What the templates are told: names and numbers, no decisions left to make.
+"""The context of the templates: names and numbers, no decisions left to make.
 
-A template that asks for anything else is an error (jinja2's StrictUndefined). Every template knows
+A template that uses anything else is an error (jinja2's StrictUndefined). Every template has
 
 - `scenario`, the scenario's name; `generator`, the version of the generator;
 - `package`, the package's name, and `controller`, the same in a controller; `version`, `maintainer`,
   `maintainer_email`, `license`, `summary` of its manifest;
-- `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (nobody controls it);
-- `free_agents`, the names of those that nobody controls; `robots`, those of the robots;
+- `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (uncontrollable);
+- `free_agents`, the names of the uncontrollable ones; `robots`, those of the robots;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
 - `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
 - `reaches`: the mission has a goal to reach; `bringup`: the name of the package with the launch files;
@@ -15,7 +15,7 @@ A template that asks for anything else is an error (jinja2's StrictUndefined). E
 - `docker`, `systemd`: whether the workspace has files for containers, for services;
 - `plays`: the arguments of each launch test.
 
-The manifests and CMakeLists.txt also know `exec_depends`, `test_depends`, `nodes` (files of `scripts/`),
+The manifests and CMakeLists.txt also have `exec_depends`, `test_depends`, `nodes` (files of `scripts/`),
 `python_packages` (in `src/`) and the `folders` that are installed as they are.
 """
 
@@ -39,8 +39,8 @@ class Options:
     `controllers`: distributed (one per robot), centralized (one, without a-priori ends) or general (one, with them, as
     the original has it). `reach_obj`: who gets the commands of the objective: dedicated (a controller of their own),
     all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for;
-    `ends` and `slack`: the rest of the rules of that game (see `pipeline.Rules`), for plans that are made under way.
-    `margin`: how late it really may come, in sentences for the README; empty where nobody looked.
+    `ends` and `slack`: the rest of the rules of that game (see `solving.rules.Rules`), for new plans.
+    `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. The rest goes into the manifests.
     """
@@ -66,7 +66,7 @@ def bringup_of(scenario: Scenario) -> str:
 
 
 def kind_of(agent: Agent) -> str:
-    """robot, human, or agent for one that nobody controls."""
+    """robot, human, or agent for one that is uncontrollable."""
     if not agent.controllable:
         return "agent"
     return "human" if agent.human else "robot"
@@ -75,7 +75,7 @@ def kind_of(agent: Agent) -> str:
 def common(
     scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[SubStrategy]
 ) -> Dict[str, Any]:
-    """The values that every template of a workspace knows (but for `package` and `summary`)."""
+    """The values that every template of a workspace has (but for `package` and `summary`)."""
     agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
     first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
     decided = {move.automaton for move in first_moves if is_end(move.edge)}

@@ -1,4 +1,4 @@
-"""A mission as services: containers (Docker, compose) or units of systemd, one for each node, beside a ROS master.
+"""A mission as services: containers (Docker compose) or systemd units, one for each node, and one for the ROS master.
 
 The node's own parameters are the same everywhere; what differs is how their values are set: `${NAME:-value}` in
 compose files, a file of variables for systemd.
@@ -17,13 +17,13 @@ from pursue_gen.workspace.machines import Machines
 from pursue_gen.workspace.packages import SHARED
 
 BASE = "base"
-"""The machine with observer and UI, as the desk calls it; each controller has a machine of its own."""
+"""The name of the machine with observer and UI; each controller has a machine of its own."""
 PORT = 13000
 """Where the desk reaches the first machine of a lab in containers; the next ones follow."""
 
-_HOUSE = ("communication_manager", "pursue_reader")
+_TRANSPORT = ("communication_manager", "pursue_reader")
 _LONGEST_LABEL = 63
-_ANSWERS = (
+_NODE_ANSWERS = (
     "import sys; from xmlrpc.client import ServerProxy as At; "
     "At(At('http://master:11311').lookupNode('/health', sys.argv[1])[2]).getPid('/health')"
 )
@@ -88,7 +88,7 @@ class Service:
     @property
     def health(self) -> List[str]:
         """A program that fails unless the node answers. (`rosnode ping` ends well for nodes that are gone, too.)"""
-        return ["python3", "-c", _ANSWERS, self.path]
+        return ["python3", "-c", _NODE_ANSWERS, self.path]
 
     @property
     def path(self) -> str:
@@ -99,9 +99,9 @@ class Service:
 def docker_files(jinja: jinja2.Environment, values: Mapping[str, Any], packages: Sequence[str]) -> Dict[str, bytes]:
     """The folder docker/: path in the workspace → content. `packages`: those of the workspace."""
     controllers = values["controllers"]
-    services = [*_mission(values, robots=False), *_lab(controllers)]
+    services = [*_mission(values, robots=False), *_transport_in_lab(controllers)]
     names = service_names([service.name for service in services])
-    told = {
+    context = {
         **values,
         "packages": packages,
         "services": [(names[service.name], service) for service in services],
@@ -114,16 +114,16 @@ def docker_files(jinja: jinja2.Environment, values: Mapping[str, Any], packages:
         "master_health": ["python3", "-c", _MASTER_ANSWERS],
     }
     names_of_files = ("Dockerfile.debian", "Dockerfile.noetic", "compose.yaml", "lab.env", "robots.yaml", "README.md")
-    files = {f"docker/{name}": _rendered(jinja, f"deploy/docker/{name}.j2", told) for name in names_of_files}
-    files["docker/.env"] = _rendered(jinja, "deploy/docker/project.env.j2", told)  # setup.py ships no hidden files
+    files = {f"docker/{name}": _rendered(jinja, f"deploy/docker/{name}.j2", context) for name in names_of_files}
+    files["docker/.env"] = _rendered(jinja, "deploy/docker/project.env.j2", context)  # setup.py ships no hidden files
     return files
 
 
 def systemd_files(jinja: jinja2.Environment, values: Mapping[str, Any], machines: Machines) -> Dict[str, bytes]:
     """The folder systemd/: a unit for each node, one for the master, the file of variables, and how to install them."""
-    services = [*_mission(values, robots=True), *(_of_machine(name) for name in _HOUSE)]
-    places = {service.node: machines.of(service.node).host for service in services if service.package not in _HOUSE}
-    told = {
+    services = [*_mission(values, robots=True), *(_of_machine(name) for name in _TRANSPORT)]
+    places = {service.node: machines.of(service.node).host for service in services if service.package not in _TRANSPORT}
+    context = {
         **values,
         "services": services,
         "master": machines.master,
@@ -132,11 +132,12 @@ def systemd_files(jinja: jinja2.Environment, values: Mapping[str, Any], machines
         "variables": _variables(services),
     }
     files = {
-        f"systemd/{name}": _rendered(jinja, f"deploy/systemd/{name}.j2", told)
+        f"systemd/{name}": _rendered(jinja, f"deploy/systemd/{name}.j2", context)
         for name in ("pursue-roscore.service", "pursue.target", "pursue.env", "README.md")
     }
     for service in services:
-        unit = _rendered(jinja, "deploy/systemd/node.service.j2", {**told, "service": service, "argument": _unit_word})
+        own = {**context, "service": service, "argument": _unit_argument}
+        unit = _rendered(jinja, "deploy/systemd/node.service.j2", own)
         files[f"systemd/pursue-{service.node}.service"] = unit
     return files
 
@@ -189,15 +190,15 @@ def _mission(values: Mapping[str, Any], robots: bool) -> List[Service]:
     ]
 
 
-def _lab(controllers: Sequence[str]) -> List[Service]:
+def _transport_in_lab(controllers: Sequence[str]) -> List[Service]:
     """For each machine what takes missions from the desk: profile `lab`. Both share the machine's volume."""
     found = []
     machines = {BASE: ("observer", "UI"), **{name: (name,) for name in controllers}}
     for number, (machine, nodes) in enumerate(machines.items()):
-        for package in _HOUSE:
+        for package in _TRANSPORT:
             settings: Tuple[Setting, ...] = (Setting("keys", "/keys", text=True),)
             ports: Tuple[str, ...] = ()
-            packages = (package, *nodes)  # the reader says which of them are here
+            packages = (package, *nodes)  # the reader reports which of them are here
             if package == "communication_manager":
                 settings = (*settings, Setting("host", "0.0.0.0", text=True), Setting("port", str(PORT)))
                 ports, packages = (f"127.0.0.1:{PORT + number}:{PORT}",), (package,)
@@ -218,24 +219,24 @@ def _of_machine(package: str) -> Service:
 
 
 def _hosts(places: Mapping[str, str], master: str) -> Dict[str, List[str]]:
-    """host → the units that it enables, the master's host first; whoever records says so."""
+    """host → the units that it enables, the master's host first; the recorder is enabled by hand."""
     found: Dict[str, List[str]] = {master: ["pursue-roscore"]}
     for node, host in places.items():
         found.setdefault(host, []).extend([f"pursue-{node}"] if node != "recorder" else [])
-    return {host: [*units, *(f"pursue-{name}" for name in _HOUSE)] for host, units in found.items()}
+    return {host: [*units, *(f"pursue-{name}" for name in _TRANSPORT)] for host, units in found.items()}
 
 
 def _compose(setting: Setting) -> str:
     return f"${{{setting.variable}:-{setting.value}}}" if setting.variable else ""
 
 
-def _unit_word(setting: Setting) -> str:
+def _unit_argument(setting: Setting) -> str:
     """As a word of ExecStart, where systemd puts the variables in."""
     return f'"{setting.argument("${" + setting.variable + "}" if setting.variable else "")}"'
 
 
 def _variables(services: Sequence[Service]) -> Dict[str, str]:
-    """variable → its value where nobody sets it."""
+    """variable → its default value."""
     return {one.variable: one.value for service in services for one in service.settings if one.variable}
 
 

@@ -1,4 +1,4 @@
-"""What the generated launch tests judge a mission by: taken from the network, not from what the nodes read."""
+"""The expectations of the generated launch tests: taken from the network, not from the nodes' data."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ def expected(
 ) -> bytes:
     """The text of expected.json.
 
-    `robots` says which node may command a robot, `commands` what a controller may say, `nodes` who must be ready first.
+    `robots`: robot → the node that may command it; `commands`: controller → its commands; `nodes`: those that
+    must be ready before the mission starts.
     """
-    said = {word for words in commands.values() for word in words}
+    commanded = {word for words in commands.values() for word in words}
     data: Dict[str, Any] = {
         "reach": objective.kind is not Kind.SAFETY,
         "bad": list(objective.bad) if objective.bad else None,
         "nodes": sorted(nodes),
         "robots": dict(robots),
         "commands": {node: sorted(set(words)) for node, words in commands.items()},
-        "ends": [word for word in _ends(network) if word not in said],
+        "ends": [word for word in _ends(network) if word not in commanded],
         "automata": {a.name: [_edge(a, edge) for edge in a.edges] for a in network.automata},
     }
     return (json.dumps(data, indent=1) + "\n").encode()
@@ -45,13 +46,13 @@ def _edge(automaton: Automaton, edge: Edge) -> Dict[str, Any]:
 
 
 def first_report(network: Network) -> Optional[str]:
-    """A word that an agent which nobody controls may say at the start, for a trace; None where there is none."""
+    """An event of an uncontrollable agent that is possible at the start, for a trace; None where there is none."""
     places = {automaton.name: automaton.initial for automaton in network.automata}
     values = dict(network.variables)
     for automaton in network.automata:
         for edge in automaton.edges:
             open_ = all(any(values[t.variable] == t.value for t in clause) for clause in edge.guard.integers)
-            said = edge.sync is not None and edge.sync.sends and not edge.controllable
-            if said and open_ and edge.source == places[automaton.name] and not is_end(edge):
+            reported = edge.sync is not None and edge.sync.sends and not edge.controllable
+            if reported and open_ and edge.source == places[automaton.name] and not is_end(edge):
                 return f"{automaton.name}:{event_word(automaton.name, edge)}"
     return None

@@ -1,4 +1,4 @@
-"""What it takes to plan again, as the observer reads it: game.yaml, see docs/run_time.md."""
+"""The data for a new plan during the mission: game.yaml, see docs/run_time.md."""
 
 from __future__ import annotations
 

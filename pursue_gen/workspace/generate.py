@@ -77,7 +77,7 @@ def generate(
     for package in packages:
         for path, content in files_of(package, values, jinja, templates).items():
             files[f"src/{package.name}/{path}"] = content
-    files.update(_beside(scenario, network, objective, strategy))
+    files.update(_top_files(scenario, network, objective, strategy))
     names = [package.name for package in packages]
     files.update(deploy.docker_files(jinja, values, names) if options.docker else {})
     files.update(deploy.systemd_files(jinja, values, options.machines) if options.systemd else {})
@@ -107,7 +107,7 @@ def mission_of(scenario: str, files: Mapping[str, bytes]) -> Tuple[Manifest, Dic
 
 
 def _with_mission(packages: Sequence[Package], scenario: Scenario) -> List[Package]:
-    """The packages, those with data of the mission with a file that says which one it is."""
+    """The packages; those with data of the mission get its mission.yaml."""
     data = {
         f"src/{package.name}/{path}": content
         for package in packages
@@ -172,7 +172,7 @@ def _packages(
 
 
 def _plays(scenario: Scenario, trace: Optional[str]) -> List[str]:
-    """What the launch tests let agents do that nobody controls: nothing, anything, what the trace says."""
+    """The behaviours of uncontrollable agents in the launch tests: none, random, and the trace."""
     random = ["mode:=random seed:=1", "mode:=random seed:=2"]
     free = any(not agent.controllable for agent in scenario.agents)
     return ["mode:=still", *(random if free else []), *(["mode:=trace"] if trace else [])]
@@ -206,7 +206,7 @@ def _poses(scenario: Scenario, where: Mapping[str, Pose], computed: bool) -> byt
 
 
 def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
-    """The text of ui.yaml: the nodes that the UI waits for before the mission, whose ends the simulator tells, and the
+    """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends the simulator reports, and the
     connections of the map with their lengths."""
     data = {
         "format": 1,
@@ -219,13 +219,13 @@ def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:
-    """The text of controllers.yaml: the nodes that the observer listens for, and that a new plan goes to."""
+    """The text of controllers.yaml: the nodes whose heartbeats the observer expects, and that a new plan goes to."""
     head = f"Written by pursue-gen {__version__} for the observer of {values['scenario']}."
     return yaml_text({"format": 1, "controllers": inline(values["controllers"])}, [head]).encode()
 
 
-def _beside(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:
-    """What stands next to src/."""
+def _top_files(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:
+    """The files next to src/: scenario, network, query, plan."""
     return {
         f"{scenario.name}.pur": scenario.text.encode(),
         "TGA.xml": write_network(network, objective).encode(),
@@ -242,12 +242,12 @@ def _readme(
     computed: bool,
 ) -> bytes:
     nodes = [package.name for package in packages if package.kind not in ("bringup", *SHARED, *RECEIVING)]
-    told = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
-    return jinja.get_template("workspace/README.md.j2").render({**values, **told}).encode()
+    more = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
+    return jinja.get_template("workspace/README.md.j2").render({**values, **more}).encode()
 
 
 def _promise(scenario: Scenario) -> str:
-    """What the mission does, in a sentence, with the author's words for it."""
+    """What the mission guarantees, in a sentence, with the names of the scenario."""
     goal = f"reaches `{scenario.reach.event.name}`" if scenario.reach else ""
     if goal and scenario.reach and scenario.reach.after:
         goal += f" after {scenario.reach.after} time units"

@@ -6,7 +6,7 @@
       base.local: {nodes: [observer, UI]}
       bot1.local: {nodes: [controller_bot1], user: ros, env_loader: /home/ros/mission/devel/env.sh}
 
-A node that stands nowhere stays on the master's machine; without `master` that is the one that launches.
+A node that is not listed runs on the master's machine; without `master` that is the machine of roslaunch.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.similar import closest
 
 HERE = "localhost"
-BESIDE = ("UI", "simulator", "sim_clock", "recorder")
+UI_NODES = ("UI", "simulator", "sim_clock", "recorder")
 """The nodes of the package UI."""
 
 _HOST = re.compile(r"(?=.{1,253}\Z)[A-Za-z0-9]([A-Za-z0-9_-]*[A-Za-z0-9])?(\.[A-Za-z0-9]([A-Za-z0-9_-]*[A-Za-z0-9])?)*")
@@ -45,7 +45,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class Machines:
-    """Where the nodes run. `master`: the host of the ROS master, and of every node that stands on no machine."""
+    """Where the nodes run. `master`: the host of the ROS master, and of every node that is not listed."""
 
     master: str = HERE
     machines: Tuple[Machine, ...] = ()
@@ -62,16 +62,16 @@ class Machines:
 
 
 ONE_MACHINE = Machines()
-"""Everything runs where it is launched."""
+"""All nodes run on the machine on which they are launched."""
 
 
 def nodes_of(controllers: Sequence[str]) -> Tuple[str, ...]:
     """Every node of a mission with these controllers, in the order of the launch file."""
-    return ("observer", *controllers, *BESIDE)
+    return ("observer", *controllers, *UI_NODES)
 
 
 def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
-    """What a machines.yaml says about these nodes, and what is to be told about it.
+    """The machines of a machines.yaml for these nodes, and warnings about it.
 
     Raises PursueError with all that is wrong in it (exit status 2).
     """
@@ -84,16 +84,16 @@ def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines
     found = reader.read(compose_yaml(text, file, "TRN040", _EXAMPLE))
     if reader.problems:
         raise PursueError(in_order(reader.problems), 2)
-    homeless = [node for node in nodes if node not in reader.placed]
-    if not homeless:
+    unplaced = [node for node in nodes if node not in reader.placed]
+    if not unplaced:
         return found, ()
     where = "the machine that launches" if found.master == HERE else found.master
-    message = f"on no machine, so they stay on {where}: {', '.join(homeless)}"
+    message = f"on no machine, so they stay on {where}: {', '.join(unplaced)}"
     return found, (warning("TRN043", message, Span(file, 1, 1, 1, 1), "name them under a machine's nodes"),)
 
 
 class _Reader:
-    """Goes through PyYAML's tree once; collects what is wrong, and which nodes have a machine."""
+    """Reads PyYAML's tree once; collects the errors, and the machine of each node."""
 
     def __init__(self, file: str, nodes: Sequence[str]) -> None:
         self.file, self.nodes = file, nodes
@@ -141,8 +141,8 @@ class _Reader:
         name = self.text(node)
         if name not in self.nodes:
             close = difflib.get_close_matches(name, self.nodes, n=1, cutoff=0.5)
-            told = f"the nodes are {', '.join(self.nodes)}"
-            hint = f"did you mean {close[0]}? {told}" if close else told
+            expected = f"the nodes are {', '.join(self.nodes)}"
+            hint = f"did you mean {close[0]}? {expected}" if close else expected
             self.problems.append(error("TRN041", f"there is no node '{name}'", self.span(node), hint))
             return False
         if name in self.placed:
@@ -186,9 +186,9 @@ class _Reader:
         return str(node.value) if node.id == "scalar" else ""
 
     def wrong(self, node: Any, message: str, hint: str) -> None:
-        """Something that machines.yaml cannot say."""
+        """Add an error with the code TRN040."""
         self.problems.append(error("TRN040", message, self.span(node), hint))
 
     def span(self, node: Any) -> Span:
-        """Where it stands."""
+        """The span of a node of the tree."""
         return span_of(node, self.file)

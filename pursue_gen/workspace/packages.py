@@ -80,7 +80,7 @@ does what that is for."""
 
 @dataclass(frozen=True)
 class Package:
-    """A package to be: its kind (a folder of templates), what its manifest says, data files by path within it."""
+    """A package to be: its kind (a folder of templates), its manifest's entries, data files by path within it."""
 
     name: str
     kind: str

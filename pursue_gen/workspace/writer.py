@@ -2,8 +2,8 @@
 
 At the root of what we write stands a manifest, `.pursue_gen.json`: the digest of each file as it was generated. When
 a workspace is generated again, files that still have that digest are replaced (or removed, when they are no longer
-part of it); a file that has another one was edited, a file that is not listed is not ours: both stop the generator
-before it changes anything, unless it is told to `force`. Whatever else stands in the folder (build, devel, install,
+part of it); a file that has another one was edited, a file that is not listed was not generated: both are an error
+before anything is changed, unless `force` is given. Whatever else stands in the folder (build, devel, install,
 packages that the user added) is never touched.
 """
 
@@ -88,8 +88,8 @@ def _refuse_conflicts(files: Mapping[str, bytes], folder: Path, force: bool) -> 
     if force or not (edited or unknown):
         return
     findings = []
-    for code, paths, what in (("WSP001", edited, "edited since it was generated"), ("WSP002", unknown, "not ours")):
-        findings += [error(code, f"{folder / path} would be replaced or removed, but it is {what}") for path in paths]
+    for code, paths, why in (("WSP001", edited, "was edited"), ("WSP002", unknown, "was not generated")):
+        findings += [error(code, f"{folder / path} would be replaced or removed, but it {why}") for path in paths]
     hint = "move it away, write elsewhere with -o DIR, or replace it with --force"
     findings[-1] = replace(findings[-1], hint=hint)
     raise PursueError(findings, 2)
@@ -129,7 +129,7 @@ def _apply(folder: Path) -> None:
         if (stage / MANIFEST).exists():  # else all has been moved already
             for path in sorted(set(_known(folder)) - set(new)):
                 _remove(folder, path)
-            for path in [*sorted(new), MANIFEST]:  # the manifest last: until then the old one tells what was ours
+            for path in [*sorted(new), MANIFEST]:  # the manifest last: until then the old one lists the generated files
                 if (stage / path).exists():
                     _make_room(folder, path)
                     os.replace(stage / path, folder / path)

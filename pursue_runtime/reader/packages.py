@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Collection, Tuple
 
 ALL = "all"
-BESIDE = ("UI", "simulator", "sim_clock", "recorder")
+UI_NODES = ("UI", "simulator", "sim_clock", "recorder")
 """The nodes of the package UI; every other node's package is called like the node."""
 
 
@@ -25,4 +25,4 @@ def without_package(nodes: str, installed: Collection[str]) -> Tuple[str, ...]:
 
 def package_of(node: str) -> str:
     """The package of a node of the mission."""
-    return "UI" if node in BESIDE else node
+    return "UI" if node in UI_NODES else node

@@ -13,8 +13,8 @@ from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.parser import read
 from pursue_gen.lsp.completion import complete, fill_in
 from pursue_gen.lsp.document import Document, Edit, applied
+from pursue_gen.lsp.forms import FORMS, MEANINGS
 from pursue_gen.lsp.tokens import COMMENTS, accepts
-from pursue_gen.lsp.words import FORMS, MEANINGS
 
 from .scenarios import SCENARIOS, SMALL, marked
 

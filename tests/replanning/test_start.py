@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.replanning.request import read_request
-from pursue_gen.replanning.start import begun, region
+from pursue_gen.replanning.start import network_from, region
 from pursue_gen.synthesis.game import compile_game, start_zone
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
@@ -62,7 +62,7 @@ def test_all_that_is_alike_is_in_the_zone(point, grid: int) -> None:
 
 def network_at(**changed) -> Network:
     _, won = solved("thesis/scenario_1")
-    return begun(won.network, read_request(beginning("thesis/scenario_1", **changed)))
+    return network_from(won.network, read_request(beginning("thesis/scenario_1", **changed)))
 
 
 def place(network: Network, agent: str) -> Location:
@@ -86,7 +86,7 @@ def test_both_engines_agree_in_the_middle_of_plays(name: str, lost: bool) -> Non
     scenario, won = solved(name)
     excused = [agent.name for agent in scenario.agents[:1]] if lost else []
     for state, clocks in list(walk(name, 5, 18))[::5]:
-        network = begun(won.network, read_request(asked(name, state, clocks, excused=excused)))
+        network = network_from(won.network, read_request(asked(name, state, clocks, excused=excused)))
         native_, python = (solve(network, won.objective, won.reaction, engine=e).won for e in ("native", "python"))
         assert native_ is python
 

@@ -6,7 +6,7 @@ from typing import Tuple
 
 import pytest
 
-from pursue_gen.workspace.machines import BESIDE
+from pursue_gen.workspace.machines import UI_NODES
 from pursue_runtime.reader import packages as reader_nodes
 from pursue_runtime.reader.packages import packages_here, without_package
 
@@ -40,4 +40,4 @@ def test_what_is_not_installed_does_not_count() -> None:
 
 
 def test_nodes_of_the_package_ui_are_those_that_the_desk_knows() -> None:
-    assert reader_nodes.BESIDE == BESIDE
+    assert reader_nodes.UI_NODES == UI_NODES

@@ -1,4 +1,4 @@
-"""What the words of the language mean, in a sentence each, and statements to fill in."""
+"""The meaning of each keyword in a sentence, and statements to fill in."""
 
 from __future__ import annotations
 
