@@ -81,16 +81,16 @@ def clean_by_robots(robots: int) -> str:
 def deliver_by_places(places: int) -> str:
     """A hotel: rooms along a corridor. One robot brings luggage to the last room, another breakfast to the one in the
     middle."""
-    doors = places // 2
-    half = (doors + 1) // 2
+    corridors = places // 2
+    half = (corridors + 1) // 2
     return _text(
-        (*(f"corridor{i}" for i in range(1, doors + 1)), *(f"room{i}" for i in range(1, places - doors + 1))),
+        (*(f"corridor{i}" for i in range(1, corridors + 1)), *(f"room{i}" for i in range(1, places - corridors + 1))),
         [
-            *((f"corridor{i}", f"corridor{i + 1}", 3) for i in range(1, doors)),
-            *((f"corridor{min(i, doors)}", f"room{i}", 2) for i in range(1, places - doors + 1)),
+            *((f"corridor{i}", f"corridor{i + 1}", 3) for i in range(1, corridors)),
+            *((f"corridor{min(i, corridors)}", f"room{i}", 2) for i in range(1, places - corridors + 1)),
         ],
         {
-            "luggage": f"location room{places - doors} duration 2",
+            "luggage": f"location room{places - corridors} duration 2",
             "breakfast": f"location room{half} duration 2",
             "report": "",
         },

@@ -1,6 +1,6 @@
-"""One game measured, in a process of its own: `python -m benchmarks.measure` reads a case from standard input (JSON).
+"""The measurement of one game in a process of its own: `python -m benchmarks.measure` reads a case from stdin (JSON).
 
-It prints a line of JSON after each stage, the last one with everything; who started it takes the last line that came.
+It prints a line of JSON after each stage, the last one with everything; its caller takes the last line that came.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fractio
 """The two games: who controls the ends, and the reaction in time units."""
 
 SHORT, RUNS = 0.5, 7
-"""What takes less than so many seconds is done so often, and the median counts."""
+"""Games that take less than so many seconds are solved so often, and the median counts."""
 
 MARGIN_STATES = {"family": 5_000}
-"""What the search for a margin may cost, in symbolic states of the checker; then the margin is only a lower bound."""
+"""Limit of the search for a margin, in symbolic states of the checker; beyond it the margin is only a lower bound."""
 
 Row = Dict[str, Any]
 
@@ -44,20 +44,20 @@ class Case:
 
     @property
     def key(self) -> Tuple[str, str, int, str]:
-        """What tells a case from all others."""
+        """The identity of a case."""
         return (self.group, self.name, -1 if self.size is None else self.size, self.game)
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a case may cost: seconds to decide and as many to prove, memory of the process in MiB."""
+    """Limits of a case: seconds to decide and as many to prove, memory of the process in MiB."""
 
     seconds: float
     memory: int
 
 
 def measured(case: Case, bounds: Bounds) -> Row:
-    """What the case costs, measured in another process; `outcome` says where it did not get to its end.
+    """The costs of the case, measured in another process; `outcome`: the stage that did not end, or "".
 
     Keys: those of the case (without its text), verdict ("won", "lost" or None), outcome, states, zones, seconds
     (median, of the solver alone), runs, decided (seconds of one whole call, tables and strategy included), proof
@@ -80,14 +80,14 @@ def measured(case: Case, bounds: Bounds) -> Row:
     row.update(json.loads(whole[-1]) if whole else {"outcome": "time" if late else ""})
     if process.returncode and not late:
         # Killed by the system, or Python ran out of what RLIMIT_AS leaves it.
-        starved = process.returncode < 0 or "MemoryError" in err or "bad_alloc" in err
+        killed = process.returncode < 0 or "MemoryError" in err or "bad_alloc" in err
         reason = (err.strip().splitlines() or ["failed"])[-1].split("PursueError: ")[-1][:120]
-        row["outcome"] = ("proof" if whole else "memory") if starved else reason
+        row["outcome"] = ("proof" if whole else "memory") if killed else reason
     return row
 
 
 def _measure(case: Case, bounds: Bounds) -> None:
-    """Decides, proves, looks for the margin, and prints after each what it cost, as far as it gets."""
+    """Decide, prove and compute the margin; print the costs after each of these stages."""
     from pursue_gen.diagnostics import PursueError
     from pursue_gen.proof.margin import strategy_margin
     from pursue_gen.solving.options import SolveOptions
@@ -107,30 +107,30 @@ def _measure(case: Case, bounds: Bounds) -> None:
         row.update(decided=time.perf_counter() - start, verdict="won" if verdict.won else "lost")
         row.update(states=verdict.stats.discrete_states, zones=verdict.stats.zones, engine=verdict.stats.engine)
         row.update(symbolic=verdict.stats.symbolic_states, seconds=verdict.stats.seconds, runs=1, memory=_peak())
-        _tell({**row, "outcome": "proof" if verdict.won else ""})
+        _print({**row, "outcome": "proof" if verdict.won else ""})
         if verdict.stats.seconds < SHORT:
             again = [solve(network, objective, reaction=rules.reaction).stats.seconds for _ in range(RUNS - 1)]
             row.update(seconds=statistics.median([verdict.stats.seconds, *again]), runs=RUNS)
         if verdict.strategy is None:
-            _tell(row)
+            _print(row)
             return
         start = time.perf_counter()
         strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, SolveOptions(limits))
         row.update(proof=time.perf_counter() - start, blocks=len(strategy.blocks), memory=_peak())
         row["commands"] = sum(len(block.commands) for block in strategy.blocks)
-        _tell(row)
+        _print(row)
     except PursueError as problem:
         message = problem.diagnostics[0].message.split(";")[0]
         if problem.exit_status == 5:
-            trouble = "proof" if row else "memory" if "memory" in message else "time"
+            failure = "proof" if row else "memory" if "memory" in message else "time"
         elif row:
-            trouble = "refused"
+            failure = "refused"
         else:
             raise
-        _tell({**row, "outcome": trouble, "reason": message, "memory": _peak()})
+        _print({**row, "outcome": failure, "reason": message, "memory": _peak()})
         return
     found = strategy_margin(network, objective, strategy, rules.reaction, MARGIN_STATES.get(case.group, 50_000))
-    _tell({**row, "margin": float(found.wins), "margin_open": found.fails is None})
+    _print({**row, "margin": float(found.wins), "margin_open": found.fails is None})
 
 
 def _game(case: Case) -> Tuple[Any, Any]:
@@ -157,7 +157,7 @@ def _peak() -> float:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
-def _tell(row: Row) -> None:
+def _print(row: Row) -> None:
     rounded = {key: round(value, 6) if isinstance(value, float) else value for key, value in row.items()}
     print(json.dumps({"outcome": "", **rounded}), flush=True)
 

@@ -40,7 +40,7 @@ NODES = ("observer", "controller_bot", "simulator", "UI")
 
 
 def start_mission(there: World, folder: Path) -> None:
-    """All nodes of the generated workspace; the UI starts the mission."""
+    """Start all nodes of the generated workspace; the UI starts the mission."""
     workspace = generated(SCENARIO, "answer", folder)
     there.node(workspace, "observer", "observer", f"_time_unit:={UNIT}")
     there.node(workspace, "controller_bot")
@@ -49,7 +49,7 @@ def start_mission(there: World, folder: Path) -> None:
 
 
 def start_others(there: World) -> None:
-    """Two relays (with the probe three hops), and the thesis's scheme in a namespace of its own."""
+    """Start two relays (with the probe three hops), and the thesis's scheme in a namespace of its own."""
     roles = [sys.executable, "-m", "benchmarks.reaction_nodes"]
     there.start("relay1", [*roles, "relay", "floor/in", "floor/between"])
     there.start("relay2", [*roles, "relay", "floor/between", "floor/out"])
@@ -66,10 +66,10 @@ def measure(events: int, thesis: int, seconds: float) -> Dict[str, Any]:
         roles = [sys.executable, "-m", "benchmarks.reaction_nodes"]
         probe = there.start("probe", [*roles, "probe", str(events), str(thesis)])
         probe.wait()
-        said = there.log("probe").strip().splitlines()
-        if probe.returncode or not said:
-            raise SystemExit(f"the probe failed: {' '.join(said[-3:])}")
-        times: Dict[str, List[float]] = json.loads(said[-1])
+        lines = there.log("probe").strip().splitlines()
+        if probe.returncode or not lines:
+            raise SystemExit(f"the probe failed: {' '.join(lines[-3:])}")
+        times: Dict[str, List[float]] = json.loads(lines[-1])
         there.stop("probe", "relay1", "relay2", "thesis_observer", "thesis_controller")
         load = idle_load(there, seconds)
     return {

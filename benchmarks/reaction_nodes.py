@@ -1,9 +1,9 @@
 """The nodes of the reaction benchmark, each a process: `python -m benchmarks.reaction_nodes ROLE …`.
 
 `relay IN OUT` passes Strings on. `thesis_observer` and `thesis_controller` are the thesis's scheme for the same task,
-rebuilt from its text (listings 4.2 and B.9 to B.14): the controller looks at the state every 0.1 s, pings, waits
-another 0.1 s for the state, checks again, and then tells robot and observer. `probe EVENTS THESIS_EVENTS` measures,
-and prints a JSON object.
+rebuilt from its text (listings 4.2 and B.9 to B.14): the controller polls the state every 0.1 s, pings, waits
+another 0.1 s for the state, checks again, and then publishes to robot and observer. `probe EVENTS THESIS_EVENTS`
+measures, and prints a JSON object.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ import rospy
 from std_msgs.msg import String
 
 TIMEUNIT = 0.1
-"""The thesis's pause between two looks, in seconds."""
+"""The thesis's polling period, in seconds."""
 
 EVENTS, STATE, ACTIONS = "pursue/events", "pursue/system_state", "pursue/actions"
 PATIENCE = 3.0
 
 
 def relay(source: str, target: str) -> None:
-    """Nothing but a callback that publishes."""
+    """A callback that publishes, and nothing else."""
     rospy.init_node("relay", anonymous=True)
     out = rospy.Publisher(target, String, queue_size=100, tcp_nodelay=True)
     rospy.Subscriber(source, String, lambda message: out.publish(message.data), queue_size=100, tcp_nodelay=True)
@@ -34,12 +34,12 @@ def relay(source: str, target: str) -> None:
 
 
 def thesis_observer() -> None:
-    """Takes every word, moves its automata, and publishes where they are and their clocks."""
+    """Takes every event, moves its automata, and publishes their locations and clocks."""
     rospy.init_node("observer")
     out = rospy.Publisher(STATE, String, queue_size=1)
     turn, zeros = ["turn_initial_location"], {"bot": time.time(), "guest": time.time()}
 
-    def hear(message: Any) -> None:
+    def receive(message: Any) -> None:
         first, second = "turn_initial_location", "turn0"
         moves = {"call": (first, second, "guest"), "answer": (second, first, "bot")}
         source, target, agent = moves.get(message.data, ("", "", ""))
@@ -49,7 +49,7 @@ def thesis_observer() -> None:
         clocks = "".join(f"\nC{name}={time.time() - zero}" for name, zero in zeros.items())
         out.publish(f"\nbot=desk\nguest=desk\nturn={turn[0]}\n\n{clocks}")
 
-    rospy.Subscriber(EVENTS, String, hear)
+    rospy.Subscriber(EVENTS, String, receive)
     rospy.spin()
 
 
@@ -82,21 +82,21 @@ def thesis_controller() -> None:
 
 
 class Probe:
-    """Publishes events and notes when what follows from them comes."""
+    """Publishes events and records the times of the messages that follow from them."""
 
     def __init__(self) -> None:
         rospy.init_node("probe")
-        self.came = threading.Condition()
-        self.moments: Dict[str, float] = {}
+        self.received = threading.Condition()
+        self.times: Dict[str, float] = {}
         self.seq = 0
         self.unit = 1.0
         self.events = self.publisher(EVENTS)
         self.floor = self.publisher("floor/in")
         self.thesis = self.publisher(f"thesis/{EVENTS}")
-        self.listen("floor/out", lambda text: "floor")
-        self.listen(EVENTS, lambda text: "command" if "answer@" in text else "")
-        self.listen(f"bot/{ACTIONS}", lambda text: "order")
-        self.listen(f"thesis/{ACTIONS}", lambda text: "thesis")
+        self.subscribe("floor/out", lambda text: "floor")
+        self.subscribe(EVENTS, lambda text: "command" if "answer@" in text else "")
+        self.subscribe(f"bot/{ACTIONS}", lambda text: "order")
+        self.subscribe(f"thesis/{ACTIONS}", lambda text: "thesis")
         # Only until the mission runs: the nodes of the mission are what is measured, not this one.
         self.states = rospy.Subscriber(STATE, String, self.state)
 
@@ -105,40 +105,40 @@ class Probe:
         """A publisher without delays of its own."""
         return rospy.Publisher(topic, String, queue_size=100, tcp_nodelay=True)
 
-    def listen(self, topic: str, name: Callable[[str], str]) -> None:
-        """Notes the moment of a message under the name that it gets."""
+    def subscribe(self, topic: str, name: Callable[[str], str]) -> None:
+        """Record the time of each message under the name that `name` returns; "" for none."""
 
-        def hear(message: Any) -> None:
+        def receive(message: Any) -> None:
             now = time.perf_counter()
-            with self.came:
+            with self.received:
                 what = name(message.data)
                 if what:
-                    self.moments.setdefault(what, now)
-                    self.came.notify_all()
+                    self.times.setdefault(what, now)
+                    self.received.notify_all()
 
-        rospy.Subscriber(topic, String, hear, queue_size=1000, tcp_nodelay=True)
+        rospy.Subscriber(topic, String, receive, queue_size=1000, tcp_nodelay=True)
 
     def state(self, message: Any) -> None:
         """The state of the mission."""
         facts = dict(part.split("=", 1) for part in message.data.split() if "=" in part)
-        with self.came:
+        with self.received:
             self.seq, self.unit = int(facts.get("seq", 0)), float(facts.get("unit", 1))
-            self.came.notify_all()
+            self.received.notify_all()
 
     def wait(self, done: Callable[[], bool], patience: float = PATIENCE) -> None:
         """Until it is so. Raises SystemExit where it does not come."""
-        with self.came:
-            if not self.came.wait_for(done, patience):
-                raise SystemExit(f"no answer within {patience} s; came: {sorted(self.moments)}, state {self.seq}")
+        with self.received:
+            if not self.received.wait_for(done, patience):
+                raise SystemExit(f"no answer within {patience} s; came: {sorted(self.times)}, state {self.seq}")
 
     def timed(self, publisher: Any, text: str, *answers: str) -> List[float]:
         """Seconds from the message to each of the answers."""
-        with self.came:
-            self.moments.clear()
+        with self.received:
+            self.times.clear()
         start = time.perf_counter()
         publisher.publish(text)
-        self.wait(lambda: all(answer in self.moments for answer in answers))
-        return [self.moments[answer] - start for answer in answers]
+        self.wait(lambda: all(answer in self.times for answer in answers))
+        return [self.times[answer] - start for answer in answers]
 
     def run(self, events: int, thesis: int) -> Dict[str, List[float]]:
         """Floor and mission in turns, so that both meet the same machine; then the thesis's scheme."""

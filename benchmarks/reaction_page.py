@@ -49,7 +49,7 @@ def soak_table(results: Results) -> str:
     return markdown(("node", "after the warm-up, MiB", "at the end, MiB", "growth, KiB"), lines, left=1)
 
 
-def soak_words(results: Results) -> str:
+def soak_sentences(results: Results) -> str:
     """What the long mission was."""
     soak = results.get("soak", {})
     if not soak:
@@ -70,7 +70,7 @@ PARTS: Dict[str, Callable[[Dict[str, Any]], str]] = {
     "machine": _where,
     "reaction": reaction_table,
     "idle": idle_table,
-    "soak": lambda results: f"{soak_words(results)}\n{soak_table(results)}",
+    "soak": lambda results: f"{soak_sentences(results)}\n{soak_table(results)}",
 }
 
 

@@ -41,7 +41,7 @@ objective: if call then wipe within 400
 
 RULES = Rules(reaction=Fraction(1, 2))
 """Time that is fifty times as fast makes a delay of 10 ms on a busy machine half a time unit: commands get that room,
-and the deadline lets a word that was lost be said again (after half a second of real time)."""
+and the deadline lets a lost event be published again (after half a second of real time)."""
 
 NODES = ("observer", "controller_bot", "simulator", "UI")
 MOST_DRIFT = 0.001
@@ -49,7 +49,7 @@ MOST_DRIFT = 0.001
 
 
 class Clocks:
-    """The states as they come: every clock is compared with the stamps, from its last reset on."""
+    """Compares every clock of the states with the stamps, from its last reset on."""
 
     def __init__(self) -> None:
         self.seq, self.status, self.reason = -1, "", ""
@@ -59,8 +59,8 @@ class Clocks:
         self.missed = 0
         self._zeros: Dict[str, float] = {}
 
-    def see(self, text: str) -> None:
-        """A state. A clock that is 0 in it was reset at its stamp; the others go on."""
+    def update(self, text: str) -> None:
+        """Take a state. A clock that is 0 in it was reset at its stamp; the others go on."""
         head, _, rest = text.partition("\n")
         facts = dict(part.split("=", 1) for part in head.split() if "=" in part)
         seq, stamp, unit = int(facts["seq"]), float(facts["stamp"]), float(facts["unit"])
@@ -78,29 +78,29 @@ class Clocks:
                 self.drift = max(self.drift, abs(float(value) * unit - (stamp - self._zeros[name])))
 
 
-class Watch:
-    """Hears the states on ROS."""
+class StateSubscriber:
+    """A subscriber of the states."""
 
     def __init__(self) -> None:
         import rospy
         from std_msgs.msg import String
 
         rospy.init_node("soak", disable_signals=True)
-        self.came = threading.Condition()
+        self.received = threading.Condition()
         self.clocks = Clocks()
-        rospy.Subscriber("pursue/system_state", String, self.hear, queue_size=10000, tcp_nodelay=True)
+        rospy.Subscriber("pursue/system_state", String, self.receive, queue_size=10000, tcp_nodelay=True)
 
-    def hear(self, message: Any) -> None:
+    def receive(self, message: Any) -> None:
         """A state."""
-        with self.came:
-            self.clocks.see(message.data)
-            self.came.notify_all()
+        with self.received:
+            self.clocks.update(message.data)
+            self.received.notify_all()
 
     def wait(self, seq: int, patience: float) -> bool:
         """True once the mission has come so far; False where it has ended before, or nothing comes for so long."""
-        with self.came:
+        with self.received:
             while self.clocks.seq < seq and self.clocks.status in ("", "waiting", "running", "holding"):
-                if not self.came.wait(patience):
+                if not self.received.wait(patience):
                     return False
             return self.clocks.seq >= seq
 
@@ -122,16 +122,16 @@ def measure(events: int, warm: int, speed: float, hold: float, pace: float) -> D
     with tempfile.TemporaryDirectory(prefix="soak_") as home, world(Path(home)) as there:
         start(there, generated(SCENARIO, "cleaning", Path(home) / "ws", RULES), speed, hold, pace)
         os.environ.update(there.variables)
-        watch = Watch()
-        seen = watch.clocks
-        if not watch.wait(1, 60.0):
+        subscriber = StateSubscriber()
+        seen = subscriber.clocks
+        if not subscriber.wait(1, 60.0):
             raise SystemExit(f"the mission does not start: {there.log('UI')[-500:]}")
         begin = time.monotonic()
         series: List[Dict[str, int]] = []
         for seq in [*range(warm, events, max(1, events // 10)), events]:
-            if not watch.wait(seq, 60.0):
-                said = f"{seen.status} {seen.reason}\n{there.log('observer')[-1500:]}"
-                raise SystemExit(f"the mission got to state {seen.seq} only: {said}")
+            if not subscriber.wait(seq, 60.0):
+                reason = f"{seen.status} {seen.reason}\n{there.log('observer')[-1500:]}"
+                raise SystemExit(f"the mission got to state {seen.seq} only: {reason}")
             series.append({"seq": seen.seq, **{name: resident_kib(there.running[name]) for name in NODES}})
             print(series[-1], flush=True)
         return {
@@ -167,7 +167,7 @@ def main() -> int:
     given = options().parse_args()
     found = measure(given.events, given.warm, given.speed, given.hold, given.pace)
     results: Dict[str, Any] = {"soak": {**found, "machine": given.machine, "date": given.date}}
-    print(reaction_page.soak_words(results), reaction_page.soak_table(results), sep="\n")
+    print(reaction_page.soak_sentences(results), reaction_page.soak_table(results), sep="\n")
     if given.out:
         kept, page = given.out / "benchmarks" / "reaction.json", given.out / "reaction.md"
         results = {**(json.loads(kept.read_text()) if kept.is_file() else {}), **results}

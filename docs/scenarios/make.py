@@ -1,8 +1,8 @@
-"""Makes what pages on scenarios tell: verdicts, times, pictures, and what happens if something is changed.
+"""Makes the computed parts of the pages on scenarios: verdicts, times, pictures, and the effects of changes.
 
     python -m docs.scenarios.make [NAME ...]
 
-People write the pages, docs/scenarios/<name>.md; between two marks stands what is made here:
+The pages, docs/scenarios/<name>.md, are written by hand; the parts between two marks are made here:
 
     <!-- made: verdict -->      can it be won, how fast, how many states and commands
     <!-- made: map -->          the picture of the map
@@ -121,7 +121,7 @@ def page(text: str, found: Facts) -> Tuple[str, Dict[str, str]]:
     return _WHAT_IF.sub(row, _PART.sub(part, text)), pictures
 
 
-def _told_verdict(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     file = f"scenarios/{_name(found)}.pur"
     looked = f"The solver looked at {found.states:,} states"
     command = f"    pursue-gen solve {file}"
@@ -130,20 +130,20 @@ def _told_verdict(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     count = sum(len(block.commands) for block in found.won.strategy.blocks)
     has = f"{looked}; the strategy has {count} commands, and a second program has proven it."
     if found.guarantee is None:
-        told = "**It can be done**, whatever the others do, and for as long as one likes."
+        promise = "**It can be done**, whatever the others do, and for as long as one likes."
     else:
-        told = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
+        promise = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
     see = f"    pursue-gen sim {file}\n    ./run mission {file} web:=true"
-    return f"{told} {has}\n\n{command}\n{see}"
+    return f"{promise} {has}\n\n{command}\n{see}"
 
 
-def _told_map(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+def _map_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     where, computed = poses(found.scenario)
     pictures[f"{found.name}_map.svg"] = map_svg.draw(found.scenario, where, computed)
     return f"![Map of {found.name}]({found.name}_map.svg)"
 
 
-def _told_mission(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+def _mission_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     recording = simulated(case(found), number)
     pictures[f"{found.name}_mission.svg"] = timeline.draw(recording)
     how = f"`pursue-gen sim scenarios/{_name(found)}.pur --runs 1 --seed {number} --timeline mission.html`"
@@ -155,9 +155,9 @@ def _told_mission(found: Facts, number: int, pictures: Dict[str, str]) -> str:
 
 
 _PARTS: Mapping[str, Callable[[Facts, int, Dict[str, str]], str]] = {
-    "verdict": _told_verdict,
-    "map": _told_map,
-    "mission": _told_mission,
+    "verdict": _verdict_part,
+    "map": _map_part,
+    "mission": _mission_part,
 }
 
 
@@ -215,11 +215,11 @@ HEAD = "| scenario | agents | places | what is wanted | verdict | guaranteed tim
 def row(found: Facts) -> str:
     """The scenario's line in the index."""
     agents, count = found.scenario.agents, len(found.scenario.pois)
-    told = ", ".join(agent.name if agent.controllable else f"*{agent.name}*" for agent in agents)
+    names = ", ".join(agent.name if agent.controllable else f"*{agent.name}*" for agent in agents)
     verdict = "can be done" if found.won else "**cannot**"
     wanted = "; ".join(f"`{text}`" for text in _wanted(found.scenario))
     link = f"[{_name(found)}](scenarios/{found.name}.md)"
-    return f"| {link} | {told} | {count} | {wanted} | {verdict} | {_time(found)} | {found.states:,} |"
+    return f"| {link} | {names} | {count} | {wanted} | {verdict} | {_time(found)} | {found.states:,} |"
 
 
 def _wanted(scenario: Scenario) -> List[str]:

@@ -39,7 +39,8 @@ def new(
 ) -> None:
     """Write a first scenario that works, from a few questions.
 
-    What the options say is not asked. The file is printed on stdout; it is one that the robots win, which is tried.
+    Answers that are given as options are not asked for. The file's name is printed on stdout. The robots win the
+    scenario: that is checked.
     """
     from pursue_gen.authoring.dialog import ask_requirements
     from pursue_gen.authoring.first_scenario import checked, place_for, scenario_text, tried

@@ -82,7 +82,7 @@ def state(seq: int, stamp: float, **clocks: float) -> str:
 def test_drift_is_the_distance_from_the_last_reset() -> None:
     clocks = Clocks()
     for text in (state(1, 10.0, Ca=0.0, Cb=0.0), state(2, 11.0, Ca=2.0, Cb=0.0), state(3, 12.0, Ca=4.0, Cb=2.0)):
-        clocks.see(text)
+        clocks.update(text)
     assert clocks.drift == pytest.approx(0.0, abs=1e-9)
-    clocks.see(state(5, 13.0, Ca=6.01, Cb=4.0))
+    clocks.update(state(5, 13.0, Ca=6.01, Cb=4.0))
     assert clocks.drift == pytest.approx(0.005) and clocks.missed == 1

@@ -76,18 +76,18 @@ def test_locations_and_variables_of_a_state_are_read_as_text(judge: Any) -> None
     assert judge.values_of(message) == {"bot1": "going_a_to_b", "Pbot1": "-12"}
 
 
-def test_the_mission_is_started_again_until_the_observer_hears_it(judge: Any) -> None:
-    said: List[str] = []
+def test_start_is_published_until_the_observer_answers(judge: Any) -> None:
+    published: List[str] = []
     record = judge.Record([])
 
     def publish(word: str) -> None:
-        said.append(word)
-        record.status = "running" if len(said) == 3 else "waiting"
+        published.append(word)
+        record.status = "running" if len(published) == 3 else "waiting"
 
     class Played(judge.MissionTest):  # type: ignore[misc, name-defined]
-        voice = unittest.mock.Mock(publish=publish)
+        events = unittest.mock.Mock(publish=publish)
 
     with unittest.mock.patch.object(record, "wait", lambda done, seconds: done()):
         Played.record = record
         Played.start()
-    assert said == ["_start_"] * 3
+    assert published == ["_start_"] * 3

@@ -96,7 +96,7 @@ def test_who_is_not_wanted_any_more_is_killed(tmp_path: Path, thrown: List[Any])
     office = Office(program)
     for number in (1, 2):
         office.planner.request_plan(request(number))
-        until(lambda: note.exists() and note.read_text().count(" ") == number, f"note {number}")  # noqa: B023
+        until(lambda: note.exists() and note.read_text().count(" ") == number, f"note {number}")  # noqa: B023 (called at once)
     office.planner.request_plan(None)
     first, second = (int(number) for number in note.read_text().split())
     assert gone(first) and gone(second)
