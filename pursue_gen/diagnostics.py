@@ -1,6 +1,6 @@
-"""What every stage reports through: a severity, a code, a message, a place and a way out.
+"""Diagnostics of all stages: severity, code, message, position and hint.
 
-Nothing here knows a terminal or a stage; `render` makes the text that a person reads, `as_json` the one for machines.
+This module is independent of terminals and stages; `render` makes the text for people, `as_json` the data for programs.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from functools import lru_cache
 from typing import Any, Dict, Iterable, List, Optional, Tuple
 
 _WIDEST = 160
-"""Letters of a line that a message shows."""
+"""The most characters of a source line in a message."""
 
 
 class Severity(enum.Enum):
-    """How bad it is: an error stops the stage, a warning does not."""
+    """An error stops the stage, a warning does not."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -23,7 +23,7 @@ class Severity(enum.Enum):
 
 @dataclass(frozen=True)
 class Span:
-    """A stretch of a text: file as the user named it; lines and columns count from 1, the end column is exclusive."""
+    """A range of a text: `file` as the user named it; lines and columns count from 1, the end column is exclusive."""
 
     file: str
     line: int
@@ -44,7 +44,7 @@ class Diagnostic:
 
 
 class PursueError(Exception):
-    """The one exception that reaches the command line: diagnostics, and the exit status to leave with.
+    """The exception for all errors that the command line reports: diagnostics, and the exit status.
 
     Exit statuses: 2 usage, 3 the scenario has errors, 4 the objective cannot be met, 5 a limit was hit, 6 an external
     tool is missing.
@@ -101,12 +101,12 @@ def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:
 
 @lru_cache(maxsize=2)
 def _lines(source: str) -> Tuple[str, ...]:
-    """The lines as the readers of all stages count them."""
+    """The lines, split as all readers of files count them."""
     return tuple(source.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
 
 
 def _excerpt(text: str, span: Span) -> List[str]:
-    """The line, or the part of a very long one, with carets under the place; what cannot be seen becomes a sign."""
+    """The line, or a part of a very long one, with carets under the span; unprintable characters are replaced."""
     start = max(0, span.column - 1 - _WIDEST // 2) if len(text) > _WIDEST else 0
     column = span.column - start
     width = span.end_column - span.column if span.end_line == span.line else len(text) - span.column + 1

@@ -1,6 +1,6 @@
-"""Files that a person names: read with a message where that fails, written completely or not at all.
+"""Files that the user names: read with an error where that fails, written completely or not at all.
 
-YAML is read as a tree whose nodes know their places, for messages with line and column.
+YAML is read as a tree of nodes with their positions, for messages with line and column.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pursue_gen.diagnostics import PursueError, Span, error
 
 
 def read_text(file: Path, what: str) -> str:
-    """The text of a file; `what` says in messages what was expected there. Raises PursueError (exit status 2)."""
+    """The text of a file; `what` describes in messages the expected file. Raises PursueError (exit status 2)."""
     try:
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as problem:
@@ -30,15 +30,15 @@ def read_text(file: Path, what: str) -> str:
 
 
 def write_texts(texts: Mapping[Path, str]) -> None:
-    """Writes all the files as UTF-8, making their folders; none is replaced before all are on the disk.
+    """Write all the files as UTF-8, and make their folders; none is replaced before all are on the disk.
 
-    Raises PursueError (exit status 2) where that cannot be.
+    Raises PursueError (exit status 2) where a file cannot be written.
     """
     write_bytes({file: text.encode("utf-8") for file, text in texts.items()})
 
 
 def write_bytes(contents: Mapping[Path, bytes]) -> None:
-    """As `write_texts`, with files that are no texts."""
+    """Write files of bytes, otherwise as `write_texts`."""
     staged: List[Tuple[str, Path]] = []
     try:
         for file, content in contents.items():
@@ -82,7 +82,7 @@ def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
 
 
 def span_of(node: Any, file: str) -> Span:
-    """Where a node stands; None: the beginning of the file."""
+    """The span of a node of the tree; of None the beginning of the file."""
     if node is None:
         return Span(file, 1, 1, 1, 2)
     start, end = node.start_mark, node.end_mark
@@ -90,7 +90,7 @@ def span_of(node: Any, file: str) -> Span:
 
 
 def shell_quoted(path: Path) -> str:
-    """The path as a shell takes it."""
+    """The path, quoted for a shell."""
     return shlex.quote(str(path))
 
 

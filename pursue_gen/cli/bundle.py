@@ -102,4 +102,4 @@ def _print_bundle(file: Path, folder: Path) -> None:
         print(f"{name:12}  {what}")
     for path, content in sorted(found.files.items()):
         print(f"  {path:40}  {len(content)} bytes")
-    info(f"{file} is as it was signed.")
+    info(f"{file} has a valid signature, and its files are unchanged.")

@@ -13,7 +13,7 @@ import typer
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
 
 INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
-"""Exit statuses beside those of PursueError: an internal fault; Ctrl-C; stdout is closed."""
+"""Exit statuses beside those of PursueError: an internal error; Ctrl-C; stdout is closed."""
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33"}
 
@@ -73,16 +73,16 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _internal(problem: Exception) -> int:
-    """Prints an internal fault in a line and returns the exit status; with PURSUE_DEBUG set, raises it."""
+    """Print an internal error in a line and return the exit status; with PURSUE_DEBUG set, raises it."""
     if os.environ.get("PURSUE_DEBUG"):
         raise problem
-    info(f"error: pursue-gen has a fault of its own: {type(problem).__name__}: {problem}")
+    info(f"error: internal error of pursue-gen: {type(problem).__name__}: {problem}")
     info("    help: please report it, with the file and with what PURSUE_DEBUG=1 prints")
     return INTERNAL
 
 
 def _source(file: str) -> Optional[str]:
-    """The text that a place is in; None where it cannot be shown."""
+    """The text of a file; None where it cannot be shown."""
     try:  # a pipe has been read, and would not give its text again
         return Path(file).read_text(encoding="utf-8-sig") if Path(file).is_file() else None
     except (OSError, ValueError):

@@ -44,12 +44,12 @@ def fmt(
         elif check:
             print(layout.file)
         elif not stdin:
-            info(f"laid out: {layout.file}")
+            info(f"formatted: {layout.file}")
     if stdin and layouts and not (check or diff):
         sys.stdout.write(layouts[0].after)
     elif not stdin:
         word = "would change" if check or diff else "changed"
-        info(f"{counted(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} as it should be")
+        info(f"{counted(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} unchanged")
     if problems:
         findings: List[Diagnostic] = [finding for problem in problems for finding in problem.diagnostics]
         raise PursueError(findings, problems[0].exit_status)

@@ -64,7 +64,7 @@ def new(
     write_texts({file: text})
     print(file)
     if problem is None:
-        info("It is sound, and the robots can do it whatever the others do.")
+        info("The scenario has no errors, and the robots can win it whatever the other agents do.")
     else:
         show(problem.diagnostics)
     suggest(f"pursue-gen solve {shlex.quote(str(file))}")

@@ -60,7 +60,7 @@ def sim(
 ) -> None:
     """Play many missions with the generated code in a simulated world, without ROS, and check each one.
 
-    The exit status is 1 where a mission did what must never be: without faults it did not reach the goal (or did not
+    The exit status is 1 where a mission failed: without faults it did not reach the goal (or did not
     stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
     """
     from pursue_gen.cli.mission_count import counting
@@ -85,7 +85,7 @@ def sim(
     show(won.warnings)
     case, knows = make_case(read, won, request, opponent.value, kinds, until)
     if not knows:
-        info("the game is too large to tell how long plays can be: the worst opponent does anything")
+        info("the game is too large to compute the longest plays: the worst opponent acts at random")
     with counting(runs, as_json_) as count:
         summary = simulate(case, range(seed, seed + runs), jobs, count)
     if timeline is not None:
@@ -121,7 +121,7 @@ def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) 
     else:
         print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
     if summary.failed:
-        info(f"{counted(summary.failed, 'mission')} of {summary.missions} did what must never be; the first:")
+        info(f"{counted(summary.failed, 'mission')} of {summary.missions} failed; the first:")
         for outcome in summary.failures:
             info("\n".join(failure(outcome, _again(outcome.seed))))
 

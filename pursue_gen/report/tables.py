@@ -90,7 +90,7 @@ def section(
     parts.append(_times(won, missions, thesis_times(scenario.name, robots)) if goal else _safety(missions))
     failed = sum(one.summary.failed for one in missions)
     if failed:
-        parts.append(f"<p><strong>{failed} simulated missions did what must never be.</strong></p>")
+        parts.append(f"<p><strong>{failed} simulated missions failed.</strong></p>")
     return Section("tables", "Commands and times", "\n".join(parts))
 
 

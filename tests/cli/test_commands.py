@@ -136,7 +136,7 @@ def test_a_fault_of_ours_is_one_sentence() -> None:
     with mock.patch("pursue_gen.language.load", side_effect=ZeroDivisionError("oops")):
         told = pursue("solve", FIRST)
     assert told.status == 1
-    assert "fault of its own: ZeroDivisionError: oops" in told.err and broken_down(told.err)
+    assert "internal error of pursue-gen: ZeroDivisionError: oops" in told.err and has_internal_error(told.err)
     assert "Traceback" not in told.err
 
 
@@ -184,18 +184,18 @@ def test_letters_that_the_terminal_cannot_show_do_not_stop_it(tmp_path: Path) ->
     assert "Traceback" not in told.stderr and "PML" in told.stdout
 
 
-def broken_down(told: str) -> bool:
-    """True where it tells of a fault of its own; what it shows of a file may hold these words, but begins no line."""
-    return any(line.startswith(("Traceback", "error: pursue-gen has a fault")) for line in told.split("\n"))
+def has_internal_error(told: str) -> bool:
+    """True where it reports an internal error; a line of a file may hold these words, but not at the beginning."""
+    return any(line.startswith(("Traceback", "error: internal error of pursue-gen")) for line in told.split("\n"))
 
 
-def test_a_fault_of_ours_is_told_from_words_in_a_file(tmp_path: Path) -> None:
+def test_an_internal_error_is_distinguished_from_words_in_a_file(tmp_path: Path) -> None:
     file = tmp_path / "some.pur"
-    for word in ("fault", "Traceback", "error: pursue-gen has a fault"):
+    for word in ("internal error", "Traceback", "error: internal error of pursue-gen"):
         file.write_text(f"{word}\n{word}\n", encoding="utf-8")
         told = pursue("check", file)
         assert told.status == 3 and word.split()[0] in told.out
-        assert not broken_down(told.err) and not broken_down(told.out)
+        assert not has_internal_error(told.err) and not has_internal_error(told.out)
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
@@ -205,7 +205,7 @@ def test_no_file_content_gives_a_traceback(tmp_path: Path, content: bytes, comma
     file.write_bytes(content)
     told = pursue(command, file)
     assert told.status == 3
-    assert not broken_down(told.err)
+    assert not has_internal_error(told.err)
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
@@ -216,7 +216,7 @@ def test_no_content_of_other_files_gives_a_traceback(tmp_path: Path, model: byte
     for words in (["solve", tmp_path / "TGA.xml", tmp_path / "TCTL.q"], ["verify", FIRST, tmp_path / "plan.txt"]):
         told = pursue(*words)
         assert told.status in (2, 3)
-        assert not broken_down(told.err)
+        assert not has_internal_error(told.err)
 
 
 @pytest.mark.parametrize("command", ["tga", "solve", "report", "ws"])

@@ -150,7 +150,7 @@ def test_a_mission_that_robots_would_not_take_is_not_written(keys: Path) -> None
 def told(done: Outcome, status: int, *words: str) -> None:
     assert (done.status, done.out) == (status, ""), done.err
     assert all(word in done.err for word in words), done.err
-    assert "fault of its own" not in done.err
+    assert "internal error" not in done.err
     assert not list(Path().glob("*.pursue"))
 
 
