@@ -86,7 +86,7 @@ def too_large(file: str) -> Diagnostic:
 def too_many(span: Optional[Span]) -> Diagnostic:
     """More errors than anybody reads."""
     hint = "is this a scenario? If so, mend the first errors and check again"
-    return error("PML018", f"there are more than {MOST_FINDINGS} errors; the rest is not shown", span, hint)
+    return error("PML018", f"there are more than {MOST_FINDINGS} errors; the rest is not reported", span, hint)
 
 
 class _Reader:
