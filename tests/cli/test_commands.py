@@ -495,7 +495,7 @@ def test_ws_writes_a_workspace_and_says_how_to_go_on(tmp_path: Path) -> None:
     assert "roslaunch scenario_1_bringup mission.launch" in told.err
     packages = {p.name for p in (folder / "src").iterdir()}
     mission = {"UI", "controllerObj", "controller_bot1", "controller_bot2", "observer", "scenario_1_bringup"}
-    assert packages == mission | {"communication_manager", "pursue_reader"}
+    assert packages == mission | {"communication_manager", "pursue_reader", "pursue_msgs", "pursue_runtime"}
     once = tree(folder)
     assert pursue("ws", FIRST, "-o", folder).status == 0
     assert tree(folder) == once
