@@ -64,7 +64,7 @@ def new(
     write_texts({file: text})
     print(file)
     if problem is None:
-        info("The scenario has no errors, and the robots can win it whatever the other agents do.")
+        info("The scenario has no errors, and the robots can win it whatever the others do.")
     else:
         show(problem.diagnostics)
     suggest(f"pursue-gen solve {shlex.quote(str(file))}")
