@@ -20,17 +20,17 @@ except ImportError:  # no compiler when the package was installed
 class NativeFederation:
     """The native functions on federations, by the names of `Federation`."""
 
-    library: Any
+    binding: Any
     zones: Tuple[Any, ...]
 
     def _made(self, zones: Sequence[Any]) -> NativeFederation:
-        return NativeFederation(self.library, tuple(zones))
+        return NativeFederation(self.binding, tuple(zones))
 
     def __bool__(self) -> bool:
         return bool(self.zones)
 
     def includes_zone(self, zone: Any) -> bool:
-        return bool(self.library.contains(list(self.zones), zone))
+        return bool(self.binding.contains(list(self.zones), zone))
 
     def includes(self, other: NativeFederation) -> bool:
         return all(map(self.includes_zone, other.zones))
@@ -38,24 +38,24 @@ class NativeFederation:
     def union(self, other: NativeFederation) -> NativeFederation:
         zones: List[Any] = list(self.zones)
         for zone in other.zones:
-            zones = self.library.inserted(zones, zone)
+            zones = self.binding.inserted(zones, zone)
         return self._made(zones)
 
     def intersect(self, other: NativeFederation) -> NativeFederation:
-        return self._made(self.library.intersection(list(self.zones), list(other.zones)))
+        return self._made(self.binding.intersection(list(self.zones), list(other.zones)))
 
     def minus(self, other: NativeFederation) -> NativeFederation:
-        return self._made(self.library.minus(list(self.zones), list(other.zones)))
+        return self._made(self.binding.minus(list(self.zones), list(other.zones)))
 
     def reduced(self) -> NativeFederation:
-        return self._made(self.library.reduced(list(self.zones)))
+        return self._made(self.binding.reduced(list(self.zones)))
 
     def disjoint(self) -> Tuple[Any, ...]:
-        return tuple(self.library.disjoint(list(self.zones)))
+        return tuple(self.binding.disjoint(list(self.zones)))
 
     def lasting(self, delay: int, universe: Any) -> NativeFederation:
-        lasting = self.library.lasting(list(self.zones), delay)
-        return self._made(self.library.intersection(lasting, [universe]))
+        lasting = self.binding.lasting(list(self.zones), delay)
+        return self._made(self.binding.intersection(lasting, [universe]))
 
 
 @dataclass(frozen=True)
@@ -68,18 +68,18 @@ class Twin:
 
 
 def _native(name: str) -> Twin:
-    library = getattr(_zones, name, None)
+    binding = getattr(_zones, name, None)
 
     def zone(python: Dbm) -> Any:
-        assert library is not None
-        return library.Dbm(python.dim, python.m)
+        assert binding is not None
+        return binding.Dbm(python.dim, python.m)
 
     def federation(python: Federation) -> NativeFederation:
-        return NativeFederation(library, tuple(map(zone, python.zones)))
+        return NativeFederation(binding, tuple(map(zone, python.zones)))
 
     def predecessor(good: NativeFederation, bad: NativeFederation) -> NativeFederation:
-        assert library is not None
-        return NativeFederation(library, tuple(library.predt(list(good.zones), list(bad.zones))))
+        assert binding is not None
+        return NativeFederation(binding, tuple(binding.predt(list(good.zones), list(bad.zones))))
 
     return Twin(zone, federation, predecessor)
 
