@@ -115,8 +115,8 @@ def test_simple_goals_an_early_end_and_a_result_of_long_ago(ros: Ros, workspace:
     arguments = "ends:=result on_uncovered:=warn"
     robots, said = played(ros, workspace, tmp_path, arguments, bot1={"travel": 0.05}, bot2={"plays": ["stale"]})
     well(said)
-    early = "bot1_going_c_to_b2b comes at a time that the model does not know"
-    assert early in said and "bot2_going_c_to_a2a comes at" not in said, said[-8000:]
+    early = "bot1_going_c_to_b2b is outside the model's time window"
+    assert early in said and "bot2_going_c_to_a2a is outside" not in said, said[-8000:]
     assert robots.heard("bot2") == ["goal a", "action bot2_ina"]
 
 
