@@ -3,7 +3,7 @@ because the UI does not start it before every publisher is connected here, and c
 
 Parameters: ~file (a path, relative to ROS_HOME; "" or true: pursue/<scenario>/mission.bag there; no file is ever
 overwritten, the name gets a number), ~nodes (whose words must not be missed), ~topics (more to record),
-~config, ~received, ~again (see ui_mission).
+~config, ~received, ~again (see membership).
 """
 
 from __future__ import annotations

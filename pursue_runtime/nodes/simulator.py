@@ -1,7 +1,7 @@
 """The simulated robots, people and other agents: reports the ends of what they do.
 
 Parameters: ~reports (whose ends; default: those that ui.yaml names, or everybody's), ~delays (random, early, middle,
-late), ~seed, ~config, ~received, ~again (see ui_mission).
+late), ~seed, ~config, ~received, ~again (see membership).
 """
 
 from __future__ import annotations

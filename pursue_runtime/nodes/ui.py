@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 import time
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -335,9 +335,17 @@ class UI:
         return status
 
     def read(self) -> None:
-        """Reads what is typed, until the input ends."""
-        for line in sys.stdin:
+        """Handle what is typed, until the input ends."""
+        for line in typed_lines():
             self.on_line(line)
+
+
+def typed_lines() -> Iterator[str]:
+    """Yield the lines of standard input; where it fails, log why and end: the mission goes on without a terminal."""
+    try:
+        yield from sys.stdin
+    except (OSError, ValueError) as problem:  # the terminal is gone, or what was typed is no text
+        rospy.logwarn("standard input is not read any more: %s", problem)
 
 
 def on_terminal() -> bool:

@@ -107,6 +107,14 @@ def test_without_tornado_there_is_no_page_and_the_reason_is_told(
     assert "Not ready after 0.5 s" in done.stdout, "nobody else needs it"
 
 
+def test_what_is_typed_and_is_no_text_does_not_end_the_mission(package: Path, where: Dict[str, str]) -> None:
+    command = [sys.executable, str(package / "scripts" / "UI"), "--mode", "ask", "--wait", "2", "__name:=typed"]
+    environment = {**where, "PYTHONIOENCODING": "utf-8:strict"}
+    done = subprocess.run(command, env=environment, input=b"\xff\n", capture_output=True, timeout=2 * PATIENCE)
+    assert b"standard input is not read any more" in done.stdout + done.stderr
+    assert b"Not ready after 2 s" in done.stdout and b"failed" not in done.stdout + done.stderr
+
+
 def test_a_taken_port_is_told(package: Path, where: Dict[str, str]) -> None:
     pytest.importorskip("tornado")
     with socket.socket() as taken:
