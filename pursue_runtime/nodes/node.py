@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 import traceback
-from typing import TYPE_CHECKING, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -234,3 +234,19 @@ def lower_priority() -> None:
 def listeners(publisher: rospy.Publisher) -> List[str]:
     """The names of the nodes that are connected to what we publish there."""
     return sorted({connection[1] for connection in publisher.impl.get_stats_info()})
+
+
+def publish_to_one(publisher: rospy.Publisher, peer_publish: Callable[[Any], None], message: Any) -> None:
+    """Publish a message to one subscriber alone, with the function that rospy passes to `peer_subscribe`.
+
+    That function serializes into a buffer that all calls share, and leaves the lock to its caller: without it, messages
+    that two threads publish at the same time are mixed. Raises rospy.ROSException where the topic is closed.
+    """
+    impl = publisher.impl
+    if impl is None:
+        raise rospy.ROSException(f"{publisher.name} is closed")
+    impl.acquire()
+    try:
+        peer_publish(message)
+    finally:
+        impl.release()

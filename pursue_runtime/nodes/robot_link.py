@@ -14,6 +14,7 @@ from std_msgs.msg import String
 from pursue_runtime.controller.navigation import Goal, Settings
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
+from pursue_runtime.nodes.node import publish_to_one
 
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
@@ -23,7 +24,16 @@ class Order(NamedTuple):
     """An order for a robot: it stands as long as the state shows it at `location`."""
 
     location: str
+    publisher: rospy.Publisher
     message: Any
+
+    def publish(self, peer_publish: Optional[PublishToOne] = None) -> None:
+        """Publish it to all subscribers, or to the one of `peer_publish`; do nothing when the node is going down."""
+        with contextlib.suppress(rospy.ROSException):
+            if peer_publish is None:
+                self.publisher.publish(self.message)
+            else:
+                publish_to_one(self.publisher, peer_publish, self.message)
 
 
 def needed(package: str, module: str, why: str) -> Any:
@@ -57,7 +67,7 @@ class RobotLink(rospy.SubscribeListener):
         self._lock = threading.Lock()
         self._standing: Dict[str, Order] = {}
         self._open = True
-        self._late: List[Tuple[str, PublishToOne]] = []
+        self._late: List[Tuple[str, Optional[PublishToOne]]] = []
         self._ears: Any = None
         self._cancel: Any = None
         self._results: Any = None
@@ -98,25 +108,25 @@ class RobotLink(rospy.SubscribeListener):
             message = self._messages.MoveBaseActionGoal(header=stamped.header)
             message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
             message.goal.target_pose = stamped
-        self._send(self._move, Order(goal.movement.location, message))
+        self._send(Order(goal.movement.location, self._move, message))
         rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.movement.poi, position.x, position.y)
 
     def do(self, trigger: str, location: str = "") -> None:
         """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""
-        self._send(self._act, Order(location, String(trigger)))
+        self._send(Order(location, self._act, String(trigger)))
         rospy.loginfo("%s does %s", self._robot, trigger)
 
-    def _send(self, publisher: rospy.Publisher, order: Order) -> None:
+    def _send(self, order: Order) -> None:
+        topic = order.publisher.resolved_name
         with self._lock:
             if is_under_way(order.location):
-                self._standing[publisher.resolved_name] = order
+                self._standing[topic] = order
                 if not self._open:
-                    self._late.append((publisher.resolved_name, publisher.publish))
+                    self._late.append((topic, None))
                     return
-            if publisher.get_num_connections() == 0:
-                rospy.logwarn("no subscriber on %s yet", publisher.resolved_name)
-            with contextlib.suppress(rospy.ROSException):  # the node is going down
-                publisher.publish(order.message)
+            if order.publisher.get_num_connections() == 0:
+                rospy.logwarn("no subscriber on %s yet", topic)
+            order.publish()
 
     def keep(self, location: str, is_open: bool, after: str) -> None:
         """Drops the orders that are over: only what fits the location, and a goal that the robot is `after`, may still
@@ -128,9 +138,9 @@ class RobotLink(rospy.SubscribeListener):
                     del self._standing[topic]
             self._open = is_open
             late, self._late = (self._late, []) if is_open else ([], self._late)
-            due = [(publish, self._standing[topic]) for topic, publish in late if topic in self._standing]
-        for publish, order in due:
-            publish(order.message)
+            due = [(self._standing[topic], peer_publish) for topic, peer_publish in late if topic in self._standing]
+        for order, peer_publish in due:
+            order.publish(peer_publish)
 
     def peer_subscribe(self, topic_name: str, topic_publish: PublishToOne, peer_publish: PublishToOne) -> None:
         """A robot has connected (rospy calls this)."""
@@ -139,7 +149,7 @@ class RobotLink(rospy.SubscribeListener):
             if not self._open:
                 self._late.append((topic_name, peer_publish))
         if order:
-            peer_publish(order.message)
+            order.publish(peer_publish)
 
     def cancel(self, goal: str) -> None:
         """Calls the robot back from where it goes; a simple goal has no id of ours: from wherever it goes."""
