@@ -25,7 +25,7 @@ from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, is_loopback, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node
 from pursue_runtime.trusted_keys import KeyFolder
 
 
@@ -136,10 +136,5 @@ def robot_name() -> str:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    os.nice(5)  # who decides about robots goes first
-    rospy.init_node("communication_manager")
-    try:
-        return CommunicationManager().run()
-    except ServerError as problem:
-        rospy.logfatal("%s", problem)
-    return 3
+    lower_priority()
+    return run_node("communication_manager", lambda: CommunicationManager().run(), ServerError)

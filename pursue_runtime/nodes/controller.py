@@ -19,7 +19,7 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS
@@ -168,9 +168,4 @@ class Controller:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    rospy.init_node(package.name)
-    try:
-        return Controller(package).run()
-    except DataError as problem:
-        rospy.logfatal("%s", problem)
-        return 3
+    return run_node(package.name, lambda: Controller(package).run())

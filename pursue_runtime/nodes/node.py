@@ -10,11 +10,13 @@ import sys
 import threading
 import time
 import traceback
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
+
+from pursue_runtime.data import DataError
 
 if TYPE_CHECKING:
     from pursue_runtime.nodes.links import Links
@@ -147,6 +149,9 @@ class Alarm:
 FAILED = 1
 """The exit status of a node that cannot go on."""
 
+REFUSED = 3
+"""The exit status of a node that cannot begin: its data or its parameters are wrong."""
+
 INTERRUPTED, RENEWED = -1, -2
 """What takes the place of an exit status where a signal ends the node, and where it begins anew."""
 
@@ -223,6 +228,20 @@ def restart_process() -> NoReturn:
         signal.signal(sign, signal.SIG_DFL)
     sys.stdout.flush()
     os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes"})
+
+
+def run_node(name: str, run: Callable[[], int], *refusals: Type[Exception]) -> int:
+    """Connects the process to ROS as the node `name`, and runs it until it ends; returns its exit status.
+
+    Where `run` raises DataError, or one of `refusals`, the message is logged and the exit status is 3.
+    """
+    expected: Tuple[Type[Exception], ...] = (DataError, *refusals)
+    rospy.init_node(name)
+    try:
+        return run()
+    except expected as problem:
+        rospy.logfatal("%s", problem)
+        return REFUSED
 
 
 def lower_priority() -> None:

@@ -36,6 +36,7 @@ from pursue_runtime.nodes.node import (
     Report,
     listeners,
     restart_process,
+    run_node,
     start_thread,
 )
 from pursue_runtime.nodes.state_message import message_of
@@ -294,9 +295,4 @@ class Observer:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    rospy.init_node(package.name)
-    try:
-        return Observer(package).run()
-    except DataError as problem:
-        rospy.logfatal("%s", problem)
-        return 3
+    return run_node(package.name, lambda: Observer(package).run())

@@ -21,12 +21,22 @@ import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
-from pursue_runtime.data import DataError, Package
+from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, lower_priority, restart_process
+from pursue_runtime.nodes.node import (
+    OK,
+    REFUSED,
+    WARN,
+    Diagnostics,
+    Ending,
+    Report,
+    lower_priority,
+    restart_process,
+    run_node,
+)
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import OptionError, expected, names
@@ -166,11 +176,8 @@ def stamp() -> rospy.Time:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
-    rospy.init_node("recorder")
     try:
-        return Recorder(package).run()
-    except (DataError, OptionError) as problem:
-        rospy.logfatal("%s", problem)
+        return run_node("recorder", lambda: Recorder(package).run(), OptionError)
     except OSError as problem:
         rospy.logfatal("cannot record: %s", problem)
-    return 3
+        return REFUSED

@@ -14,7 +14,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
 
-from pursue_runtime.data import DataError, Package
+from pursue_runtime.data import Package
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -28,6 +28,7 @@ from pursue_runtime.nodes.node import (
     listeners,
     lower_priority,
     restart_process,
+    run_node,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.simulator.simulator import ACTING, Delays, Simulator
@@ -124,9 +125,4 @@ class SimulatorNode:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
-    rospy.init_node("simulator")
-    try:
-        return SimulatorNode(package).run()
-    except (DataError, ValueError) as problem:
-        rospy.logfatal("%s", problem)
-        return 3
+    return run_node("simulator", lambda: SimulatorNode(package).run(), ValueError)

@@ -1,0 +1,46 @@
+"""A node that cannot begin says why in a line and exits with status 3; anything else is an error of the program."""
+
+from __future__ import annotations
+
+from typing import List
+
+import pytest
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+import rospy
+
+from pursue_runtime.data import DataError
+from pursue_runtime.nodes.node import run_node
+
+
+@pytest.fixture
+def log(monkeypatch: pytest.MonkeyPatch) -> List[str]:
+    """What happens, in its order: the node's name as it connects to ROS, then what it logs as fatal."""
+    lines: List[str] = []
+    monkeypatch.setattr(rospy, "init_node", lines.append)
+    monkeypatch.setattr(rospy, "logfatal", lambda text, *parts: lines.append(text % parts))
+    return lines
+
+
+def test_its_exit_status_is_what_it_returns(log: List[str]) -> None:
+    assert run_node("observer", lambda: len(log)) == 1
+    assert log == ["observer"]
+
+
+@pytest.mark.parametrize("problem", [DataError("model.yaml: no 100%"), KeyError("a parameter")])
+def test_what_it_refuses_is_logged_and_its_status_is_3(log: List[str], problem: Exception) -> None:
+    def run() -> int:
+        raise problem
+
+    assert run_node("observer", run, KeyError) == 3
+    assert log == ["observer", str(problem)]
+
+
+def test_another_exception_is_raised(log: List[str]) -> None:
+    def run() -> int:
+        raise KeyError("a parameter")
+
+    with pytest.raises(KeyError):
+        run_node("observer", run)
+    assert log == ["observer"]
