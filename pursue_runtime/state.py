@@ -13,8 +13,12 @@ LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
 
 LATE = 60.0
-"""Seconds of real time for which a state counts as older than the one that was heard last, if it says so: after that a
-clock was set back."""
+"""Seconds of real time for which a state with an earlier number and stamp counts as older than the last one received;
+after that a clock was set back."""
+
+
+_INTEGER = re.compile(r"-?\d{1,18}", re.ASCII)
+_DECIMAL = re.compile(r"-?\d{1,18}(\.\d{1,30})?", re.ASCII)
 
 
 class SystemState(NamedTuple):
@@ -84,28 +88,41 @@ def format_state(state: SystemState) -> str:
 
 
 def parse_state(text: str) -> Optional[SystemState]:
-    """Reads what format_state writes, skipping lines that it does not know; None where the first line is not ours."""
+    """Reads what format_state writes, skipping lines that it does not know.
+
+    None where the first line is not ours, or has numbers that no state has: seq < 0, unit <= 0, a stamp of infinity.
+    """
     discrete, _, continuous = text.strip().partition("\n\n")
     head, _, discrete = discrete.partition("\n")
     head, _, reason = head.partition(" reason=")
     facts = dict(part.split("=", 1) for part in head.split() if "=" in part)
     try:
-        seq, stamp, unit = int(facts["seq"]), float(facts["stamp"]), float(facts.get("unit", 1.0))
-        plan = int(facts.get("plan", 0))
+        seq, stamp, unit = int(facts["seq"]), _finite(facts["stamp"]), _finite(facts.get("unit", "1"))
+        plan = int(facts.get("plan", "0"))
     except (KeyError, ValueError):
+        return None
+    if unit <= 0.0 or seq < 0:
         return None
     locations: Dict[str, str] = {}
     values: Dict[str, int] = {}
     for name, value in _pairs(discrete):
-        if re.fullmatch(r"-?\d+", value):
+        if _INTEGER.fullmatch(value):
             values[name] = int(value)
         else:
             locations[name] = value
-    clocks = {name: float(value) for name, value in _pairs(continuous) if re.fullmatch(r"-?\d+(\.\d+)?", value)}
+    clocks = {name: float(value) for name, value in _pairs(continuous) if _DECIMAL.fullmatch(value)}
     event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
     late, lost = (tuple(name for name in facts.get(key, "").split(",") if name) for key in ("late", "lost"))
     led_by = event, agent, status, reason, unit, plan, lost
     return SystemState(seq, stamp, locations, values, clocks, *led_by, facts.get("mission", ""), late)
+
+
+def _finite(text: str) -> float:
+    """The number in a text. Raises ValueError for infinity and NaN, and for what cannot be a time."""
+    value = float(text)
+    if not abs(value) < 1e15:
+        raise ValueError(text)
+    return value
 
 
 def _pairs(text: str) -> Iterable[Tuple[str, str]]:

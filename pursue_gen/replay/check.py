@@ -9,9 +9,10 @@ from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.orders import Orders, in_time, of_plan
-from pursue_gen.replay.record import ENDED, HOLDING, RUNNING, WAITING, WON, MissionRecord, RecordedState, RecordedWord
+from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
+from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
 
 DRIFT = 0.001
 """Seconds by which a clock may be beside the stamps."""
@@ -22,8 +23,8 @@ class ReplayedStep:
     """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
     recorded)."""
 
-    before: RecordedState
-    state: RecordedState
+    before: SystemState
+    state: SystemState
     move: Move
     word: Optional[RecordedWord] = None
 
@@ -99,7 +100,7 @@ class _Checker:
     def run(self) -> None:
         """The states one by one."""
         self._read_orders()
-        before: Optional[RecordedState] = None
+        before: Optional[SystemState] = None
         for state in self._record.states:
             if not self.moves.knows(_place(state)):
                 self._report(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
@@ -117,7 +118,7 @@ class _Checker:
         if before is not None:
             self._end(before)
 
-    def _report(self, level: str, kind: str, state: RecordedState, text: str) -> None:
+    def _report(self, level: str, kind: str, state: SystemState, text: str) -> None:
         self.findings.append(Finding(level, kind, state.seq, text))
 
     def _read_orders(self) -> None:
@@ -134,7 +135,7 @@ class _Checker:
 
     # One state after the other ----------------------------------------------------------------------------------------
 
-    def _first(self, state: RecordedState) -> None:
+    def _first(self, state: SystemState) -> None:
         if state.seq > 1:
             self._report(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
         elif _place(state) != self.moves.initial:
@@ -143,24 +144,24 @@ class _Checker:
         if state.seq == 1:
             self._started(state)
 
-    def _resume(self, state: RecordedState) -> None:
+    def _resume(self, state: SystemState) -> None:
         """Clocks are believed as they are here."""
         self._zeros = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
 
-    def _started(self, state: RecordedState) -> None:
+    def _started(self, state: SystemState) -> None:
         self._zeros = dict.fromkeys(self.moves.network.clocks, state.stamp)
         self._clocks(state)
 
-    def _again(self, before: RecordedState, state: RecordedState) -> None:
+    def _again(self, before: SystemState, state: SystemState) -> None:
         """The same number: a heartbeat, the answer to a ping, or an end."""
-        if not state.same_place(before):
+        if state.discrete() != before.discrete():
             self._report(FAULT, "number", state, f"two different states have number {state.seq}")
         elif state.status != before.status:
             self._status(before, state)
         if state.seq and state.status not in ENDED:
             self._clocks(state)
 
-    def _next(self, before: RecordedState, state: RecordedState) -> None:
+    def _next(self, before: SystemState, state: SystemState) -> None:
         if before.status == WAITING:
             if _place(state) != self.moves.initial:
                 self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
@@ -174,7 +175,7 @@ class _Checker:
         if move is not None:
             self.steps.append(ReplayedStep(before, state, move))
             self._zeros.update(dict.fromkeys(after(move, _place(before))[1], state.stamp))
-        elif not state.same_place(before):
+        elif state.discrete() != before.discrete():
             could = ", ".join(self.moves.possible(_place(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
             changed = _change(before, state)
@@ -183,7 +184,7 @@ class _Checker:
         self._clocks(state)
         self._status(before, state)
 
-    def _move(self, before: RecordedState, state: RecordedState) -> Optional[Move]:
+    def _move(self, before: SystemState, state: SystemState) -> Optional[Move]:
         """The joint move that leads from one to the other, the one that fits the clocks best."""
         if not state.event:
             return None
@@ -191,10 +192,10 @@ class _Checker:
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == _place(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
 
-    def _clocks_at(self, state: RecordedState) -> Dict[str, float]:
+    def _clocks_at(self, state: SystemState) -> Dict[str, float]:
         return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}
 
-    def _clocks(self, state: RecordedState) -> None:
+    def _clocks(self, state: SystemState) -> None:
         """The clocks that are told, against the stamps of their last resets."""
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
@@ -206,7 +207,7 @@ class _Checker:
             self._report(FAULT, "clock", state, f"clocks are not what the stamps say: {told} time units")
             self._resume(state)
 
-    def _status(self, before: RecordedState, state: RecordedState) -> None:
+    def _status(self, before: SystemState, state: SystemState) -> None:
         """Holds, new plans, lost agents."""
         for agent in sorted(set(state.lost) - set(before.lost)):
             self._report(WORLD, "lost", state, f"{agent} counts as lost: nothing is expected of it any more")
@@ -222,7 +223,7 @@ class _Checker:
         elif before.status == HOLDING and state.status == RUNNING:
             self._report(NOTE, "hold", state, "the mission goes on")
 
-    def _end(self, last: RecordedState) -> None:
+    def _end(self, last: SystemState) -> None:
         goal, bad = self._game.objective.goal, self._game.objective.bad
         if last.status == WON and goal is not None and last.locations[goal[0]] != goal[1]:
             self._report(FAULT, "end", last, f"it is said to be won, but {goal[0]} is not {goal[1]}")
@@ -310,21 +311,21 @@ class _Checker:
         return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
 
 
-def _place(state: RecordedState) -> DiscreteState:
+def _place(state: SystemState) -> DiscreteState:
     return DiscreteState(dict(state.locations), dict(state.values))
 
 
-def _aged(before: RecordedState, state: RecordedState) -> Dict[str, float]:
+def _aged(before: SystemState, state: SystemState) -> Dict[str, float]:
     """The clocks of the state before, at the moment of this one."""
     passed = (state.stamp - before.stamp) / state.unit
     return {clock: value + passed for clock, value in before.clocks.items()}
 
 
-def _where(state: RecordedState) -> str:
+def _where(state: SystemState) -> str:
     return " ".join(f"{name}={location}" for name, location in state.locations.items())
 
 
-def _change(before: RecordedState, state: RecordedState) -> str:
+def _change(before: SystemState, state: SystemState) -> str:
     old: Dict[str, object] = {**before.locations, **before.values}
     new: Dict[str, object] = {**state.locations, **state.values}
     return ", ".join(f"{name}: {old[name]} to {new[name]}" for name in old if old[name] != new.get(name))

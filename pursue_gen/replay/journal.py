@@ -10,22 +10,10 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
-from pursue_gen.replay.record import (
-    FINISH,
-    LOST,
-    PLANNED,
-    RUNNING,
-    START,
-    STOP,
-    STOPPED,
-    WAITING,
-    WON,
-    MissionRecord,
-    RecordedState,
-    RecordedWord,
-    read_word,
-)
+from pursue_gen.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_gen.tga.network import Objective
+from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
 END = "told"
@@ -121,7 +109,7 @@ def reconstruct(journal: Journal, moves: Moves, objective: Objective) -> Mission
 
 class _Walk:
     def __init__(self, journal: Journal, moves: Moves, objective: Objective) -> None:
-        self.states: List[RecordedState] = []
+        self.states: List[SystemState] = []
         self.words: List[RecordedWord] = []
         self.plans: Dict[int, Mapping[str, Any]] = {}
         self.problems = list(journal.problems)
@@ -200,11 +188,11 @@ class _Walk:
 
     def _show(self, at: float) -> None:
         self.states.append(
-            RecordedState(
+            SystemState(
                 seq=self._seq,
                 stamp=at,
-                locations=self._place.locations,
-                values=self._place.values,
+                locations=dict(self._place.locations),
+                values=dict(self._place.values),
                 clocks=self._clocks(at),
                 unit=self._unit,
                 plan=self._plan,

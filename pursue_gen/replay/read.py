@@ -10,15 +10,8 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.replay.journal import Journal, read_journal
-from pursue_gen.replay.record import (
-    MissionRecord,
-    RecordedState,
-    RecordedWord,
-    RobotOrder,
-    ordered,
-    read_state,
-    read_word,
-)
+from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
+from pursue_runtime.state import SystemState, parse_state
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
 
@@ -58,7 +51,7 @@ def _bag(file: Path, content: bytes) -> MissionRecord:
 
 def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
     """What the messages of a bag say; those that are not ours are passed over."""
-    states: List[RecordedState] = []
+    states: List[SystemState] = []
     words: List[RecordedWord] = []
     orders: List[RobotOrder] = []
     plans: Dict[int, Mapping[str, Any]] = {}
@@ -70,7 +63,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
             orders.append(_order(message, topic))
         elif topic.endswith(("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")):
             text = _text(message.data)
-            state = read_state(text) if topic.endswith("system_state") else None
+            state = parse_state(text) if topic.endswith("system_state") else None
             data = _json(text) if topic.endswith(("plan", "game")) else None
             if topic.endswith("events"):
                 words.append(read_word(message.at, text, message.node))

@@ -9,8 +9,9 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.replay.finding import FAULT, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
-from pursue_gen.replay.record import MissionRecord, RecordedState, RobotOrder
+from pursue_gen.replay.record import MissionRecord, RobotOrder
 from pursue_gen.tga.names import going, is_doing, is_going
+from pursue_runtime.state import SystemState
 
 LATE = 2.0
 """Seconds by which an order may be heard after its activity is over: messages take time, and robots may be quick."""
@@ -20,10 +21,10 @@ NEAR = 0.011  # metres: computed poses are rounded to centimetres
 
 Point = Tuple[float, float, float]
 
-Done = Tuple[RecordedState, RecordedState, str, bool]
+Done = Tuple[SystemState, SystemState, str, bool]
 """The state before a step and after it, its mover, and whether it was a command."""
 
-Activity = Tuple[RecordedState, float, str, str]
+Activity = Tuple[SystemState, float, str, str]
 """The state in which it begins, its end (seconds), the robot, where it goes ("" for an action)."""
 
 

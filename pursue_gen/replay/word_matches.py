@@ -8,20 +8,9 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.replay.moves import DiscreteState, Moves
-from pursue_gen.replay.record import (
-    ENDED,
-    FAILED,
-    FINISH,
-    HOLDING,
-    PING,
-    PLANNED,
-    START,
-    STOP,
-    WAITING,
-    MissionRecord,
-    RecordedState,
-    RecordedWord,
-)
+from pursue_gen.replay.record import MissionRecord, RecordedWord
+from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
+from pursue_runtime.words import FAILED, FINISH, PING, PLANNED, START, STOP
 
 CONTROL = (START, PING, STOP, FINISH)
 APART = 60.0
@@ -33,7 +22,7 @@ class WordMatches:
     """The word of each step (by the number of its state), the states by number, and the words that led to nothing."""
 
     words: Mapping[int, RecordedWord]
-    states: Mapping[int, RecordedState]
+    states: Mapping[int, SystemState]
     unmatched: Tuple[RecordedWord, ...]
 
     def of(self, seq: int) -> Optional[RecordedWord]:
@@ -41,7 +30,7 @@ class WordMatches:
         return self.words.get(seq)
 
 
-def match_words(record: MissionRecord, steps: Sequence[Tuple[RecordedState, RecordedState]]) -> WordMatches:
+def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState]]) -> WordMatches:
     """A command is for the number of the state before it; of several reports the one nearest to the state counts."""
     heard: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
@@ -59,7 +48,7 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[RecordedState, Reco
                 used.add(best)
                 found[state.seq] = record.words[best]
                 break
-    states: Dict[int, RecordedState] = {}
+    states: Dict[int, SystemState] = {}
     for state in record.states:
         states.setdefault(state.seq, state)
     left = [word for place, word in enumerate(record.words) if place not in used and not _control(word)]
@@ -75,7 +64,7 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
     found: List[Finding] = []
     stamps = [state.stamp for state in record.states]
 
-    def now(word: RecordedWord) -> RecordedState:
+    def now(word: RecordedWord) -> SystemState:
         return record.states[max(0, bisect.bisect(stamps, word.at + 1e-6) - 1)]
 
     for word in record.words:
@@ -93,7 +82,7 @@ def _sender(word: RecordedWord) -> str:
     return word.node or "somebody"
 
 
-def _why(now: RecordedState, word: RecordedWord, said: WordMatches, moves: Moves) -> Tuple[int, str]:
+def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) -> Tuple[int, str]:
     """The state that it met, and the reason."""
     if not word.event:
         return now.seq, "it is no word"
@@ -111,7 +100,7 @@ def _why(now: RecordedState, word: RecordedWord, said: WordMatches, moves: Moves
     return word.seq, _impossible(state, word, moves) or "the mission ended first, or its moment was over"
 
 
-def _impossible(state: RecordedState, word: RecordedWord, moves: Moves) -> str:
+def _impossible(state: SystemState, word: RecordedWord, moves: Moves) -> str:
     """Why the word cannot be taken there, whatever the clocks; "" where it can."""
     if state.status == WAITING or state.status in ENDED:
         return f"the mission was {state.status}"

@@ -6,24 +6,13 @@ from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay.record import (
-    ENDED,
-    HOLDING,
-    LOST,
-    RUNNING,
-    STOPPED,
-    WAITING,
-    WON,
-    MissionRecord,
-    RecordedState,
-    read_state,
-)
+from pursue_gen.replay.record import MissionRecord
 from pursue_gen.simulation.mission import Settings, SimulatedMission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.runs import Case
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.tga.network import Network
-from pursue_runtime.state import SystemState, format_state
+from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 
 
 @dataclass(frozen=True)
@@ -107,7 +96,7 @@ def from_record(record: MissionRecord, scenario: Scenario, network: Network, sou
 
 
 def from_states(
-    states: Iterable[RecordedState], scenario: Scenario, network: Network, source: str, until: float = 0.0
+    states: Iterable[SystemState], scenario: Scenario, network: Network, source: str, until: float = 0.0
 ) -> Optional[Recording]:
     """The mission with these published states; its end is at least `until` (time units)."""
     steps: List[Step] = []
@@ -143,11 +132,9 @@ class _Recorded(SimulatedMission):
 
     def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
         super().__init__(stage, settings, seed, remaining)
-        self.states: List[RecordedState] = []
+        self.states: List[SystemState] = []
 
     def publish(self, state: SystemState) -> None:
         """A state of the mission."""
-        read = read_state(format_state(state))
-        if read is not None:
-            self.states.append(read)
+        self.states.append(state)
         super().publish(state)

@@ -8,12 +8,12 @@ from typing import Dict, Iterator, List, Mapping, Tuple
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language.scenario import Respond
-from pursue_gen.replay.record import HOLDING, LOST, STOPPED, WON
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.words import event_word
+from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
 
 _WIDTH, _WIDEST = 960.0, 2000.0
 _ROW, _BAR, _TOP = 54.0, 16.0, 54.0

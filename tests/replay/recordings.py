@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -14,9 +14,9 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.language import load
 from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.moves import Moves, after
-from pursue_gen.replay.record import RecordedState
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import translate
+from pursue_runtime.state import SystemState
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
 START = 100.0
@@ -52,7 +52,7 @@ def game() -> Game:
 class Mission:
     """What was said and shown: (seconds, topic, node, text or pose)."""
 
-    states: List[RecordedState] = field(default_factory=list)
+    states: List[SystemState] = field(default_factory=list)
     heard: List[Tuple[float, str, str, Any]] = field(default_factory=list)
     unit: float = 1.0
 
@@ -73,7 +73,7 @@ class Mission:
 
     def change(self, seq: int, **values: Any) -> None:
         """Replaces something of the states with this number."""
-        self.states = [replace(state, **values) if state.seq == seq else state for state in self.states]
+        self.states = [state._replace(**values) if state.seq == seq else state for state in self.states]
 
 
 def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
@@ -84,7 +84,7 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
 
     def show(at: float, seq: int, **more: Any) -> None:
         clocks = {clock: (at - zero) / unit for clock, zero in zeros.items()}
-        made.states.append(RecordedState(seq, at, place.locations, place.values, clocks, unit, **more))
+        made.states.append(SystemState(seq, at, dict(place.locations), dict(place.values), clocks, unit=unit, **more))
 
     show(START - 3.0, 0, status="waiting")
     made.say(START - 0.001, "_start_", "UI")
@@ -105,7 +105,7 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
     return made
 
 
-def text_of(state: RecordedState) -> str:
+def text_of(state: SystemState) -> str:
     """The text on pursue/system_state, as docs/run_time.md has it."""
     head = f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"
     facts = {"plan": state.plan, "event": state.event, "agent": state.agent, "lost": ",".join(state.lost)}

@@ -13,7 +13,7 @@ from pursue_gen.replay import Findings, MissionRecord, check
 from pursue_gen.replay.bag import Message
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD
 from pursue_gen.replay.read import from_messages
-from pursue_gen.replay.record import RecordedState
+from pursue_runtime.state import SystemState
 
 
 def record(made: Mission) -> MissionRecord:
@@ -101,7 +101,7 @@ def test_states_in_the_order_of_receipt_are_sorted() -> None:
     assert [state.seq for state in messy.states] == [state.seq for state in read.states]
 
 
-def _text(state: RecordedState) -> bytes:
+def _text(state: SystemState) -> bytes:
     import recordings
 
     return recordings._string(recordings.text_of(state))
@@ -109,7 +109,7 @@ def _text(state: RecordedState) -> bytes:
 
 def test_two_states_of_one_number_are_a_fault() -> None:
     made = mission()
-    made.states.append(replace(made.states[5], locations=made.states[6].locations))
+    made.states.append(made.states[5]._replace(locations=made.states[6].locations))
     assert ("number", made.states[5].seq) in kinds(found(made), FAULT)
 
 
@@ -117,7 +117,7 @@ def test_heartbeats_are_nothing_new() -> None:
     made = mission()
     old = made.states[5]
     later = {clock: value + 0.25 for clock, value in old.clocks.items()}
-    made.states.insert(6, replace(old, stamp=old.stamp + 0.25, clocks=later))
+    made.states.insert(6, old._replace(stamp=old.stamp + 0.25, clocks=later))
     assert found(made).kept
 
 
@@ -200,7 +200,7 @@ def test_a_win_without_the_goal_is_a_fault() -> None:
     del made.states[-1], made.heard[-1]
     made.heard = [message for message in made.heard if "bot2_inaDONE" not in str(message[3])]
     last = made.states[-1]
-    made.states[-1] = replace(last, status="won")
+    made.states[-1] = last._replace(status="won")
     assert ("end", last.seq) in kinds(found(made), FAULT)
 
 
@@ -210,7 +210,7 @@ def test_a_mission_that_was_not_won_is_said_so(status: str, said: str) -> None:
 
     made = mission(PLAY[:-1])
     last = made.states[-1]
-    made.states.append(replace(last, status=status))
+    made.states.append(last._replace(status=status))
     findings = found(made)
     assert findings.kept and not findings.won and said in verdict(findings)
 
@@ -219,16 +219,16 @@ def held(made: Mission, before: int, plan: int = 0, lost: Tuple[str, ...] = ()) 
     """Puts a hold and its end between two states: all later numbers are greater by two."""
     old = next(state for state in made.states if state.seq == before)
 
-    def later(state: RecordedState) -> RecordedState:
-        return replace(state, seq=state.seq + 2, plan=plan) if state.seq > before else state
+    def later(state: SystemState) -> SystemState:
+        return state._replace(seq=state.seq + 2, plan=plan) if state.seq > before else state
 
     made.states = [later(state) for state in made.states]
     for number, (status, reason) in enumerate((("holding", "bot1 has failed"), ("running", "")), start=1):
         stamp = old.stamp + 0.1 * number
         clocks = {clock: value + 0.1 * number / old.unit for clock, value in old.clocks.items()}
         more: Dict[str, Any] = {"status": status, "reason": reason, "lost": lost if number == 1 else ()}
-        new = replace(old, seq=before + number, stamp=stamp, clocks=clocks, event="", agent="", **more)
-        made.states.append(replace(new, plan=plan if number == 2 else 0))
+        new = old._replace(seq=before + number, stamp=stamp, clocks=clocks, event="", agent="", **more)
+        made.states.append(new._replace(plan=plan if number == 2 else 0))
     made.states.sort(key=lambda state: state.seq)
     heard = []
     for at, topic, node, what in made.heard:
@@ -282,5 +282,5 @@ def test_a_plan_that_cannot_be_read_is_a_fault() -> None:
 
 def test_another_scenario_is_noticed() -> None:
     made = mission()
-    made.states = [replace(state, locations={"somebody": "somewhere"}) for state in made.states]
+    made.states = [state._replace(locations={"somebody": "somewhere"}) for state in made.states]
     assert kinds(found(made))[0][0] == "scenario"

@@ -10,9 +10,9 @@ from typing import Iterator, List, Tuple
 import pytest
 from missions import made_up, mission
 
-from pursue_gen.replay.record import RUNNING
 from pursue_gen.report import animation
 from pursue_gen.report.html import page
+from pursue_runtime.state import RUNNING
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "ros"))
 

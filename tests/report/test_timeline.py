@@ -16,10 +16,11 @@ from hypothesis import strategies as st
 from missions import SCENARIOS, made_up, mission
 
 from pursue_gen.replay import read_recording
-from pursue_gen.replay.record import HOLDING, RUNNING, WAITING, WON, MissionRecord, RecordedState
+from pursue_gen.replay.record import MissionRecord
 from pursue_gen.report.html import page
 from pursue_gen.report.recording import from_record, from_states, lasting, stays
 from pursue_gen.report.timeline import draw, section
+from pursue_runtime.state import HOLDING, RUNNING, WAITING, WON, SystemState
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -144,11 +145,11 @@ def test_recorded_states_become_steps_once_each() -> None:
     made = made_up()
     here = {"locations": made.steps[0].locations, "values": made.steps[0].values, "clocks": {}}
     states = [
-        RecordedState(3, 114.0, agent="bot1", event="bot1_c2b", unit=2.0, **here),
-        RecordedState(0, 100.0, status=WAITING, unit=2.0, **here),
-        RecordedState(1, 110.0, unit=2.0, **here),
-        RecordedState(1, 110.0, unit=2.0, **here),
-        RecordedState(4, 120.0, status=WON, unit=2.0, **here),
+        SystemState(3, 114.0, agent="bot1", event="bot1_c2b", unit=2.0, **here),
+        SystemState(0, 100.0, status=WAITING, unit=2.0, **here),
+        SystemState(1, 110.0, unit=2.0, **here),
+        SystemState(1, 110.0, unit=2.0, **here),
+        SystemState(4, 120.0, status=WON, unit=2.0, **here),
     ]
     found = from_states(states, made.scenario, made.network, "a bag", until=50.0)
     assert found is not None

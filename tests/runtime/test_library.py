@@ -150,7 +150,9 @@ def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: ob
     assert parse_word(text) == (agent, event, seq)
 
 
-@pytest.mark.parametrize("text", ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…"])
+@pytest.mark.parametrize(
+    "text", ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…", "a@" + 5000 * "9"]
+)
 def test_what_is_no_word_is_none(text: str) -> None:
     assert parse_word(text) is None
 
@@ -198,7 +200,20 @@ def test_lines_that_nobody_knows_are_skipped() -> None:
     assert (state.seq, state.locations, state.values, state.clocks) == (2, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 1.5})
 
 
-@pytest.mark.parametrize("text", ["", "hello", "seq=x stamp=1", "bot=a\n\nCbot=1"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "hello",
+        "seq=x stamp=1",
+        "bot=a\n\nCbot=1",
+        "seq=-1 stamp=1",
+        "seq=1 stamp=inf",
+        "seq=1 stamp=nan",
+        "seq=1 stamp=1 unit=0",
+        "seq=1 stamp=1 unit=nan",
+    ],
+)
 def test_what_is_no_state_is_none(text: str) -> None:
     assert parse_state(text) is None
 
