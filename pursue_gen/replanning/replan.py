@@ -53,7 +53,7 @@ def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
     except PursueError as problem:
         if problem.exit_status != _AT_A_LIMIT:
             return _lost(f"the plan that was found is not proven: {problem}")
-        return _lost(f"no plan was found within {request.seconds:g} s")
+        return _lost(f"no plan was found {_at_limit(limits.since(start))}")
     return _won(strategy, network, request)
 
 
@@ -62,6 +62,13 @@ def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, An
     data = {sub.controller: strategy_data(sub, request.rules.reaction) for sub in subs}
     people = data.pop(UI, None)
     return {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+
+
+def _at_limit(limits: Limits) -> str:
+    """Which limit has ended the search."""
+    if 0 < limits.seconds <= limits.spent:
+        return f"within {limits.seconds:g} s"
+    return f"with {limits.memory} MiB of memory, which is what the planner may use on this machine"
 
 
 def _lost(why: str) -> Dict[str, Any]:

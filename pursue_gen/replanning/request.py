@@ -13,9 +13,6 @@ from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
 
-SECONDS = 10.0
-"""The default limit of the search for a plan, in seconds."""
-
 _LONGEST = 1e9
 """The largest value of a clock, in time units."""
 
@@ -25,7 +22,7 @@ class Request:
     """A plan is wanted for this scenario, from this place, by controllers of that shape (see `partition`).
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
-    `excused`. It may take so many `seconds`.
+    `excused`. It may take so many `seconds`, 0: any number.
     """
 
     scenario: Scenario
@@ -50,9 +47,9 @@ def read_request(data: object) -> Request:
     excused = _of(request, "excused", "the request")
     if not isinstance(excused, (list, tuple)) or not all(isinstance(agent, str) for agent in excused):
         raise wrong(f"excused is {_shown(excused)}", "a list of names of agents, [] for none")
-    seconds = request.get("limit", SECONDS)
-    if not _is_number(seconds) or not 0 < seconds < _LONGEST:
-        raise wrong(f"limit is {_shown(seconds)}", "a number of seconds above 0")
+    seconds = request.get("limit", 0.0)
+    if "limit" in request and not (_is_number(seconds) and 0 < seconds < _LONGEST):
+        raise wrong(f"limit is {_shown(seconds)}", "a number of seconds above 0, or none for a search without a limit")
     locations, values = (_object(_of(request, key, "the request"), key) for key in ("locations", "values"))
     for table, kind, what in ((locations, str, "the name of a location"), (values, int, "a whole number")):
         for key, value in table.items():

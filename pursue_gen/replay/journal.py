@@ -15,7 +15,7 @@ from pursue_gen.tga.network import Objective
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
-CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "stop")
+CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop")
 END = "told"
 """Closes a journal: everybody knows how the mission ended."""
 

@@ -132,7 +132,7 @@ class Observer:
     def _planner(self) -> Planner:
         command = setting("~planner", "pursue-gen replan")
         limit = float(rospy.get_param("~planning_limit", 10.0))
-        return Planner(command, self.source.read("game.yaml"), limit, self.answer)
+        return Planner(command, self.source.read("game.yaml"), limit, self.answer, partial(self.call, "searching"))
 
     def _journal_name(self) -> str:
         """One for each launch (~launch), or for each roscore: an observer that is started again goes on with it."""
@@ -273,7 +273,7 @@ class Observer:
             mission = self.mission
             late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.silent))
             values: Dict[str, object] = {"mission": mission.name, "seq": mission.seq, "status": mission.status}
-            values.update({"plan": mission.plan})
+            values.update({"plan": mission.plan, "planning": f"{self.planner.seconds:.0f} s"})
             values.update({"late": late, "lost": lost, "silent": away})
             values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")

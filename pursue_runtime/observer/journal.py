@@ -21,6 +21,7 @@ CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "back": Mission.on_controller_back,
     "planned": Mission.on_plan,
     "unplanned": Mission.on_no_plan,
+    "searching": Mission.on_long_search,
     "stop": Mission.stop,
 }
 """Mission methods by the names that journals have for them: those of older workspaces are still read."""

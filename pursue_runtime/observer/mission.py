@@ -181,6 +181,11 @@ class Mission:
         self._planning.on_no_plan(number, why)
         return self._status_changes(now)
 
+    def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
+        """Take that the planner has searched for so many seconds for the request of this number, and goes on."""
+        self._planning.on_long_search(number, seconds)
+        return self._status_changes(now)
+
     def stop(self, why: str, now: float) -> List[SystemState]:
         """Stop the mission safely: no further commands are taken."""
         return self._end(STOPPED, why, now) if self.status in (WAITING, *LIVE) else []
@@ -307,7 +312,7 @@ class Mission:
         if not trouble:
             self._planning.reset()
         elif self._request_plan(now):
-            reasons.append(f"{trouble}; looking for another plan")
+            reasons.append(f"{trouble}; {self._planning.progress()}")
         else:
             trouble += f"; no other plan: {self._planning.no_plan_reason}"
             awaited = " and ".join(sorted(self.late - set(self.lost)))

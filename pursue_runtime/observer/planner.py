@@ -9,29 +9,46 @@ import shlex
 import signal
 import subprocess
 import threading
+import time
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
 from pursue_runtime.observer.planning import PlanRequest
-
-KILL_DELAY = 5.0
-"""Seconds beyond its limit after which a planner is killed."""
 
 PlannerAnswer = Tuple[int, Optional[Dict[str, Any]], str]
 """The number of the request, the plan or None, and why there is none."""
 
 
 class Planner:
-    """Runs one planner at a time, and passes its answer to `done` in a thread of its own."""
+    """Runs one planner at a time, and passes its answer to `done` in a thread of its own.
+
+    A planner runs until it answers or its plan is no longer needed: how long it takes is not known in advance.
+    """
 
     def __init__(
-        self, command: str, game: Mapping[str, Any], limit: float, done: Callable[[PlannerAnswer], None]
+        self,
+        command: str,
+        game: Mapping[str, Any],
+        limit: float,
+        done: Callable[[PlannerAnswer], None],
+        searching: Callable[[int, float], None],
     ) -> None:
-        """`command`: a shell command, `off` for none; `game`: the content of game.yaml; `limit`: seconds."""
+        """`command`: a shell command, `off` for none; `game`: the content of game.yaml.
+
+        After `limit` seconds, and whenever twice as many have passed, `searching` gets the number of the request and
+        the seconds of the search so far.
+        """
         self._command = [] if command == "off" else shlex.split(command)
-        self._game, self._limit, self._done = game, limit, done
+        self._game, self._limit, self._done, self._searching = game, limit, done, searching
         self._lock = threading.Lock()
         self._number = 0
         self._process: Optional[subprocess.Popen[bytes]] = None
+        self._start: Optional[float] = None
+
+    @property
+    def seconds(self) -> float:
+        """Return how long the present search has taken so far, in seconds of real time; 0 if there is none."""
+        start = self._start
+        return 0.0 if start is None else time.monotonic() - start
 
     def request_plan(self, request: Optional[PlanRequest]) -> None:
         """Start a planner for this request and stop any other; None: only stop."""
@@ -39,13 +56,16 @@ class Planner:
         with self._lock:
             if number == self._number:
                 return
-            self._number = number
+            self._number, self._start = number, time.monotonic() if request else None
             self._kill()
         if request is not None:
             threading.Thread(target=self._run, args=(request,), name="planner", daemon=True).start()
 
     def _run(self, request: PlanRequest) -> None:
         plan, why = self._run_command(request)
+        with self._lock:
+            if request.number == self._number:
+                self._start = None
         self._done((request.number, plan, why))
 
     def _run_command(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
@@ -53,7 +73,7 @@ class Planner:
         if not self._command:
             return None, "planning is switched off (~planner)"
         what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
-        text = json.dumps({"format": 1, "game": self._game, "limit": self._limit, **what})
+        text = json.dumps({"format": 1, "game": self._game, **what})
         try:
             with self._lock:
                 if request.number != self._number:
@@ -67,13 +87,20 @@ class Planner:
                 )
         except OSError as problem:
             return None, f"{self._command[0]} cannot be run here: {problem}; set ~planner to the planner's command"
+        ended = threading.Event()
+        threading.Thread(target=self._watch, args=(request.number, ended), name="search", daemon=True).start()
         try:
-            output, errors = process.communicate(text.encode(), self._limit + KILL_DELAY)
-        except subprocess.TimeoutExpired:
-            _kill(process)
-            process.communicate()
-            return None, f"none was found within {self._limit:g} s"
+            output, errors = process.communicate(text.encode())
+        finally:
+            ended.set()
         return _read(output, errors, process.returncode)
+
+    def _watch(self, number: int, ended: threading.Event) -> None:
+        """Report the search for this request, each time later, until it has ended."""
+        start, report = time.monotonic(), self._limit
+        while not ended.wait(start + report - time.monotonic()):
+            self._searching(number, report)
+            report *= 2
 
     def _kill(self) -> None:
         """The thread that waits for its answer notices."""

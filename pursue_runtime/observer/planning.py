@@ -45,7 +45,8 @@ class Proposal(NamedTuple):
 class Planning:
     """The steps from one plan to the next: request, proposal, acknowledgement by all controllers, in force.
 
-    `excused`: the agents on which the plan in force does not rely; `no_plan_reason`: why there is no plan from here.
+    `excused`: the agents on which the plan in force does not rely; `no_plan_reason`: why there is no plan from here;
+    `searched`: the seconds of real time that the planner has needed so far, 0 while they are within ~planning_limit.
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
@@ -53,6 +54,7 @@ class Planning:
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
         self.no_plan_reason = ""
+        self.searched = 0.0
         self.lead_time = MIN_LEAD_TIME
         self._controllers = tuple(controllers)
         self._unacknowledged: Set[str] = set()
@@ -62,7 +64,8 @@ class Planning:
 
     def revision(self) -> Tuple[object, ...]:
         """Return a value that changes with each step of planning."""
-        return self._number, self.request is None, self.proposal is None, self.no_plan_reason, len(self._unacknowledged)
+        open_ones = self.request is None, self.proposal is None, len(self._unacknowledged)
+        return (self._number, self.no_plan_reason, self.searched, *open_ones)
 
     def unexcused(self, lost: Mapping[str, str]) -> str:
         """Return which lost agents the plan in force relies on, and why they are lost; "" if there are none."""
@@ -82,13 +85,25 @@ class Planning:
             return
         self._attempts += 1
         self._number += 1
+        self.searched = 0.0
         what = position.locations, position.values, position.clocks
         self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)))
 
     def reset(self) -> None:
         """Drop the request and the proposal: no other plan is needed."""
         self.request = self.proposal = self._place = None
-        self.no_plan_reason, self._attempts, self.lead_time = "", 0, MIN_LEAD_TIME
+        self.no_plan_reason, self.searched, self._attempts, self.lead_time = "", 0.0, 0, MIN_LEAD_TIME
+
+    def on_long_search(self, number: int, seconds: float) -> None:
+        """Note that the planner has searched for so many seconds for the request of this number, and goes on."""
+        if self.request is not None and number == self.request.number:
+            self.searched = seconds
+
+    def progress(self) -> str:
+        """Return how the search for a plan is going, for the reason of the state."""
+        if not self.searched:
+            return "looking for another plan"
+        return f"no other plan was found in {self.searched:g} s (~planning_limit), still looking"
 
     def on_plan(self, number: int, answer: Mapping[str, Any]) -> bool:
         """Make the planner's answer the proposal; return False if it was not requested. Raises DataError, KeyError."""

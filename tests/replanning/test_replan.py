@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import Any, Dict, List
 
 import pytest
@@ -181,6 +182,11 @@ def test_a_deadline_that_has_passed_is_named() -> None:
 
 def test_a_plan_that_takes_too_long_is_none() -> None:
     assert why(beginning("thesis/scenario_4", limit=1e-5)) == "no plan was found within 1e-05 s"
+
+
+def test_a_plan_that_takes_too_much_memory_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules[replan.__module__], "careful_memory", lambda: 1)
+    assert why(beginning("thesis/scenario_4")).startswith("no plan was found with 1 MiB of memory, which is")
 
 
 def test_what_the_file_of_the_game_says_is_what_is_asked_with() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any, Dict
 
 import pytest
@@ -12,6 +14,7 @@ import pytest
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.replanning import replan
 from tests.replanning.plays import beginning
+from tests.waiting import PATIENCE, until
 
 GOOD = beginning("thesis/scenario_1")
 NAN = float("nan")
@@ -94,3 +97,34 @@ def test_the_command_says_what_is_wrong_with_its_input(text: bytes) -> None:
     done = run(text)
     assert (done.returncode, done.stdout) == (2, b"")
     assert b"error" in done.stderr and b"Traceback" not in done.stderr
+
+
+def test_without_a_limit_it_takes_the_time_that_it_needs() -> None:
+    assert replan(without(GOOD, "limit")) == replan(GOOD)
+
+
+def cpu_seconds(process: "subprocess.Popen[bytes]") -> float:
+    """The processor time of a process so far."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / float(os.sysconf("SC_CLK_TCK"))
+
+
+@pytest.mark.parametrize("searching", [False, True])
+def test_the_command_ends_when_nobody_reads_its_answer_any_more(searching: bool) -> None:
+    """The observer was killed: the planner waits for its request, or is in the middle of a search that takes hours."""
+    command = [sys.executable, "-m", "pursue_gen", "replan"]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdin is not None and process.stdout is not None
+    if searching:
+        walkers = "".join(f'agent "walker{n}" mobile {n + 1} location a\n' for n in range(5))
+        game = {**GOOD["game"], "scenario": GOOD["game"]["scenario"] + walkers}
+        there = {f"walker{n}": "a" for n in range(5)}
+        places = {f"Pwalker{n}": 1 for n in range(5)}
+        process.stdin.write(json.dumps({
+            **without(GOOD, "limit"), "game": game, "locations": {**GOOD["locations"], **there},
+            "values": {**GOOD["values"], **places}, "clocks": {**GOOD["clocks"], **{f"C{name}": 0.0 for name in there}},
+        }).encode())
+        process.stdin.close()
+        until(lambda: process.poll() is not None or cpu_seconds(process) > 5, "it searches")
+    process.stdout.close()
+    assert process.wait(PATIENCE) == 141

@@ -14,8 +14,6 @@ import pytest
 from launched_mission import EVENTS, LaunchedMission, launched
 from ros_world import Ros, generated, make
 
-from tests.waiting import PATIENCE
-
 Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
@@ -268,9 +266,10 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
     planner = f"python3 {FAKE_PLANNER} {scenario / 'src'} {request} {leave}"
     with launched(
         ros, scenario, tmp_path, simulate=False, use_sim_time=True, speed=3, lost_after=8, planner=planner,
-        planning_limit=PATIENCE,
+        planning_limit=1,
     ) as run:
         run.until_step("bot2_c2a")
+        observer = run.pid("observer")
         run.publish("bot1_going_c_to_b2b")
         run.until_step("bot1_inb")
         run.publish("bot1_inbDONE")
@@ -278,9 +277,16 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
         assert hold["lost"] == "bot2" and "looking for another plan" in hold["reason"]
         run.publish(f"bot1:bot1_b2c@{hold.seq}")  # at another time it could be
         run.until(lambda: run.values("observer").get("held") == "1")
+        for seconds in (1, 2):
+            slow = f"no other plan was found in {seconds} s (~planning_limit), still looking"
+            run.until(lambda slow=slow: any(slow in state["reason"] for state in run.states()))
+        assert (run.now().status, run.pid("observer")) == ("holding", observer)
+        run.until(lambda: float(run.values("observer")["planning"].split()[0]) >= 3)
         leave.touch()
         running = run.until(lambda: run.now().status == "running" and run.now())
-        assert (running["plan"], running["lost"], running.seq) == ("1", "bot2", hold.seq + 1)
+        before = [state for state in run.states() if state.seq < running.seq][-1]
+        assert before.status == "holding" and running.seq == before.seq + 1
+        assert (running["plan"], running["lost"], running["reason"]) == ("1", "bot2", "")
         (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*")
         calls = [json.loads(line) for line in journal.read_text().rpartition("\n")[0].splitlines()[1:]]
         swap = next(number for number, call in enumerate(calls) if call["seq"] == running.seq)

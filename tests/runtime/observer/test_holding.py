@@ -143,6 +143,34 @@ def test_where_there_is_no_plan_it_stops_and_says_why() -> None:
     assert state.status == "stopped" and "no strategy" in state.reason and "the thief is faster" in state.reason
 
 
+def test_a_search_that_takes_long_goes_on_and_the_reason_names_the_parameter() -> None:
+    made = uncovered()
+    number = made.mission.plan_request.number
+    (state,) = made.mission.on_long_search(number, 10.0, 14.0)
+    assert (state.status, state.seq) == ("holding", 4) and made.mission.plan_request.number == number
+    assert state.reason.endswith("; no other plan was found in 10 s (~planning_limit), still looking")
+    (state,) = made.mission.on_long_search(number, 20.0, 24.0)
+    assert "in 20 s (~planning_limit)" in state.reason
+    assert made.mission.on_long_search(number, 20.0, 25.0) == []
+    assert planned(made, EVERYWHERE, 26.0)[-1].status == "running"
+
+
+def test_a_search_that_begins_anew_has_taken_no_time() -> None:
+    made = uncovered()
+    first = made.mission.plan_request.number
+    made.mission.on_long_search(first, 10.0, 14.0)
+    state = made.hear("thief:thief_leaves", 15.0)
+    assert state.reason.endswith("; looking for another plan")
+    assert made.mission.on_long_search(first, 20.0, 24.0) == [], "that was another search"
+
+
+def test_a_search_that_was_long_and_finds_that_there_is_no_plan_stops() -> None:
+    made = uncovered()
+    made.mission.on_long_search(made.mission.plan_request.number, 10.0, 14.0)
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "the thief is faster", 15.0)
+    assert state.status == "stopped" and "the thief is faster" in state.reason
+
+
 @pytest.mark.parametrize("cover", [None, {"format": 1}, {"format": 1, "cover": [{"state": {}, "zones": ["?"]}]}])
 def test_a_plan_that_cannot_be_read_is_none(cover: Any) -> None:
     made = uncovered()

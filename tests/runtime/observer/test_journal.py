@@ -24,8 +24,9 @@ from tests.runtime.texts import read
 HEADER = {"scenario": "chase", "model": "1", "launch": "x"}
 PLAY = [
     *[("hear", word) for word in ("_start_", "bot_a2b", "nonsense", "bot_going_a_to_b2b")],
-    *[("silent", "one"), ("planned", 1, answer(EVERYWHERE)), ("hear", "one:_plan_@1"), ("back", "one")],
-    *[("tick",), ("hear", "dog:catch@6")],
+    *[("silent", "one"), ("searching", 1, 10.0), ("planned", 1, answer(EVERYWHERE))],
+    *[("hear", "one:_plan_@1"), ("back", "one")],
+    *[("tick",), ("hear", "dog:catch@7")],
 ]
 
 
@@ -62,7 +63,7 @@ def path(tmp_path: Path) -> Path:
 def test_a_new_observer_is_where_the_old_one_was(path: Path, death: int) -> None:
     whole, before = Life(path.with_name("journal-y.jsonl")), Life(path)
     told = whole.play(*PLAY)
-    assert told[-1].seq == 7 and told[-1].plan == 1
+    assert told[-1].seq == 8 and told[-1].plan == 1
     published = before.play(*PLAY[:death])
     after = Life(path)
     assert after.state() == before.state()
