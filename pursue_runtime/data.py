@@ -12,6 +12,9 @@ from pursue_runtime import __version__
 FORMAT = 1
 """The format of data files that this run time reads."""
 
+NEWEST = {"poses.yaml": 2}
+"""The newest format of those files of which it reads several, from FORMAT on."""
+
 
 class Package(NamedTuple):
     """The generated package whose node runs: its name, the scenario it was made from, the path of the node's script."""
@@ -42,21 +45,24 @@ def parse_data(content: bytes, path: str) -> Dict[str, Any]:
         data = yaml.load(content, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except (ValueError, yaml.YAMLError) as problem:
         raise DataError(f"cannot read {path}: {problem}") from problem
-    return check_format(data, path)
+    return check_format(data, path, NEWEST.get(os.path.basename(path), FORMAT))
 
 
-def check_format(data: object, what: str) -> Dict[str, Any]:
-    """Return the data if this run time reads their format; `what` names them in messages. Raises DataError."""
+def check_format(data: object, what: str, newest: int = FORMAT) -> Dict[str, Any]:
+    """Return the data if this run time reads their format, FORMAT to `newest`; `what` names them in messages.
+
+    Raises DataError.
+    """
     found = data.get("format") if isinstance(data, dict) else None
-    if isinstance(data, dict) and found == FORMAT:
+    if isinstance(data, dict) and type(found) is int and FORMAT <= found <= newest:
         return data
-    reads = f"pursue_runtime {__version__} reads format {FORMAT}"
-    if isinstance(found, int) and found > FORMAT:
+    reads = f"pursue_runtime {__version__} reads format {newest}"
+    if isinstance(found, int) and found > newest:
         raise DataError(
             f"{what} has format {found}, and {reads}: put the packages pursue_runtime and pursue_msgs of the workspace "
             "that it was generated with on this machine, and build them"
         )
-    raise DataError(f"{what} is not a data file of format {FORMAT} ({reads}): generate the workspace again")
+    raise DataError(f"{what} is not a data file of format {newest} ({reads}): generate the workspace again")
 
 
 def data_file(package: Package, name: str, config: str = "") -> str:

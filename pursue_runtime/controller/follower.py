@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.data import DataError
 from pursue_runtime.missions import Missions, Source
+from pursue_runtime.poses import POSES, Poses, read_poses
 from pursue_runtime.state import ENDED, WAITING, SystemState
 from pursue_runtime.state_filter import OLD, OTHER, StateFilter
 from pursue_runtime.strategy import Strategy
@@ -20,11 +21,11 @@ Log = Callable[[str, str], None]
 
 
 class Part(NamedTuple):
-    """A controller's part of a mission: its strategy (None: it has no part in it), and the poses of the POIs."""
+    """A controller's part of a mission: its strategy (None: it has no part in it), and its robots' poses."""
 
     mission: str
     strategy: Optional[Strategy]
-    poses: Dict[str, List[float]]
+    poses: Poses
 
     @property
     def robots(self) -> List[str]:
@@ -36,15 +37,12 @@ class Part(NamedTuple):
 def read_part(source: Source) -> Part:
     """Read a part from one source. Raises DataError."""
     if source.empty:
-        return Part(source.mission, None, {})
-    poses = source.read("poses.yaml").get("poses")
+        return Part(source.mission, None, Poses({}, {}))
     try:
-        where = {str(poi): [float(number) for number in pose] for poi, pose in dict(poses or {}).items()}
-    except (TypeError, ValueError) as problem:
-        raise DataError(f"poses.yaml in {source.folder} lacks or misspells something: {problem!r}") from problem
-    if not all(len(pose) == 7 for pose in where.values()):
-        raise DataError(f"poses.yaml in {source.folder}: expected x, y, z, qx, qy, qz, qw for each point")
-    return Part(source.mission, Strategy(source.read("strategy.yaml")), where)
+        poses = read_poses(source.read(POSES))
+    except DataError as problem:
+        raise DataError(f"in {source.folder}: {problem}") from problem
+    return Part(source.mission, Strategy(source.read("strategy.yaml")), poses)
 
 
 class Follower:

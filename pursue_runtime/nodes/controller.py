@@ -59,7 +59,7 @@ class Controller:
             what = "its part in" if part.strategy is not None else "no part in"
             rospy.loginfo("has %s mission %s", what, part.mission or "own")
         self.alarm.set()
-        self.exegg.take_up(part.robots if part else [], part.poses if part else {})
+        self.exegg.take_up(part.poses.of(part.robots) if part else {})
 
     def update_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: order the robots what was taken, and plan the next command."""

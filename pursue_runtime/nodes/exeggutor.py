@@ -6,7 +6,7 @@ import contextlib
 import threading
 import time
 from functools import partial
-from typing import Dict, Iterable, List, Mapping, Sequence
+from typing import Dict, List, Mapping
 
 import rospy
 from std_msgs.msg import String
@@ -15,6 +15,7 @@ from pursue_runtime.controller.navigation import Movement, Navigation, read_sett
 from pursue_runtime.locations import is_action, is_movement, movement
 from pursue_runtime.nodes.node import Alarm, Ending, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.poses import Table
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.words import EVENTS
 
@@ -29,8 +30,8 @@ class Exeggutor:
 
     def __init__(self, ending: Ending) -> None:
         self._lock = threading.RLock()
-        self._poses: Dict[str, List[float]] = {}
-        self._ways: Dict[str, Movement] = {}
+        self._poses: Mapping[str, Table] = {}
+        self._ways: Dict[str, Dict[str, Movement]] = {}
         self._status = RUNNING
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._robots: Dict[str, Navigation] = {}
@@ -38,19 +39,18 @@ class Exeggutor:
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
-    def take_up(self, robots: Iterable[str], poses: Mapping[str, Sequence[float]]) -> None:
-        """Take these robots and places; orders given before are over. Raises DataError, with no robots, where the
-        settings of one are wrong."""
+    def take_up(self, poses: Mapping[str, Table]) -> None:
+        """Take these robots, each with its poses of the places; orders given before are over. Raises DataError, with
+        no robots, where the settings of one are wrong."""
         with self._lock:
             self._call_back()
             for link in self._links.values():
                 link.keep("", False, "")
             self._robots, self._status = {}, RUNNING
-            self._poses = {poi: [float(number) for number in pose] for poi, pose in poses.items()}
-            ways = [(movement(x, y), y) for x in self._poses for y in self._poses]
-            self._ways = {location: Movement(location, y, *self._poses[y][:2]) for location, y in ways}
+            self._poses = poses
+            self._ways = {robot: _ways(places) for robot, places in poses.items()}
             given = rospy.get_param("~", {})
-            settings = {robot: read_settings(robot, given) for robot in robots}
+            settings = {robot: read_settings(robot, given) for robot in poses}
             for robot in set(self._links) - set(settings):
                 self._links.pop(robot).close()
             for robot in settings:
@@ -82,7 +82,7 @@ class Exeggutor:
                 here = state.locations.get(name, "") if state.status in LIVE else ""
                 if state.status in ENDED and before not in ENDED:
                     self._call_back_one(name)
-                robot.on_state(self._ways.get(here), state.status == RUNNING, name in state.lost)
+                robot.on_state(self._ways[name].get(here), state.status == RUNNING, name in state.lost)
                 self._links[name].keep(here, state.status == RUNNING, robot.goal)
             self._act()
 
@@ -91,7 +91,7 @@ class Exeggutor:
         if agent not in self._robots:
             return  # an objective has no robot
         if is_movement(target) and target != origin:
-            way = self._ways.get(target)
+            way = self._ways[agent].get(target)
             if way is None:
                 rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
                 return
@@ -128,7 +128,7 @@ class Exeggutor:
         for name, robot in self._robots.items():
             goal, word = robot.due(now, real)
             if goal is not None:
-                self._links[name].go(goal, self._poses[goal.movement.poi])
+                self._links[name].go(goal, self._poses[name][goal.movement.poi])
             if word is not None:
                 rospy.loginfo("reports %s", word)
                 self.announce(word)
@@ -165,3 +165,8 @@ class Exeggutor:
         robot = self._robots[name]
         if robot.goal and robot.settings.on_stop == "cancel" and self._status != WON:
             self._links[name].cancel(robot.goal)
+
+
+def _ways(places: Table) -> Dict[str, Movement]:
+    """A robot's movement for each location in which it is under way."""
+    return {movement(x, y): Movement(movement(x, y), y, *places[y][:2]) for x in places for y in places}

@@ -9,7 +9,6 @@ import base64
 import binascii
 import hashlib
 import json
-import math
 import os
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
@@ -30,6 +29,7 @@ from pursue_runtime.bundle import (
 )
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.model import Model
+from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, manifest
 from pursue_runtime.state import LATE, LIVE, SystemState, older
@@ -46,10 +46,10 @@ and is not connected to us yet, takes longer to begin."""
 RETRY_PERIOD = 10.0
 """Seconds until an exchange of missions that the disk did not take is tried again."""
 
-CONTROLLER_FILES = ("strategy.yaml", "poses.yaml")
+CONTROLLER_FILES = ("strategy.yaml", POSES)
 FILES: Mapping[str, Tuple[str, ...]] = {
     "observer": ("model.yaml", "cover.yaml", "controllers.yaml", "game.yaml"),
-    "UI": ("model.yaml", "poses.yaml", "ui.yaml", "game.yaml"),
+    "UI": ("model.yaml", POSES, "ui.yaml", "game.yaml"),
 }
 """What each package's nodes read; all others are controllers."""
 
@@ -312,17 +312,11 @@ def check_data(path: str) -> None:
         "people.yaml": Strategy,
         "cover.yaml": read_cover,
         "model.yaml": Model,
-        "poses.yaml": _check_poses,
+        POSES: read_poses,
         "controllers.yaml": _check_controllers,
     }
     if name in readers:
         readers[name](data)
-
-
-def _check_poses(data: Mapping[str, Any]) -> None:
-    for name, pose in data["poses"].items():
-        if len(pose) != 7 or not all(math.isfinite(float(number)) for number in pose):
-            raise DataError(f"the pose of {name} is not seven numbers")
 
 
 def _check_controllers(data: Mapping[str, Any]) -> None:

@@ -11,6 +11,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
+from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission_view import possible_words, tasks
@@ -56,11 +57,11 @@ class FloorPlan(NamedTuple):
 
 def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> FloorPlan:
     """The map, from poses.yaml and ui.yaml. Raises DataError."""
+    places = {name: (pose[0], pose[1]) for name, pose in read_poses(poses).places.items()}
     try:
-        places = {str(name): (float(pose[0]), float(pose[1])) for name, pose in poses["poses"].items()}
         ways = tuple((str(a), str(b), float(length)) for a, b, length in settings.get("connections", ()))
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as problem:
-        raise DataError(f"poses.yaml or ui.yaml lacks or misspells something: {problem!r}") from problem
+        raise DataError(f"ui.yaml lacks or misspells something: {problem!r}") from problem
     return FloorPlan(places, tuple(way for way in ways if way[0] in places and way[1] in places))
 
 

@@ -112,14 +112,14 @@ def test_it_begins_with_the_current_mission() -> None:
     shelf.first = SECOND
     bot = Controller(shelf)
     bot.follower.load_current()
-    assert (bot.mission, bot.follower.part.robots, list(bot.follower.part.poses)) == (B, ["bot"], ["y"])
+    assert (bot.mission, bot.follower.part.robots, list(bot.follower.part.poses.places)) == (B, ["bot"], ["y"])
 
 
 def test_it_plays_the_mission_of_the_states_with_all_that_belongs_to_it() -> None:
     bot = begun(SECOND)
     assert bot.see(3, 10.0, A) == "ours" and bot.says(10.0) == "bot:a@3"
     assert bot.see(3, 20.0, B) == "ours" and bot.says(20.0) == "bot:b@3"
-    assert list(bot.follower.part.poses) == ["y"]
+    assert list(bot.follower.part.poses.places) == ["y"]
     assert bot.see(4, 30.0, "") == "ours" and bot.says(30.0) == "bot:a@4", "no name: the workspace's own"
 
 

@@ -61,7 +61,7 @@ def test_a_map_is_read_and_a_wrong_one_refused() -> None:
     plan = read_floor_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
     assert plan == FloorPlan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
     assert read_floor_plan(poses, {}).ways == ()
-    for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}):
+    for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}, {**poses, "robots": []}):
         with pytest.raises(DataError):
             read_floor_plan(wrong, {})
 

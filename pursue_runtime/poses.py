@@ -1,0 +1,59 @@
+"""poses.yaml: where the places of a mission are on the robots' map, for each robot.
+
+`poses` has a pose for each place, for every robot that commands of this package are for. `robots` (format 2) has, by
+robot and place, those that differ: two robots at one place stand side by side.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple
+
+from pursue_runtime.data import DataError
+
+POSES = "poses.yaml"
+LENGTH = 7  # x, y, z in metres, then the orientation qx, qy, qz, qw
+
+Table = Dict[str, List[float]]
+"""place → x, y, z, qx, qy, qz, qw."""
+
+
+class Poses(NamedTuple):
+    """The poses of the `places`, and by robot the ones of its `own`."""
+
+    places: Table
+    own: Dict[str, Table]
+
+    def of(self, robots: Iterable[str]) -> Dict[str, Table]:
+        """Return for each of the robots where it is sent: a pose for each place."""
+        return {robot: {**self.places, **self.own.get(robot, {})} for robot in robots}
+
+
+def read_poses(data: Mapping[str, Any]) -> Poses:
+    """Read the content of poses.yaml. Raises DataError."""
+    places, robots = data.get("poses"), data.get("robots", {})
+    if not isinstance(places, dict) or not isinstance(robots, dict):
+        raise DataError("poses.yaml: expected poses: and a line for each place, robots: and a table for each robot")
+    where, own = _table(places, ""), {}
+    for robot, table in robots.items():
+        if not isinstance(table, dict):
+            raise DataError(f"poses.yaml: expected a line for each place of {robot}'s own, got {table!r}")
+        own[str(robot)] = _table(table, f" for {robot}")
+        unknown = sorted(set(own[str(robot)]) - set(where))
+        if unknown:
+            raise DataError(f"poses.yaml: {robot} has a pose at {unknown[0]}, which is not a place under poses:")
+    return Poses(where, own)
+
+
+def _table(given: Mapping[Any, Any], whose: str) -> Table:
+    return {str(place): _pose(pose, f"the pose of {place}{whose}") for place, pose in given.items()}
+
+
+def _pose(given: Any, what: str) -> List[float]:
+    try:
+        numbers = [float(number) for number in given]  # YAML takes 1e3 for a text
+    except (TypeError, ValueError, OverflowError):
+        numbers = []
+    if len(numbers) != LENGTH or not all(math.isfinite(number) for number in numbers):
+        raise DataError(f"poses.yaml: {what} is {given!r}; expected seven numbers x, y, z, qx, qy, qz, qw")
+    return numbers
