@@ -12,6 +12,7 @@ from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
+from pursue_runtime.locations import is_end
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
 
 DRIFT = 0.001
@@ -270,8 +271,9 @@ class _Checker:
             own = agent == (self._game.objective.bad or ("", ""))[0] and edge.sync is None
             if word is None:
                 if not own:
-                    told = f"nobody said {state.event}, as far as it was recorded"
+                    told = f"no word for {state.event} was recorded"
                     found.append(Finding(FAULT, "unsaid", state.seq, told))
+                    found += self._unsaid_command(step)
                 continue
             if word.seq is None:
                 if word.node in controllers - {"UI"}:
@@ -293,6 +295,16 @@ class _Checker:
                 told += f"; it was said by {word.node}" if by_hand else self._is_reliable()
                 found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, told))
         return found
+
+    def _unsaid_command(self, step: ReplayedStep) -> List[Finding]:
+        """Find whether a step without a recorded word, which only a controller may begin, is not the strategy's."""
+        agent, edge = step.move[0]
+        orders = self.orders.get(step.before.plan)
+        begun = orders is not None and agent in orders.owners and not is_end(edge.source, edge.target)
+        if orders is None or not begun or self._wanted(orders, step):
+            return []
+        text = f"{step.state.event} by {agent} is not what the strategy says in state {step.before.seq}"
+        return [Finding(FAULT, "command", step.state.seq, text + self._is_reliable())]
 
     def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction."""

@@ -162,6 +162,16 @@ def test_a_step_that_nobody_asked_for_is_a_fault() -> None:
     assert kinds(found(made)) == [("unsaid", 8)]
 
 
+def test_a_command_of_which_no_word_was_recorded_is_held_against_the_strategy() -> None:
+    made = mission()
+    made.heard = [message for message in made.heard if "bot1_inb@" not in str(message[3])]
+    assert kinds(found(made)) == [("unsaid", 7)]
+    play = tuple((11.02 if "bot1_inb@" in word else at, word, node) for at, word, node in PLAY)
+    hurried = mission(play)
+    hurried.heard = [message for message in hurried.heard if "bot1_inb@" not in str(message[3])]
+    assert {("unsaid", 7), ("command", 7)} <= set(kinds(found(hurried), FAULT))
+
+
 def test_a_goal_without_a_state_is_a_fault() -> None:
     made = mission()
     made.order(made.states[1].stamp + 0.05, "bot2", "a")  # a second before it sets out

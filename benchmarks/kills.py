@@ -1,0 +1,251 @@
+"""Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
+
+Each mission is recorded, and judged afterwards by `pursue_gen.replay` from the bag and the workspace's strategy alone.
+`--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md. The kills of a mission follow from
+its number and the seed; the moments at which they hit the nodes do not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import contextlib
+import datetime
+import http.client
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xmlrpc.client
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+
+from benchmarks.ros_world import ROOT, World, generated, world
+from benchmarks.synthesis import machine
+from pursue_gen.replay import Findings, check, game_of, read_recording
+from pursue_gen.replay.finding import FAULT
+from pursue_gen.replay.game import from_workspace
+from pursue_gen.replay.journal import Journal
+from pursue_gen.solving.rules import Rules
+
+SCENARIOS = ("thesis/scenario_1", "thesis/scenario_4", "thesis/catch_the_thief")
+RULES = Rules(reaction=Fraction(1, 2))
+"""Commands may come half a time unit late: what a message and a busy machine need, at half a second per time unit."""
+
+LONGEST = 240.0
+"""Seconds of real time after which a mission is ended from outside."""
+
+
+class Kill(NamedTuple):
+    """A node to kill, so many seconds after the mission began."""
+
+    after: float
+    node: str
+
+
+class Mission(NamedTuple):
+    """What became of one mission: a word of OUTCOMES, the reason or the first fault, and who was killed."""
+
+    number: int
+    scenario: str
+    outcome: str
+    why: str
+    kills: Tuple[str, ...]
+
+
+NOT_RECORDED = ("unsaid", "untold")
+"""The kinds of findings for what is missing in the recording."""
+
+OUTCOMES = {
+    "goal": "the goal was reached, and each step was the strategy's or the world's",
+    "stopped": "stopped safely, with a reason",
+    "wrong": "a step, a command or an order that the strategy does not hold, or a verdict that is not true",
+    "no end": "no verdict in time",
+}
+
+
+def draw(seed: int, number: int, nodes: Sequence[str], length: float) -> List[Kill]:
+    """Return the kills of a mission: one to four, within `length` seconds, of any nodes but the recorder."""
+    source = random.Random(f"{seed}/{number}")
+    count = source.choice((1, 1, 2, 2, 3, 4))
+    moments = sorted(source.uniform(0.0, length) for _ in range(count))
+    kills = [Kill(moment, source.choice(nodes)) for moment in moments]
+    if source.random() < 0.2:  # two at the same moment
+        kills.append(Kill(moments[-1], source.choice(nodes)))
+    return kills
+
+
+def process_of(uri: str, node: str) -> int:
+    """Return the process of a node as it says itself; 0 where none answers."""
+    with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
+        with xmlrpc.client.ServerProxy(uri) as master:
+            found: Any = master.lookupNode("/kills", f"/{node}")
+        if found[0] == 1:
+            with xmlrpc.client.ServerProxy(str(found[2])) as slave:
+                answer: Any = slave.getPid("/kills")
+            return int(answer[2])
+    return 0
+
+
+def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: float, seed: int) -> None:
+    """Play one mission to its end, with these kills; it is recorded in `bag`."""
+    bringup = next((workspace / "src").glob("*_bringup")).name
+    given = f"record:={bag} time_unit:={unit} seed:={seed}"
+    command = f"source {workspace}/devel/setup.bash; exec roslaunch --skip-log-check {bringup} mission.launch {given}"
+    launch = there.start("roslaunch", ["bash", "-c", command])
+    deadline = time.monotonic() + LONGEST
+    while "the mission runs" not in there.log("roslaunch") and launch.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    begin = time.monotonic()
+    for kill in kills:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            launch.wait(max(0.0, begin + kill.after - time.monotonic()))
+            break  # the mission is over
+        process = process_of(there.variables["ROS_MASTER_URI"], kill.node)
+        with contextlib.suppress(ProcessLookupError):
+            if process:
+                os.kill(process, signal.SIGKILL)
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        launch.wait(max(0.0, deadline - time.monotonic()))
+    there.stop("roslaunch")
+
+
+def judge(bag: Path, workspace: Path) -> Tuple[str, str]:
+    """Return a word of OUTCOMES and why, from the bag and the workspace's strategy alone."""
+    found = next((path for path in (bag, Path(f"{bag}.active")) if path.is_file()), None)
+    if found is None:
+        return "no end", "nothing was recorded"
+    record = read_recording(found)
+    assert not isinstance(record, Journal)
+    return outcome(check(record, game_of(from_workspace(workspace))))
+
+
+def outcome(findings: Findings) -> Tuple[str, str]:
+    """Return a word of OUTCOMES for what was found in a recording, and why.
+
+    A node that is killed at once, or has just started, may publish what the recorder does not receive: that a word or
+    an order is missing in the bag is no fault of the mission. Steps without a word are checked all the same.
+    """
+    faults = [each for each in findings.findings if each.level == FAULT and each.kind not in NOT_RECORDED]
+    if faults:
+        return "wrong", f"state {faults[0].seq}: {faults[0].text}"
+    if findings.won:
+        return "goal", ""
+    if findings.status == "stopped":
+        return "stopped", findings.reason
+    return ("wrong", "the mission was lost") if findings.status == "lost" else ("no end", findings.status)
+
+
+def mission(number: int, seed: int, workspaces: Sequence[Tuple[str, Path]], unit: float) -> Mission:
+    """Play and judge one mission on a master of its own."""
+    scenario, workspace = workspaces[number % len(workspaces)]
+    nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
+    kills = draw(seed, number, sorted(nodes), 20.0 * unit)
+    with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there:
+        bag = Path(home) / "mission.bag"
+        play(there, workspace, kills, bag, unit, number)
+        found, why = judge(bag, workspace)
+        if found in ("wrong", "no end"):
+            print(there.log("roslaunch")[-6000:], flush=True)
+    return Mission(number, scenario, found, why, tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills))
+
+
+def measure(missions: int, seed: int, jobs: int, unit: float, names: Sequence[str]) -> List[Mission]:
+    """Play and judge so many missions, `jobs` at a time."""
+    with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
+        workspaces = []
+        for name in names:
+            text = (ROOT / "scenarios" / f"{name}.pur").read_text(encoding="utf-8")
+            workspaces.append((name, generated(text, Path(name).name, Path(home) / Path(name).name, RULES)))
+        done: List[Mission] = []
+        for each in pool.map(lambda number: mission(number, seed, workspaces, unit), range(missions)):
+            done.append(each)
+            kills = ", ".join(each.kills)
+            print(f"{each.number:4} {each.scenario:24} {each.outcome:8} {each.why} [{kills}]", flush=True)
+    return done
+
+
+def results(done: Sequence[Mission], seed: int, unit: float) -> Dict[str, Any]:
+    """Return what is kept in kills.json."""
+    table: Dict[str, Dict[str, int]] = {}
+    for each in done:
+        row = table.setdefault(each.scenario, dict.fromkeys(OUTCOMES, 0))
+        row[each.outcome] += 1
+    reasons = collections.Counter(each.why for each in done if each.outcome == "stopped")
+    kills = sum(len(each.kills) for each in done)
+    bad = [each._asdict() for each in done if each.outcome in ("wrong", "no end")]
+    return {
+        "missions": len(done),
+        "seed": seed,
+        "unit": unit,
+        "kills": kills,
+        "table": table,
+        "reasons": dict(reasons.most_common()),
+        "bad": bad,
+    }
+
+
+def page(found: Dict[str, Any]) -> str:
+    """Return the page docs/kills.md."""
+    heads = list(OUTCOMES)
+    lines = [
+        "# Missions whose nodes are killed",
+        "",
+        "Written by `python -m benchmarks.kills --out docs`. Each mission runs on a ROS master of its own. One to five",
+        "times a random node (observer, controllers, simulator, UI) is killed with SIGKILL; roslaunch starts it again",
+        "after a second. The mission is recorded, and judged from the bag and the workspace's strategy alone, by what",
+        "`pursue-gen replay` does.",
+        "",
+        f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
+        f"unit, reaction {float(RULES.reaction)}; {found['machine']}, {found['date']}.",
+        "",
+        "| scenario | " + " | ".join(heads) + " |",
+        "| --- |" + " --- |" * len(heads),
+        *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
+        "",
+        *(f"- **{head}**: {meaning}." for head, meaning in OUTCOMES.items()),
+    ]
+    if found["reasons"]:
+        lines += ["", "| reason of a stop | missions |", "| --- | --- |"]
+        lines += [f"| {why.replace('|', '/')} | {count} |" for why, count in found["reasons"].items()]
+    return "\n".join(lines) + "\n"
+
+
+def options() -> argparse.ArgumentParser:
+    """The command line."""
+    parser = argparse.ArgumentParser(description="Plays missions on ROS whose nodes are killed, and judges them.")
+    parser.add_argument("--missions", type=int, default=300, help="so many (300)")
+    parser.add_argument("--seed", type=int, default=1, help="of the kills (1)")
+    parser.add_argument("--jobs", type=int, default=2, help="missions at a time (2)")
+    parser.add_argument("--unit", type=float, default=0.5, help="seconds per time unit (0.5)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write kills.md and benchmarks/kills.json there")
+    parser.add_argument("--machine", default=machine(), help="how the results name the machine")
+    parser.add_argument("--date", default=datetime.date.today().isoformat(), help="how they give the date (today)")
+    parser.add_argument("scenarios", nargs="*", default=SCENARIOS, metavar="SCENARIO", help="as thesis/scenario_1")
+    return parser
+
+
+def main() -> int:
+    """Play, judge, print, and write; the exit status is 1 where a mission was wrong or had no end."""
+    from pursue_gen.files import write_texts
+
+    given = options().parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that no process stays behind
+    done = measure(given.missions, given.seed, given.jobs, given.unit, given.scenarios)
+    found = {**results(done, given.seed, given.unit), "machine": given.machine, "date": given.date}
+    text = page(found)
+    print(text)
+    if given.out:
+        kept = given.out / "benchmarks" / "kills.json"
+        write_texts({kept: json.dumps(found, indent=1) + "\n", given.out / "kills.md": text})
+    return 1 if found["bad"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

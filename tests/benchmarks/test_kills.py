@@ -1,0 +1,72 @@
+"""The benchmark that kills nodes: which kills are drawn, what an outcome is, and the page. The missions are ROS's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Sequence
+
+import pytest
+
+from benchmarks.kills import OUTCOMES, Mission, draw, outcome, page, results
+from pursue_gen.replay import Findings
+from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
+
+NODES = ("UI", "controller_bot1", "observer", "simulator")
+
+
+def findings(status: str, *levels: str, reason: str = "") -> Findings:
+    """What was found in a mission that ended so, with one finding for each level."""
+    found = tuple(Finding(level, "kind", 3, f"a {level}") for level in levels)
+    return Findings((), found, status, reason, 0.0, 1.0)
+
+
+def test_the_kills_of_a_mission_follow_from_its_number_and_the_seed() -> None:
+    drawn = [draw(1, number, NODES, 10.0) for number in range(200)]
+    assert drawn == [draw(1, number, NODES, 10.0) for number in range(200)]
+    assert drawn != [draw(2, number, NODES, 10.0) for number in range(200)]
+    assert {kill.node for kills in drawn for kill in kills} == set(NODES)
+    assert {len(kills) for kills in drawn} == {1, 2, 3, 4, 5}
+    assert all(0.0 <= kill.after <= 10.0 for kills in drawn for kill in kills)
+    assert all(list(kills) == sorted(kills, key=lambda kill: kill.after) for kills in drawn)
+
+
+@pytest.mark.parametrize(
+    ("status", "levels", "expected"),
+    [
+        ("won", (), "goal"),
+        ("won", (NOTE, WORLD), "goal"),
+        ("won", (WORLD, FAULT), "wrong"),
+        ("stopped", (WORLD,), "stopped"),
+        ("stopped", (FAULT,), "wrong"),
+        ("lost", (), "wrong"),
+        ("running", (), "no end"),
+    ],
+)
+def test_a_mission_is_wrong_where_a_node_did_what_it_must_not(
+    status: str, levels: Sequence[str], expected: str
+) -> None:
+    assert outcome(findings(status, *levels))[0] == expected
+
+
+def test_a_word_that_the_recorder_has_missed_makes_no_mission_wrong() -> None:
+    found = findings("won")
+    missed = Finding(FAULT, "unsaid", 3, "no word for bot1_inb was recorded")
+    assert outcome(replace(found, findings=(missed,)))[0] == "goal"
+    assert outcome(replace(found, findings=(missed, replace(missed, kind="command"))))[0] == "wrong"
+
+
+def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
+    done = [
+        Mission(0, "one", "goal", "", ("UI after 1.00 s",)),
+        Mission(1, "two", "stopped", "a|b", ("observer after 1.00 s", "UI after 2.00 s")),
+        Mission(2, "one", "wrong", "state 3: a fault", ("UI after 1.00 s",)),
+    ]
+    found = {**results(done, 7, 0.5), "machine": "a machine", "date": "a day"}
+    assert found["kills"] == 4
+    assert [each["number"] for each in found["bad"]] == [2]
+    text = page(found)
+    assert "| one | 1 | 0 | 1 | 0 |" in text
+    assert "| two | 0 | 1 | 0 | 0 |" in text
+    assert "| a/b | 1 |" in text
+    assert all(f"**{head}**" in text for head in OUTCOMES)
+    assert max(map(len, text.splitlines())) <= 120
