@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import socket
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -26,6 +26,7 @@ from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manage
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node
+from pursue_runtime.parameters import number, whole
 from pursue_runtime.trusted_keys import KeyFolder
 
 
@@ -37,11 +38,12 @@ class CommunicationManager:
         exposed = not is_loopback(host)
         keys = str(rospy.get_param("~keys", "")) or keys_folder(os.environ)
         self.record = RequestLog(lambda *text: rospy.logwarn("%s", *text), lambda *text: rospy.loginfo("%s", *text))
-        limit = int(number("~limit", LIMIT))
+        given = rospy.get_param("~", {})
+        limit = whole(given, "limit", LIMIT, least=1)
         self.manager = Manager(robot_name(), KeyFolder(keys), self.reader_connected, limit, exposed)
         context = tls(str(rospy.get_param("~certificate", "")), str(rospy.get_param("~private_key", "")))
-        self.limits = Limits(int(number("~connections", 64)), number("~patience", 10.0))
-        self.sockets = bind(host, int(number("~port", 13000, 0)), "~port")
+        self.limits = Limits(whole(given, "connections", 64, least=1), number(given, "patience", 10.0, least=1.0))
+        self.sockets = bind(host, whole(given, "port", 13000, most=65535), "~port")
         self.server = Server(self.manager, self.sockets, self.publish, self.record, self.limits, context)
         self.forwarder, topics = self.make_forwarder(host)
         services: Tuple[Service, ...] = (self.server, *([self.forwarder] if self.forwarder else []))
@@ -56,14 +58,14 @@ class CommunicationManager:
         Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost))
 
     def make_forwarder(self, host: str) -> Tuple[Optional[Forwarder], List[str]]:
-        """The socket and the topics that go there; none without topics. Raises ServerError."""
+        """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""
         try:
             topics = topic_names(str(rospy.get_param("~forwardedtopics", "")))
         except ValueError as problem:
             raise ServerError(f"~forwardedtopics: {problem}") from problem
         if not topics:
             return None, []
-        sockets = bind(host, int(number("~pubsubport", 13001, 0)), "~pubsubport")
+        sockets = bind(host, whole(rospy.get_param("~", {}), "pubsubport", 13001, most=65535), "~pubsubport")
         return Forwarder(sockets, self.record), topics
 
     def log_address(self, host: str, exposed: bool, safe: bool) -> None:
@@ -118,14 +120,6 @@ class CommunicationManager:
             return self.ending.wait()
         finally:
             self.background.close()
-
-
-def number(name: str, default: float, least: float = 1.0) -> float:
-    """A parameter that is a number. Raises ServerError."""
-    value: Any = rospy.get_param(name, default)
-    if type(value) not in (int, float) or not least <= value < float("inf"):
-        raise ServerError(f"{name} is {value!r}; expected a number, at least {least:g}")
-    return float(value)
 
 
 def robot_name() -> str:

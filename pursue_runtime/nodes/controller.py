@@ -21,6 +21,7 @@ from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node
 from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.parameters import flag, text
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS
 from pursue_runtime.strategy import parse_plan
@@ -31,10 +32,11 @@ class Controller:
     """Plays a part of the strategy: publishes commands when they are due, and orders robots what the observer took."""
 
     def __init__(self, package: Package) -> None:
-        own = own_source(package, "strategy.yaml", rospy.get_param("~config", ""))
-        home = ros_home(os.environ) if rospy.get_param("~received", False) else ""
+        given = rospy.get_param("~", {})
+        own = own_source(package, "strategy.yaml", text(given, "config"))
+        home = ros_home(os.environ) if flag(given, "received") else ""
         missions, name = Missions(own, package.name, home), rospy.get_name().strip("/")
-        again = bool(rospy.get_param("~again", False))
+        again = flag(given, "again")
         self.lock = threading.RLock()
         self.ending = Ending()
         self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)

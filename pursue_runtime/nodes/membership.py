@@ -13,6 +13,7 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.nodes.node import Ending
+from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.state_filter import OLD, OTHER, OURS, StateFilter
 from pursue_runtime.words import STATE
@@ -28,8 +29,8 @@ class Membership:
         """Raises DataError."""
         config = rospy.get_param("~config", "")
         own = own_source(package, "model.yaml", config)
-        self.received = bool(rospy.get_param("~received", False))
-        self.again = bool(rospy.get_param("~again", False))
+        given = rospy.get_param("~", {})
+        self.received, self.again = flag(given, "received"), flag(given, "again")
         self.trouble = ""
         self._ending = ending
         self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")

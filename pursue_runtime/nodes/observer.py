@@ -43,6 +43,7 @@ from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.observer.journal import Journal, unfinished_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
+from pursue_runtime.observer.settings import read_settings
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
@@ -58,33 +59,24 @@ def log(level: str, text: str) -> None:
     LOGS[level]("%s", text)
 
 
-def setting(name: str, otherwise: str) -> str:
-    """A parameter that is text: for ROS, on and off are not."""
-    value = rospy.get_param(name, otherwise)
-    return ("off", "on")[value] if isinstance(value, bool) else str(value)
-
-
 class Observer:
     """The mission on ROS: one lock, so that events are taken one by one, in the order of their arrival."""
 
     def __init__(self, package: Package) -> None:
         self.package = package
+        self.settings = read_settings(rospy.get_param("~", {}))
         self.lock = threading.RLock()
         self.ending = Ending()
         self.log_lines: queue.SimpleQueue[Tuple[str, str]] = queue.SimpleQueue()
         start_thread("log", self.write_log, self.ending)
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
-        home = ros_home(os.environ) if rospy.get_param("~received", False) else ""
+        home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
-        self.launch = str(rospy.get_param("~launch", ""))
-        self.again = bool(rospy.get_param("~again", False))
         self.source = self._source()
         self.controllers: List[str] = self.source.read("controllers.yaml")["controllers"]
         self.mission = self._mission()
         self.journal = self._journal()
         self.planner = self._planner()
-        self.silence = float(rospy.get_param("~silence", 20.0))
-        self.heartbeat = float(rospy.get_param("~heartbeat", 1.0))
         self.last_report = dict.fromkeys(self.controllers, time.monotonic())
         self.published_at = time.monotonic()
         self.proposed = 0
@@ -121,26 +113,25 @@ class Observer:
             Model(self.source.read("model.yaml")),
             read_cover(self.source.read("cover.yaml")),
             log=self.log_soon,
-            unit=float(rospy.get_param("~time_unit", 1.0)),
-            tolerance=float(rospy.get_param("~tolerance", 0.1)),
-            on_uncovered=rospy.get_param("~on_uncovered", "plan"),
-            lost_after=float(rospy.get_param("~lost_after", 30.0)),
+            unit=self.settings.time_unit,
+            tolerance=self.settings.tolerance,
+            on_uncovered=self.settings.on_uncovered,
+            lost_after=self.settings.lost_after,
             controllers=self.controllers,
             name=self.source.mission,
         )
 
     def _planner(self) -> Planner:
-        command = setting("~planner", "pursue-gen replan")
-        limit = float(rospy.get_param("~planning_limit", 10.0))
-        return Planner(command, self.source.read("game.yaml"), limit, self.answer, partial(self.call, "searching"))
+        game, searching = self.source.read("game.yaml"), partial(self.call, "searching")
+        return Planner(self.settings.planner, game, self.settings.planning_limit, self.answer, searching)
 
     def _journal_name(self) -> str:
         """One for each launch (~launch), or for each roscore: an observer that is started again goes on with it."""
-        launch = self.launch or rospy.get_param("/run_id", "")
+        launch = self.settings.launch or rospy.get_param("/run_id", "")
         return "".join(sign if sign.isalnum() else "_" for sign in launch)
 
     def _journal_path(self) -> str:
-        path = setting("~journal", "on")
+        path = self.settings.journal
         on = os.path.join(scenario_folder(os.environ, self.package.scenario), f"journal-{self._journal_name()}.jsonl")
         return {"on": on, "off": ""}.get(path, path)
 
@@ -197,14 +188,15 @@ class Observer:
     def keep_publishing(self) -> None:
         """Publish the state again while nothing happens, as a heartbeat, and find controllers that are silent."""
         while not rospy.is_shutdown():
-            time.sleep(min(1.0, self.heartbeat))
+            time.sleep(min(1.0, self.settings.heartbeat))
             now = time.monotonic()
             self.check_for_another()
             for node, reported in list(self.last_report.items()):
-                if now > reported + self.silence and node not in self.mission.silent and self.mission.status in LIVE:
+                is_silent = now > reported + self.settings.silence
+                if is_silent and node not in self.mission.silent and self.mission.status in LIVE:
                     self.call("silent", node)
             with self.lock:
-                if now >= self.published_at + self.heartbeat and self.mission.status not in ENDED:
+                if now >= self.published_at + self.settings.heartbeat and self.mission.status not in ENDED:
                     if self.mission.proposal is not None:
                         self.proposed = 0  # a controller has not reported that it has the plan: publish it again
                     self.publish([self.mission.state(self.now())])
@@ -285,8 +277,8 @@ class Observer:
         """Runs until the mission ends; returns the exit status."""
         name = self.source.mission or "own"
         rospy.loginfo("the observer of %s, mission %s: %s", self.mission.model.scenario, name, self.mission.status)
-        status = self.ending.wait(linger=float(rospy.get_param("~linger", 1.0)))
-        if self.mission.status in ENDED and (self.again or not self.launch):
+        status = self.ending.wait(linger=self.settings.linger)
+        if self.mission.status in ENDED and (self.settings.again or not self.settings.launch):
             self.journal.end()  # a roscore may see another mission; a launch has one, unless ~again is set
         if self.ending.renewed:
             restart_process()

@@ -24,8 +24,9 @@ from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report
+from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node
 from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.parameters import number, text, whole
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store, StoreError
@@ -50,8 +51,9 @@ class Node:
     def __init__(self, scenario: str, ending: Ending, store: Store) -> None:
         self.lock = threading.RLock()
         self.ending = ending
-        keys = KeyFolder(rospy.get_param("~keys", "") or keys_folder(os.environ))
-        limit, patience = int(rospy.get_param("~limit", LIMIT)), float(rospy.get_param("~patience", PATIENCE))
+        given = rospy.get_param("~", {})
+        keys = KeyFolder(text(given, "keys") or keys_folder(os.environ))
+        limit, patience = whole(given, "limit", LIMIT, least=1), number(given, "patience", PATIENCE)
         nodes, installed = str(rospy.get_param("~nodes", ALL)), mission_packages()
         robot = Machine(robot_name(), scenario, packages_here(nodes, installed), limit)
         self.reader = Reader(robot, store, keys, time.monotonic(), log, patience)
@@ -126,10 +128,11 @@ def mission_packages() -> Tuple[str, ...]:
 
 
 def open_store(ending: Ending) -> Store:
-    """The store, as soon as it can be used. Raises StoreError where the node ends before."""
+    """The store, as soon as it can be used. Raises ParameterError, and StoreError where the node ends before."""
+    keep = whole(rospy.get_param("~", {}), "keep", KEEP, least=1)
     while True:
         try:
-            return Store(missions_folder(os.environ), int(rospy.get_param("~keep", KEEP)), log)
+            return Store(missions_folder(os.environ), keep, log)
         except StoreError as problem:
             rospy.logerr("%s", problem)
             deadline = time.monotonic() + RETRY
@@ -141,8 +144,12 @@ def open_store(ending: Ending) -> Store:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    rospy.init_node(package.name)
+    return run_node(package.name, lambda: run(package.scenario))
+
+
+def run(scenario: str) -> int:
+    """Runs the reader until it ends; returns the exit status. Raises ParameterError."""
     ending = Ending()
     with contextlib.suppress(StoreError):
-        Node(package.scenario, ending, open_store(ending))
+        Node(scenario, ending, open_store(ending))
     return ending.wait()

@@ -38,8 +38,9 @@ from pursue_runtime.nodes.node import (
     run_node,
 )
 from pursue_runtime.nodes.state_message import state_of
+from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
-from pursue_runtime.ui.options import OptionError, expected, names
+from pursue_runtime.ui.options import expected
 from pursue_runtime.ui.recording import GAME, missing_connections, reserve_file, topics
 from pursue_runtime.words import STATE, SYSTEM_STATE
 
@@ -72,7 +73,8 @@ class Recorder:
         self.ending = Ending()
         self.membership = Membership(package, self.ending)
         model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
-        self.nodes = ["UI", *expected(rospy.get_param("~", {}), settings.get("nodes", ()))]
+        given = rospy.get_param("~", {})
+        self.nodes = ["UI", *expected(given, settings.get("nodes", ()))]
         file = str(rospy.get_param("~file", ""))
         file = "" if file.lower() == "true" else file
         self.path = reserve_file(file, scenario_folder(os.environ, package.scenario))
@@ -84,7 +86,7 @@ class Recorder:
         self.master = rosgraph.Master(rospy.get_name())
         self.states, self.texts = rospy.resolve_name(STATE), rospy.resolve_name(SYSTEM_STATE)
         self.note_game()
-        more = names(rospy.get_param("~topics", []), "~topics")
+        more = names(given, "topics")
         wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
         self.subscribers: List[rospy.Subscriber] = [
             rospy.Subscriber(topic, rospy.AnyMsg, self.on_message, rospy.resolve_name(topic), tcp_nodelay=True)
@@ -177,7 +179,7 @@ def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
     try:
-        return run_node("recorder", lambda: Recorder(package).run(), OptionError)
+        return run_node("recorder", lambda: Recorder(package).run())
     except OSError as problem:
         rospy.logfatal("cannot record: %s", problem)
         return REFUSED

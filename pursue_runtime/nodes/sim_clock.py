@@ -20,17 +20,15 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread
-from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock
+from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock, read_pace
 from pursue_runtime.words import EVENTS, STATE
 
 
-def read_pace() -> Pace:
-    """The pace that the parameters set. Raises TypeError or ValueError for a parameter that cannot be."""
+def pace() -> Pace:
+    """The pace that the parameters set. Raises ParameterError."""
     if not rospy.get_param("/use_sim_time", False):
         rospy.logwarn("/use_sim_time is not true: no node follows this clock")
-    time_unit = float(rospy.get_param("~time_unit", 1.0))
-    step = float(rospy.get_param("~step", 0.02 * time_unit))
-    return Pace(float(rospy.get_param("~speed", 5.0)), step, float(rospy.get_param("~hold", 0.1)))
+    return read_pace(rospy.get_param("~", {}))
 
 
 def run(pace: Pace, scenario: str) -> int:
@@ -87,4 +85,4 @@ def remember(scenario: str) -> Optional[ClockFile]:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node("sim_clock", lambda: run(read_pace(), package.scenario), TypeError, ValueError)
+    return run_node("sim_clock", lambda: run(pace(), package.scenario))

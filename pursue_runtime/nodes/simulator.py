@@ -31,9 +31,9 @@ from pursue_runtime.nodes.node import (
     run_node,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
-from pursue_runtime.simulator.simulator import ACTING, Delays, Simulator
+from pursue_runtime.parameters import choice, names, whole
+from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.ui.options import names
 from pursue_runtime.words import EVENTS
 
 
@@ -45,8 +45,9 @@ class SimulatorNode:
         self.membership = Membership(package, self.ending)
         model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
         agents = [automaton.name for automaton in model.of_kind(*ACTING)]
-        reports = names(rospy.get_param("~reports", settings.get("reports", agents)), "~reports")
-        delays = Delays(str(rospy.get_param("~delays", "random")), int(rospy.get_param("~seed", 0)))
+        given = rospy.get_param("~", {})
+        reports = names(given, "reports", settings.get("reports", agents))
+        delays = Delays(choice(given, "delays", "random", DELAYS), whole(given, "seed", 0, least=None))
         self.simulator = Simulator(model, reports, delays)
         self.robots = [robot.name for robot in model.of_kind("robot") if robot.name in reports]
         self.lock = threading.RLock()

@@ -48,7 +48,7 @@ from pursue_runtime.ui.mission_view import (
     read_line,
     tasks,
 )
-from pursue_runtime.ui.options import OptionError, Options, read_options
+from pursue_runtime.ui.options import Options, read_options
 from pursue_runtime.ui.page import Facts, PageRequest
 from pursue_runtime.ui.page_server import PageServer, open_page
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal
@@ -387,7 +387,7 @@ def main(package: Package) -> int:
         player = make_player(options, model)
         ui = UI(options, membership, ending, player, model)
         ui.board = open_page(model, options, settings, membership.source, ui)
-    except (DataError, OptionError, TraceError) as problem:
+    except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
         return 2
     return ui.run()

@@ -10,7 +10,9 @@ from __future__ import annotations
 import contextlib
 import os
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Mapping, Optional
+
+from pursue_runtime.parameters import number
 
 START = 1.0  # seconds; 0 means "no time yet" to rospy
 MAX_FILES = 20  # so many files of clocks are kept in a folder
@@ -27,15 +29,17 @@ class Pace:
     step: float = 0.02
     hold: float = 0.1
 
-    def __post_init__(self) -> None:
-        for name, value, least in (("speed", self.speed, 0.0), ("step", self.step, 0.0), ("hold", self.hold, -1e-9)):
-            if not least < value < float("inf"):
-                raise ValueError(f"~{name} is {value:g}; expected a number greater than 0")
-
     @property
     def tick(self) -> float:
         """Real seconds between two steps."""
         return self.step / self.speed
+
+
+def read_pace(given: Mapping[str, Any]) -> Pace:
+    """The pace that these parameters of the node give; a step is 0.02 time units by default. Raises ParameterError."""
+    step = 0.02 * number(given, "time_unit", 1.0, above=True)
+    speed, hold = number(given, "speed", Pace.speed, above=True), number(given, "hold", Pace.hold)
+    return Pace(speed, number(given, "step", step, above=True), hold)
 
 
 class SimClock:

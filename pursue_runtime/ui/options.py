@@ -6,6 +6,8 @@ import argparse
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence, Tuple
 
+from pursue_runtime.parameters import ParameterError, choice, flag, names, number, whole
+
 MODES = {
     "ask": "you choose what the uncontrollable agents do",
     "still": "they stand still",
@@ -14,10 +16,6 @@ MODES = {
 }
 
 MIN_TOKEN_LENGTH = 8  # characters of a token
-
-
-class OptionError(ValueError):
-    """An option that cannot be; the message says what was expected."""
 
 
 @dataclass(frozen=True)
@@ -41,37 +39,33 @@ class Options:
 def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: bool, nodes: Sequence[str]) -> Options:
     """The options, from the command line, the node's parameters, and what fits a terminal or none.
 
-    Raises OptionError; argparse ends the program on `--help` and on an unknown argument.
+    Raises ParameterError; argparse ends the program on `--help` and on an unknown argument.
     """
     given = vars(_parser().parse_args(list(arguments)))
     found = dict(params)
     found.update((name, value) for name, value in given.items() if value is not None)
     trace = str(found.get("trace") or "")
-    mode = str(found.get("mode") or ("trace" if trace else "ask" if terminal else "still"))
-    if mode not in MODES:
-        raise OptionError(f"mode is {mode!r}; expected one of {', '.join(MODES)}")
+    usual = "trace" if trace else "ask" if terminal else "still"
+    mode = choice({"mode": found.get("mode") or usual}, "mode", usual, tuple(MODES))
     if mode == "trace" and not trace:
-        raise OptionError("mode trace needs a trace file: --trace FILE or the parameter ~trace")
-    web = _flag(found, "web", False)
-    port = _number(found, "port", 8080, least=0)
-    if port > 65535 or port != int(port):
-        raise OptionError(f"port is {found['port']!r}; expected a whole number from 0 (any that is free) to 65535")
+        raise ParameterError("~mode trace needs a trace file: --trace FILE or the parameter ~trace")
+    web = flag(found, "web", False)
     token = str(found.get("token") or "")
     if token and len(token) < MIN_TOKEN_LENGTH:
         hint = f"expected at least {MIN_TOKEN_LENGTH}, or no token: then one is generated"
-        raise OptionError(f"token has {len(token)} characters; {hint}")
+        raise ParameterError(f"~token has {len(token)} characters; {hint}")
     return Options(
         mode=mode,
         trace=trace,
-        seed=int(_number(found, "seed", 0)),
-        autostart=_flag(found, "autostart", not terminal and not web),
-        wait=_number(found, "wait", 30.0, least=0.0),
+        seed=whole(found, "seed", 0, least=None),
+        autostart=flag(found, "autostart", not terminal and not web),
+        wait=number(found, "wait", 30.0),
         nodes=expected(found, nodes),
-        pace=_number(found, "pace", 5.0, least=1e-6),
-        ends=_flag(found, "ends", False),
+        pace=number(found, "pace", 5.0, above=True),
+        ends=flag(found, "ends", False),
         web=web,
         host=str(found.get("host") or "127.0.0.1"),
-        port=int(port),
+        port=whole(found, "port", 8080, most=65535),
         token=token,
     )
 
@@ -79,21 +73,12 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
 def expected(params: Mapping[str, Any], listed: Sequence[str]) -> Tuple[str, ...]:
     """The nodes to wait for: ~nodes, or those that the mission lists `~without` some and `~also` others.
 
-    Raises OptionError.
+    Raises ParameterError.
     """
     if "nodes" in params:
-        return names(params["nodes"], "nodes")
-    without, also = names(params.get("without", ""), "without"), names(params.get("also", ""), "also")
+        return names(params, "nodes")
+    without, also = names(params, "without"), names(params, "also")
     return tuple(node for node in listed if node not in without) + also
-
-
-def names(value: Any, option: str) -> Tuple[str, ...]:
-    """A list of names: a YAML list, or a text with commas or blanks between them. Raises OptionError."""
-    if isinstance(value, str):
-        value = value.replace(",", " ").split()
-    if not isinstance(value, (list, tuple)) or not all(isinstance(name, str) for name in value):
-        raise OptionError(f"{option} is {value!r}; expected a list of names")
-    return tuple(value)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -120,24 +105,3 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--token", metavar="WORD", help="of --web: who opens the page must know it; one is made for "
                         "every address but loopback")
     return parser
-
-
-def _number(found: Mapping[str, Any], name: str, default: float, least: float = float("-inf")) -> float:
-    value = found.get(name, default)
-    try:
-        number = float("nan") if isinstance(value, bool) else float(value)
-    except (TypeError, ValueError):
-        number = float("nan")
-    if not least <= number < float("inf"):
-        bound = f" of at least {least:g}" if least > float("-inf") else ""
-        raise OptionError(f"{name} is {value!r}; expected a number{bound}")
-    return number
-
-
-def _flag(found: Mapping[str, Any], name: str, default: bool) -> bool:
-    value = found.get(name, default)
-    if isinstance(value, str) and value.lower() in ("true", "false"):
-        value = value.lower() == "true"
-    if not isinstance(value, bool):
-        raise OptionError(f"{name} is {value!r}; expected true or false")
-    return value

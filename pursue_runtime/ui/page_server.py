@@ -8,8 +8,9 @@ from typing import Any, Dict, Mapping, Optional, Protocol, Tuple
 
 from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
+from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.options import OptionError, Options
+from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
@@ -75,13 +76,14 @@ class PageServer:
 def open_page(
     model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: PageNode
 ) -> Optional[PageServer]:
-    """Serves a page, where one is wanted. Raises OptionError and DataError."""
+    """Serves a page, where one is wanted. Raises ParameterError and other DataErrors."""
     if not options.web:
         return None
     try:
         from pursue_runtime.ui.web import Web, WebError
     except ImportError as problem:
-        raise OptionError(f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out") from None
+        what = f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out"
+        raise ParameterError(what) from None
     poses = source.read("poses.yaml")
     board = PageServer(Page(model, read_floor_plan(poses, settings), options.ends), node)
     try:
@@ -89,6 +91,6 @@ def open_page(
             STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present
         )
     except WebError as problem:
-        raise OptionError(str(problem)) from None
+        raise ParameterError(str(problem)) from None
     board.web.start()
     return board

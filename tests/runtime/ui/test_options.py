@@ -6,8 +6,9 @@ import io
 
 import pytest
 
+from pursue_runtime.parameters import ParameterError
 from pursue_runtime.ui import options as ui_options
-from pursue_runtime.ui.options import OptionError, read_options
+from pursue_runtime.ui.options import read_options
 from pursue_runtime.ui.terminal import GOOD, Terminal
 
 
@@ -51,15 +52,15 @@ def test_whoever_has_a_page_starts_the_mission_there() -> None:
 
 
 @pytest.mark.parametrize("params, expected", [
-    ({"port": 65536}, "port is 65536; expected a whole number from 0"),
-    ({"port": 80.5}, "port is 80.5; expected a whole number from 0"),
-    ({"port": -1}, "port is -1; expected a number of at least 0"),
-    ({"port": "http"}, "port is 'http'; expected a number"),
+    ({"port": 65536}, "~port is 65536; expected a whole number of at least 0, at most 65535"),
+    ({"port": 80.5}, "~port is 80.5; expected a whole number"),
+    ({"port": -1}, "~port is -1; expected a whole number of at least 0"),
+    ({"port": "http"}, "~port is 'http'; expected a whole number"),
     ({"token": "short"}, "token has 5 characters; expected at least 8"),
     ({"web": "perhaps"}, "web is 'perhaps'; expected true or false"),
     ({"mode": "quick"}, "mode is 'quick'; expected one of ask, still, random, trace"),
     ({"mode": "trace"}, "needs a trace file"),
-    ({"seed": "x"}, "seed is 'x'; expected a number"),
+    ({"seed": "x"}, "seed is 'x'; expected a whole number"),
     ({"wait": -1}, "wait is -1; expected a number of at least 0"),
     ({"pace": 0}, "pace is 0; expected a number"),
     ({"pace": True}, "pace is True; expected a number"),
@@ -67,7 +68,7 @@ def test_whoever_has_a_page_starts_the_mission_there() -> None:
     ({"nodes": 7}, "nodes is 7; expected a list of names"),
 ])
 def test_a_wrong_option_is_refused(params: dict, expected: str) -> None:
-    with pytest.raises(OptionError) as caught:
+    with pytest.raises(ParameterError) as caught:
         read(params=params)
     assert expected in str(caught.value)
 
@@ -77,7 +78,7 @@ def test_the_nodes_are_those_of_the_mission_but_for_what_this_launch_knows_bette
     assert ui_options.expected({}, listed) == listed
     assert ui_options.expected({"without": "simulator", "also": "recorder"}, listed) == (*listed[:2], "recorder")
     assert ui_options.expected({"nodes": "one, two", "also": "recorder"}, listed) == ("one", "two")
-    with pytest.raises(OptionError, match="without"):
+    with pytest.raises(ParameterError, match="without"):
         ui_options.expected({"without": 7}, listed)
 
 
