@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 import time
-from typing import Dict, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -43,9 +43,11 @@ from pursue_runtime.ui.mission_view import (
     PossibleWord,
     Readiness,
     Task,
+    done_hints,
     menu,
     possible_words,
     read_line,
+    reporters,
     tasks,
 )
 from pursue_runtime.ui.options import Options, read_options
@@ -66,9 +68,17 @@ class UI:
     """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for messages."""
 
     def __init__(
-        self, options: Options, membership: Membership, ending: Ending, player: Environment, model: Model
+        self,
+        options: Options,
+        membership: Membership,
+        ending: Ending,
+        player: Environment,
+        model: Model,
+        reporting: Sequence[str],
     ) -> None:
+        """`reporting`: the agents whose ends are reported here."""
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
+        self.reporting = reporting
         self.words: Set[str] = {edge.word for automaton in model.automata for edge in automaton.edges}
         self.mission = MissionView(model, player, people(membership.source))
         self.readiness = Readiness(options.nodes)
@@ -248,23 +258,19 @@ class UI:
         before, given = [offer.word for offer in self.offers], self.given
         self.find_offers()
         if self.given and self.given != given and self.reads():
-            names = " or ".join(f"done {task.agent}" for task in self.given)
-            self.terminal.line(f"          type {'done' if len(self.given) == 1 else names} when it is done")
+            for hint in done_hints(self.given):
+                self.terminal.line(f"          {hint}")
         if self.options.mode == "ask" and (again or before != [offer.word for offer in self.offers]):
             for line in menu(self.offers):
                 self.terminal.line(line)
 
     def find_offers(self) -> None:
-        """What the agents that nobody controls can do now, and what people can report."""
+        """What the agents that nobody controls can do now, and which ends can be reported here."""
         state = self.mission.state
         if state is not None:
-            kinds = ("agent", "human") if self.options.ends else ("agent",)
-            clocks = state.clocks_at(rospy.get_time())
-            self.given = tasks(self.model, state)
+            self.given = tasks(self.model, state, self.reporting)
             reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent) for task in self.given]
-            ends = {task.word for task in self.given}
-            offers = possible_words(self.model, state, clocks, kinds, self.options.ends)
-            self.offers = [*(offer for offer in offers if offer.word not in ends), *reports]
+            self.offers = [*possible_words(self.model, state, state.clocks_at(rospy.get_time())), *reports]
 
     def conclude(self, status: int, sentence: str) -> None:
         """End with this status and sentence; only the first call counts."""
@@ -385,7 +391,7 @@ def main(package: Package) -> int:
         model, settings = Model(membership.source.read("model.yaml")), membership.source.read("ui.yaml")
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
-        ui = UI(options, membership, ending, player, model)
+        ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))
         ui.board = open_page(model, options, settings, membership.source, ui)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)

@@ -5,11 +5,11 @@ Times are seconds of ROS time, `real` ones of the real clock; `at` and `opens` a
 
 from __future__ import annotations
 
-from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
+from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
-from pursue_runtime.simulator.simulator import report_word
+from pursue_runtime.simulator.simulator import ACTING, report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older
 from pursue_runtime.strategy import Plans, Strategy
 from pursue_runtime.words import START, Word, format_word
@@ -29,10 +29,15 @@ class PossibleWord(NamedTuple):
 
 
 class Task(NamedTuple):
-    """What a person is to do, in words, and the word that reports its end."""
+    """What an agent is doing (a person: what it is to do), in words, and the word that a person reports its end with.
+
+    `label` is for the button: Arrived or Done.
+    """
 
     agent: str
+    kind: str
     text: str
+    label: str
     word: str
 
 
@@ -55,16 +60,28 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
     return list(found.values())
 
 
-def tasks(model: Model, state: SystemState) -> List[Task]:
-    """Return what people are doing, in system order; they report the end themselves, at any time."""
+def reporters(model: Model, ends: bool, settings: Mapping[str, Any]) -> List[str]:
+    """The agents whose ends a person reports: people, and with `ends` all whose ends are reported (`settings` are
+    those of ui.yaml), since nobody is simulated then."""
+    reported = settings.get("reports", [automaton.name for automaton in model.automata]) if ends else ()
+    return [agent.name for agent in model.of_kind(*ACTING) if agent.kind == "human" or agent.name in reported]
+
+
+def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Task]:
+    """Return what those of these agents do that are under way, in system order; the end may be reported at any time."""
     found = []
-    for automaton in model.of_kind("human"):
+    for automaton in model.of_kind(*ACTING):
         location = state.locations.get(automaton.name, "")
+        if automaton.name not in agents:
+            continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
         end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
         if begin is not None and end is not None:
-            text = _instruction_text(begin, automaton.edges)
-            found.append(Task(automaton.name, text, report_word(model, automaton.name, end.word)))
+            is_person = automaton.kind == "human"
+            text = _instruction_text(begin, automaton.edges) if is_person else _activity_text(begin, automaton.edges)
+            label = "Arrived" if is_movement(location) and not is_person else "Done"
+            word = report_word(model, automaton.name, end.word)
+            found.append(Task(automaton.name, automaton.kind, text, label, word))
     return found
 
 
@@ -228,6 +245,13 @@ def _instruction_text(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
     return f"do {edge.word}{when}, at {edge.source}"
 
 
+def _activity_text(edge: Edge, edges: Sequence[Edge]) -> str:
+    """What an agent does that has taken this edge."""
+    if is_movement(edge.target):
+        return f"from {edge.source} to {_arrival(edges, edge)}"
+    return f"{edge.word}, at {edge.source}"
+
+
 def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
     """Where a movement leads to."""
     return next(edge.target for edge in edges if edge.source == departure.target != edge.target)
@@ -244,13 +268,28 @@ def menu(offers: Sequence[PossibleWord]) -> List[str]:
 
 
 def read_done(who: str, given: Sequence[Task]) -> Tuple[str, str]:
-    """Return the word that reports the end of a person's task ("": the only task), and a remark for the terminal."""
-    meant = [task for task in given if who in ("", task.agent)]
+    """Return the word that reports the end of an agent's task, and a remark for the terminal. Nobody named: the only
+    person with a task, else the only agent with one."""
+    people = [task for task in given if task.kind == "human"]
+    meant = [task for task in given if task.agent == who] if who else people or list(given)
     if len(meant) == 1:
         return meant[0].word, ""
     if not meant:
         return "", f"{who} has nothing to do now" if who else "there is nothing to do now"
     return "", f"who? expected {' or '.join(f'done {task.agent}' for task in meant)}"
+
+
+def done_hints(given: Sequence[Task]) -> List[str]:
+    """Return what to type at the end of tasks; robots report theirs themselves in most missions."""
+    people = [task for task in given if task.kind == "human"]
+    others = [task for task in given if task.kind == "agent"]
+    hints = []
+    if people:
+        names = " or ".join(f"done {task.agent}" for task in people)
+        hints.append(f"type {'done' if len(people) == 1 else names} when it is done")
+    hints += [f"type done {task.agent} when {task.agent} has {'arrived' if task.label == 'Arrived' else 'done it'}"
+              for task in others]
+    return hints
 
 
 def read_line(

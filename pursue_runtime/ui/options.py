@@ -97,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
         "--autostart", action="store_true", default=None, help="start as soon as they are ready, without Enter"
     )
     parser.add_argument(
-        "--ends", action="store_true", default=None, help="without a simulator: list also the ends of what people do"
+        "--ends", action="store_true", default=None, help="without a simulator: everybody's ends are reported here"
     )
     parser.add_argument("--web", action="store_true", default=None, help="serve a page for browsers as well")
     parser.add_argument("--host", metavar="ADDRESS", help="of --web: 127.0.0.1 (default), 0.0.0.0 for all")

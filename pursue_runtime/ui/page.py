@@ -84,23 +84,25 @@ class Facts(NamedTuple):
 class Page:
     """What there is to show, from the states of one mission."""
 
-    def __init__(self, model: Model, plan: FloorPlan, ends: bool = False) -> None:
-        """`ends`: buttons also for the ends of what agents do that nobody controls."""
+    def __init__(self, model: Model, plan: FloorPlan, reporters: Sequence[str] = ()) -> None:
+        """`reporters`: the agents whose ends are reported on the page."""
         self._model = model
         self._plan = plan
-        self._ends = ends
+        self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
         self._number = 0
         self.log: List[Dict[str, Any]] = []
 
     def scene(self) -> Dict[str, Any]:
-        """What stays as it is: the map, who takes part, and a button for each thing that nobody controls."""
+        """What stays as it is: the map, who takes part, whose ends are reported here, and a button for each thing that
+        nobody controls."""
         return {
             "scenario": self._model.scenario,
             "places": {name: list(place) for name, place in self._plan.places.items()},
             "ways": [list(way) for way in self._plan.ways],
             "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
+            "reporters": [automaton.name for automaton in self._acting if automaton.name in self._reporters],
             "buttons": [button for automaton in self._model.of_kind("agent") for button in self._buttons(automaton)],
         }
 
@@ -202,19 +204,19 @@ class Page:
         return " ".join(f"{what}: {', '.join(names)}." for what, names in groups.items() if names)
 
     def _tasks(self, state: SystemState, agents: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
-        """What people are to do now, and the word with which they say that it is done."""
+        """What agents do now whose ends are reported here, and the word for the end."""
         if state.status not in LIVE:
             return []
         windows = {agent["name"]: {key: agent[key] for key in ("since", "low", "high")} for agent in agents}
-        return [{**task._asdict(), **windows[task.agent]} for task in tasks(self._model, state)]
+        return [{**task._asdict(), **windows[task.agent]} for task in tasks(self._model, state, self._reporters)]
 
     # Words ------------------------------------------------------------------------------------------------------------
 
     def _buttons(self, automaton: Automaton) -> List[Dict[str, str]]:
-        """One for each word that the agent may say, whether it is possible now or not: nothing moves under a finger."""
+        """One for each thing that the agent may begin, possible now or not: nothing moves under a finger."""
         found: Dict[str, Dict[str, str]] = {}
         for edge in automaton.edges:
-            if edge.sync != "receive" and (self._ends or not is_end(edge.source, edge.target)):
+            if edge.sync != "receive" and not is_end(edge.source, edge.target):
                 word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
                 found.setdefault(word, {"agent": automaton.name, "word": word, "label": label})

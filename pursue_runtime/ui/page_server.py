@@ -10,6 +10,7 @@ from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
+from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
 
@@ -85,7 +86,7 @@ def open_page(
         what = f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out"
         raise ParameterError(what) from None
     poses = source.read("poses.yaml")
-    board = PageServer(Page(model, read_floor_plan(poses, settings), options.ends), node)
+    board = PageServer(Page(model, read_floor_plan(poses, settings), reporters(model, options.ends, settings)), node)
     try:
         board.web = Web(
             STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present

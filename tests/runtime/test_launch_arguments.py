@@ -18,14 +18,36 @@ SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scena
 MISSION = ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator", "UI"]
 
 
+WITH_VISITOR = """
+poi "a" poi "b"
+connect a and b distance 2
+event "handOver" collaborative
+agent "bot" controllable mobile 1 location a can_do handOver
+agent "visitor" mobile 3 location b reacts_to handOver
+reach_objective: do handOver
+"""
+
+
+def written(scenario: Path, folder: Path) -> Path:
+    """The packages of the workspace of a scenario."""
+    read, rules = load(str(scenario)), Rules()
+    won = solve_scenario(read, rules)
+    write_workspace(read, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
+    return folder / "src"
+
+
 @pytest.fixture(scope="module")
 def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The packages of a workspace."""
-    scenario, rules = load(str(SCENARIO)), Rules()
-    won = solve_scenario(scenario, rules)
-    folder = tmp_path_factory.mktemp("launch") / "ws"
-    write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
-    return folder / "src"
+    return written(SCENARIO, tmp_path_factory.mktemp("launch") / "ws")
+
+
+@pytest.fixture(scope="module")
+def workspaces(packages: Path, tmp_path_factory: pytest.TempPathFactory) -> Dict[str, Path]:
+    """The packages of a scenario of robots alone, and of one with a visitor whom nobody controls."""
+    file = tmp_path_factory.mktemp("visitor") / "library.pur"
+    file.write_text(WITH_VISITOR)
+    return {"scenario_1": packages, "library": written(file, file.parent / "ws")}
 
 
 class Launched:
@@ -49,7 +71,7 @@ def launch(packages: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         monkeypatch.setenv("ROS_PACKAGE_PATH", str(only))
         monkeypatch.setattr(roslaunch.substitution_args, "_rospack", None)  # it would remember packages of before
         config = roslaunch.config.ROSLaunchConfig()
-        file = only / "scenario_1_bringup" / "launch" / name
+        (file,) = only.glob(f"*_bringup/launch/{name}")
         roslaunch.xmlloader.XmlLoader().load(str(file), config, argv=[str(file), *arguments])
         return Launched(config)
 
@@ -76,6 +98,52 @@ def test_a_machine_may_run_some_of_the_nodes(launch: Any) -> None:
     assert launch("mission.launch", "nodes:=UI", *extra).names == ["UI"]
     assert launch("mission.launch", "nodes:=sim_clock recorder", *extra).names == ["recorder", "sim_clock"]
     assert launch("mission.launch", "nodes:=simulator", "simulate:=false").names == []
+
+
+REAL = {"goals": "action", "ends": "result", "on_stop": "cancel"}
+SIMULATED = {"goals": "simple", "ends": "words", "on_stop": "finish"}
+
+
+@pytest.mark.parametrize("file, given, simulated", [
+    ("mission.launch", [], True),
+    ("mission.launch", ["simulate:=true"], True),
+    ("mission.launch", ["simulate:=1"], True),
+    ("mission.launch", ["simulate:=false"], False),
+    ("mission.launch", ["simulate:=0"], False),
+    ("robot.launch", ["name:=base"], False),
+    ("robot.launch", ["name:=base", "simulate:=true"], True),
+])  # fmt: skip
+@pytest.mark.parametrize("scenario", ["scenario_1", "library"])
+def test_what_is_not_given_fits_robots_that_are_real_or_simulated(
+    workspaces: Dict[str, Path], launch: Any, scenario: str, file: str, given: List[str], simulated: bool
+) -> None:
+    found = launch(file, *given, only=workspaces[scenario])
+    controllers = [name for name in found.names if name.startswith("controller_bot")]
+    wanted = SIMULATED if simulated else REAL
+    assert controllers
+    for controller in controllers:
+        settings = {name: found.params[f"/{controller}/{name}"] for name in wanted}
+        assert (settings, found.params[f"/{controller}/simulated"]) == (wanted, simulated)
+    free = scenario == "library"
+    assert found.params["/UI/mode"] == ("random" if simulated and free else "still"), "nobody's moves are invented"
+    assert found.params["/UI/ends"] is not simulated, "whoever is not simulated is reported by a person"
+    assert ("simulator" in found.names) is simulated
+
+
+def test_what_is_given_counts_for_real_robots_too(launch: Any) -> None:
+    found = launch("mission.launch", "simulate:=false", "goals:=simple", "ends:=tf", "on_stop:=finish", "mode:=random")
+    params = found.params
+    assert [params[f"/controller_bot1/{name}"] for name in ("goals", "ends", "on_stop")] == ["simple", "tf", "finish"]
+    assert params["/UI/mode"] == "random"
+
+
+def test_one_launch_line_for_real_robots_is_documented_everywhere(packages: Path) -> None:
+    root = SCENARIO.parents[2]
+    pages = {root / "README.md": "my_floor", root / "docs" / "robots.md": "my_floor",
+             packages.parent / "README.md": "scenario_1"}
+    for page, name in pages.items():
+        lines = re.findall(r"^ +(roslaunch \w+ mission\.launch .*simulate:=false.*)$", page.read_text(), re.MULTILINE)
+        assert set(lines) == {f"roslaunch {name}_bringup mission.launch simulate:=false"}, page
 
 
 @pytest.mark.parametrize("file", ["mission.launch", "robot.launch"])

@@ -153,13 +153,19 @@ function setAgents() {
 }
 
 function setTasks() {
-  const people = scene.agents.filter((agent) => agent.kind === "human");
+  const reporters = scene.agents.filter((agent) => scene.reporters.includes(agent.name));
   widgets.tasks.clear();
-  $("people").hidden = people.length === 0;
-  $("tasks").replaceChildren(...people.map((agent) => {
+  setTaskList("people", "tasks", reporters.filter((agent) => agent.kind === "human"));
+  setTaskList("others", "ends", reporters.filter((agent) => agent.kind !== "human"));
+}
+
+function setTaskList(section, list, agents) {
+  $(section).hidden = agents.length === 0;
+  $(list).replaceChildren(...agents.map((agent) => {
     const row = make("li", "idle"), text = make("span", "task"), time = make("span", "task-time"), done = make("button", "done", "Done");
     done.type = "button";
-    const task = { row, text, time, done, word: "", pressed: "" };
+    const idle = agent.kind === "human" ? "nothing to do now" : "not under way";
+    const task = { row, text, time, done, idle, word: "", pressed: "" };
     onPress(done, () => {
       ask({ do: "done", word: task.word });
       task.pressed = task.word; // a second press would mean what comes next
@@ -354,9 +360,10 @@ function showAgent(widget, agent, now) {
 function showTask(widget, name, task, now, here) {
   widget.row.classList.toggle("idle", !task);
   widget.word = task ? task.word : "";
-  say(widget.text, task ? `${name}: ${task.text}` : `${name}: nothing to do now`);
+  say(widget.text, task ? `${name}: ${task.text}` : `${name}: ${widget.idle}`);
+  say(widget.done, task ? task.label : widget.done.textContent);
   say(widget.time, task && task.low !== null ? `for ${units(now - task.since)} now; planned: ${units(task.low - task.since)} to ${units(task.high - task.since)}` : "");
-  widget.done.setAttribute("aria-label", task ? `Done: ${name}, ${task.text}` : "Done");
+  widget.done.setAttribute("aria-label", task ? `${task.label}: ${name}, ${task.text}` : widget.done.textContent);
   enable(widget.done, here && Boolean(task) && widget.pressed !== widget.word);
 }
 

@@ -11,6 +11,7 @@ from typing import Any, Callable, Iterator
 import pytest
 
 from pursue_runtime.model import Model
+from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from tests.runtime.models import model_data, mover, state, worker
 
@@ -32,13 +33,13 @@ LONG = "the_very_long_name_of_an_agent_that_somebody_has_invented_on_a_rainy_day
 class Node:
     """A node that shows one state after the other."""
 
-    def __init__(self, model: Any, places: Any, ways: Any) -> None:
+    def __init__(self, model: Any, places: Any, ways: Any, ends: bool) -> None:
         self.lock = threading.RLock()
         self.model, self.wanted = model, []
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        self.board = ui_board.PageServer(Page(model, FloorPlan(places, ways)), self)
+        self.board = ui_board.PageServer(Page(model, FloorPlan(places, ways), reporters(model, ends, {})), self)
 
     def serve(self, port: int = 0) -> Any:
         board = self.board
@@ -74,9 +75,11 @@ def show(page: Browser) -> Iterator[Callable[..., Node]]:
     """`show(*automata)`: their page, opened."""
     nodes = []
 
-    def start(*automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), **more: Any) -> Node:
+    def start(
+        *automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), ends: bool = False, **more: Any
+    ) -> Node:
         data = {**model_data(*automata), **more}
-        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways)
+        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends)
         nodes.append(node)
         page.complaints.clear()
         page.screen(1100, 800)
@@ -227,6 +230,31 @@ def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node
     page.click(".done")
     says(page, "#remark", "as you like")
     assert node.wanted == [("done", "nurse:screwDONE")]
+
+
+def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_page(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody(), ends=True)
+    page.wait("!document.getElementById('others').hidden")
+    says(page, "#ends", "bot: not under way")
+    node.show(2, 2.0, clock=2.0, thief="going_a_to_b", boy="doing_screw_in_s")
+    says(page, "#ends", "thief: from a to b")
+    says(page, "#ends", "boy: screw, at s")
+    labels = page.value("[...document.querySelectorAll('#ends .done')].map((each) => each.textContent).join()")
+    assert labels == "Done,Arrived,Done"
+    pressed = "document.querySelectorAll('#ends .done')[{}].click()"
+    page.value(pressed.format(0))  # the robot stands
+    page.value(pressed.format(1))
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("done", "thief_going_a_to_b2b")]
+
+
+def test_with_a_simulator_only_people_report_their_ends(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody())
+    node.show(2, 2.0, clock=2.0, thief="going_a_to_b", nurse="doing_screw_in_s")
+    says(page, "#tasks", "nurse: do screw, at s")
+    assert page.value("document.getElementById('others').hidden") is True
 
 
 def test_what_is_possible_in_a_while_becomes_possible(page: Browser, show: Callable[..., Node]) -> None:

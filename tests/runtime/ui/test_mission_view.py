@@ -9,7 +9,17 @@ from hypothesis import strategies as st
 from pursue_runtime.model import Model, Position
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.environment import MIN_PAUSE, IdleEnvironment, RandomEnvironment, TraceEnvironment, TraceStep
-from pursue_runtime.ui.mission_view import MissionView, PossibleWord, Readiness, menu, possible_words, read_line, tasks
+from pursue_runtime.ui.mission_view import (
+    MissionView,
+    PossibleWord,
+    Readiness,
+    done_hints,
+    menu,
+    possible_words,
+    read_line,
+    reporters,
+    tasks,
+)
 from tests.runtime.models import model_data, mover, state, worker
 
 DATA = model_data(
@@ -278,15 +288,38 @@ def test_the_menu_lists_by_number() -> None:
 def test_people_report_the_end_of_what_they_are_told() -> None:
     crew = Model(model_data(mover("nurse", "human", 9), worker("cook", "human"), worker("boy", "agent")))
     busy = state(crew, 3, 100.0, {}, nurse="going_a_to_b", cook="doing_screw_in_s", boy="doing_screw_in_s")
-    given = tasks(crew, busy)
+    people = reporters(crew, False, {})
+    given = tasks(crew, busy, people)
     assert [(task.agent, task.text) for task in given] == [("nurse", "go from a to b"), ("cook", "do screw, at s")]
-    assert tasks(crew, state(crew, 1, 100.0, {})) == []
+    assert tasks(crew, state(crew, 1, 100.0, {}), people) == []
     assert read_line("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
     assert read_line("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
     assert read_line("done", [], set(), given) == ("", "who? expected done nurse or done cook")
     assert read_line("done", [], set(), given[:1]) == ("nurse_going_a_to_b2b", "")
     assert read_line("done boy", [], set(), given) == ("", "boy has nothing to do now")
     assert read_line("done", [], set(), []) == ("", "there is nothing to do now")
+
+
+def test_without_a_simulator_everybody_s_ends_are_reported_by_a_person() -> None:
+    crew = Model(model_data(mover("bot", "robot", 9), mover("visitor", "agent", 9), worker("cook", "human")))
+    busy = state(crew, 3, 100.0, {}, bot="going_a_to_b", visitor="going_b_to_a", cook="doing_screw_in_s")
+    given = tasks(crew, busy, reporters(crew, True, {}))
+    assert [(task.agent, task.text, task.label) for task in given] == [
+        ("bot", "from a to b", "Arrived"), ("visitor", "from b to a", "Arrived"), ("cook", "do screw, at s", "Done")
+    ]  # fmt: skip
+    assert read_line("done visitor", [], set(), given) == ("visitor_going_b_to_a2a", "")
+    assert read_line("done bot", [], set(), given) == ("bot_going_a_to_b2b", "")
+    assert read_line("done", [], set(), given) == ("screwDONE", ""), "a person is meant where there is one"
+    assert read_line("done", [], set(), given[:1]) == ("bot_going_a_to_b2b", "")
+    assert read_line("done", [], set(), given[:2]) == ("", "who? expected done bot or done visitor")
+    assert done_hints(given) == ["type done when it is done", "type done visitor when visitor has arrived"]
+    assert done_hints(tasks(crew, busy, ["bot"])) == []
+
+
+def test_an_end_that_a_controller_decides_is_reported_by_nobody() -> None:
+    crew = Model(model_data(mover("bot", "robot", 9), mover("visitor", "agent", 9), worker("cook", "human")))
+    assert reporters(crew, True, {"reports": ["visitor", "cook"]}) == ["visitor", "cook"]
+    assert reporters(crew, False, {"reports": ["visitor", "cook"]}) == ["cook"]
 
 
 def test_a_state_that_comes_late_is_no_news() -> None:

@@ -50,10 +50,16 @@ def test_the_scene_has_the_map_everybody_and_a_button_for_each_thing_that_nobody
     assert buttons == {"thief_a2b": ("thief", "a → b"), "thief_b2a": ("thief", "b → a"), "boy:screw": ("boy", "screw")}
 
 
-def test_ends_are_buttons_only_on_request() -> None:
-    labels = {button["word"]: button["label"] for button in page(ends=True).scene()["buttons"]}
-    assert labels["thief_going_a_to_b2b"] == "arrive at b"
-    assert labels["boy:screwDONE"] == "screw is done"
+def test_ends_are_reported_on_the_page_for_those_whose_ends_come_from_there() -> None:
+    everybody = page(reporters=("boy", "bot", "nurse", "thief"))
+    assert everybody.scene()["reporters"] == ["bot", "thief", "nurse", "boy"]
+    under_way = {"bot": "going_a_to_b", "thief": "going_a_to_b", "boy": "doing_screw_in_s"}
+    bot, thief, boy = view(everybody, at(3, 100.0, **under_way))["tasks"]
+    assert (bot["text"], bot["label"], bot["word"]) == ("from a to b", "Arrived", "bot_going_a_to_b2b")
+    assert (thief["text"], thief["label"], thief["word"]) == ("from a to b", "Arrived", "thief_going_a_to_b2b")
+    assert (boy["text"], boy["label"], boy["word"]) == ("screw, at s", "Done", "boy:screwDONE")
+    assert page(reporters=("nurse",)).scene()["reporters"] == ["nurse"]
+    assert view(page(reporters=("nurse",)), at(3, 100.0, **under_way))["tasks"] == []
 
 
 def test_a_map_is_read_and_a_wrong_one_refused() -> None:
@@ -123,7 +129,7 @@ def test_before_the_first_state_everybody_is_at_the_start() -> None:
 
 
 def test_people_are_told_what_to_do_and_when_it_is_planned_to_be_done() -> None:
-    shown = page()
+    shown = page(reporters=("nurse",))
     (task,) = view(shown, at(3, 100.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=7.0)["tasks"]
     assert (task["agent"], task["text"], task["word"]) == ("nurse", "do screw, at s", "nurse:screwDONE")
     assert (task["since"], task["low"], task["high"]) == (6.0, 9.0, 10.0)

@@ -1,0 +1,102 @@
+"""`simulate:=false` as it is documented: robots of move_base win the mission, and a person reports whoever is real."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import time
+from pathlib import Path
+from typing import Callable
+
+import pytest
+import yaml
+from ros_world import SCENARIOS, Ros, end, generated, make
+
+from pursue_gen.language import parse
+from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.workspace import Options, write_workspace
+from tests.waiting import PATIENCE, until
+
+pytestmark = pytest.mark.ros
+
+FAKE = Path(__file__).resolve().parent / "fake_move_base.py"
+PAGE = SCENARIOS.parent / "docs" / "robots.md"
+SLACK = 100
+"""Time units by which ends may be late in the model: they come in real time, and a machine may stand still."""
+
+VISITED = """
+poi "a" poi "b"
+connect a and b distance 2
+event "greet" location b duration 1
+agent "bot" controllable mobile 1 location a can_do greet
+agent "visitor" mobile 1 location b
+reach_objective: do greet
+"""
+
+
+def documented() -> str:
+    """The launch line of docs/robots.md, for scenario_1."""
+    lines = set(re.findall(r"^ +(roslaunch my_floor_bringup .*)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
+    (line,) = lines
+    return str(line).replace("my_floor", "scenario_1")
+
+
+def test_the_documented_line_wins_the_mission_on_robots_with_move_base(ros: Ros, tmp_path: Path) -> None:
+    wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
+    if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
+        pytest.skip(f"not all of {wanted} is here")
+    workspace = make(ros, generated("thesis/scenario_1", tmp_path / "ws", slack={"bot1": SLACK, "bot2": SLACK}))
+    poses = yaml.safe_load((workspace / "src/controller_bot1/config/poses.yaml").read_text())["poses"]
+    acts = {"bot1": 3.5, "bot2": 6.5}
+    robots = {name: {"start": poses["c"][:2], "travel": 9.5, "acts": seconds} for name, seconds in acts.items()}
+    (tmp_path / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
+    with ros.master() as there, contextlib.ExitStack() as cleanup:
+        ros.run(f"rosparam load {tmp_path}/robots.yaml /fake_move_base", workspace, **there)
+        fakes = ros.start(f"exec python3 {FAKE}", workspace, tmp_path / "robots", **there)
+        cleanup.callback(end, fakes)
+        log = tmp_path / "launch"
+        launch = ros.start(f"source devel/setup.bash; exec {documented()}", workspace, log, **there)
+        cleanup.callback(end, launch)
+        assert launch.wait(2 * PATIENCE) == 0, log.read_text()[-8000:]
+    assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
+
+
+def test_a_person_reports_at_the_terminal_what_a_visitor_and_a_robot_have_done(ros: Ros, tmp_path: Path) -> None:
+    scenario, rules = parse(VISITED, "visited.pur"), Rules(slack={"bot": SLACK, "visitor": SLACK})
+    won = solve_scenario(scenario, rules)
+    folder = tmp_path / "ws"
+    write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
+    workspace = make(ros, folder)
+    os.mkfifo(tmp_path / "keys")
+    keys = os.open(tmp_path / "keys", os.O_RDWR)
+    log = tmp_path / "terminal"
+    launch = f"roslaunch visited_bringup mission.launch simulate:=false ends:=words time_unit:=0.2 wait:={PATIENCE:g}"
+    command = f"source devel/setup.bash; exec script -qefc '{launch}' {log} <{tmp_path}/keys"
+
+    def says(text: str) -> Callable[[], bool]:
+        return lambda: re.search(text, log.read_text(errors="replace") if log.exists() else "") is not None
+
+    def does(typed: str, event: str) -> None:
+        """Types it until the event is shown."""
+        deadline = time.monotonic() + PATIENCE
+        while not says(rf"\d\.\d  {event}\b")():
+            os.write(keys, f"{typed}\n".encode())
+            time.sleep(1.0)
+            assert time.monotonic() < deadline, log.read_text(errors="replace")[-6000:]
+
+    with ros.master() as there, contextlib.ExitStack() as cleanup:
+        cleanup.callback(os.close, keys)
+        terminal = ros.start(command, workspace, tmp_path / "script", TERM="dumb", **there)
+        cleanup.callback(end, terminal)
+        until(says(r"\d\.\d  bot_a2b"), "the robot sets out")
+        does("visitor_b2a", "visitor_b2a")
+        until(says("type done visitor when visitor has arrived"), "the person is shown what to type")
+        time.sleep(0.5)  # the windows of both arrivals are open: 2 time units
+        does("done visitor", "visitor_going_b_to_a2a")
+        does("done bot", "bot_going_a_to_b2b")
+        until(says(r"\d\.\d  greet\b"), "the robot acts")
+        time.sleep(0.5)
+        does("done bot", "greetDONE")
+        until(says("The goal is reached"), "the end")
+        assert terminal.wait(PATIENCE) == 0
