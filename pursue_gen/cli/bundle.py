@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, Optional, Tuple
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import COMPUTED_POSES, EXPLAIN, KEY, KEYS, MISSION, POSES, REQUEST, with_request
+from pursue_gen.cli.options import (
+    COMPUTED_POSES,
+    DEFAULT_DISTANCE,
+    EXPLAIN,
+    KEY,
+    KEYS,
+    MISSION,
+    POSES,
+    REQUEST,
+    SPOT_DISTANCE,
+    with_request,
+)
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
     from pursue_runtime.bundle import Manifest
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Where robots are sent: a poses.yaml, whether missing poses are `computed`, metres between robots at one place."""
+
+    file: Optional[Path] = None
+    computed: bool = False
+    spot_distance: float = DEFAULT_DISTANCE
 
 
 @guarded
@@ -32,6 +53,7 @@ def bundle(
     request: SolveRequest = REQUEST,
     poses: Optional[Path] = POSES,
     computed_poses: bool = COMPUTED_POSES,
+    spot_distance: float = SPOT_DISTANCE,
     explain: bool = EXPLAIN,
 ) -> None:
     """Write a mission as one signed file, which robots take: data only, no code.
@@ -57,7 +79,7 @@ def bundle(
     if target.suffix != SUFFIX:
         raise usage_error(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
     private = load_private(key, folder)  # before the work: it may be missing
-    manifest, files = mission_of_scenario(scenario, request, poses, computed_poses, explain)
+    manifest, files = mission_of_scenario(scenario, request, Poses(poses, computed_poses, spot_distance), explain)
     write_bytes({target: sign(manifest, files, private)})
     print(target, manifest.digest, sep="\n")
     info(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
@@ -65,7 +87,7 @@ def bundle(
 
 
 def mission_of_scenario(
-    file: Path, request: SolveRequest, poses: Optional[Path], computed_poses: bool, explain: bool
+    file: Path, request: SolveRequest, poses: Poses, explain: bool
 ) -> Tuple[Manifest, Dict[str, bytes]]:
     """The mission of a scenario's file, solved and proven; the verdict is printed. Raises PursueError.
 
@@ -74,9 +96,12 @@ def mission_of_scenario(
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.language import load
     from pursue_gen.transport.bundles import make_mission, placed
+    from pursue_gen.workspace.spots import spots_in_one
 
-    scenario = placed(load(file), poses, computed_poses)
-    return make_mission(scenario, solve_and_print(scenario, request, file if explain else None), request)
+    scenario = placed(load(file), poses.file, poses.computed)
+    show(spots_in_one(scenario, poses.spot_distance))
+    won = solve_and_print(scenario, request, file if explain else None)
+    return make_mission(scenario, won, request, poses.spot_distance)
 
 
 def _print_bundle(file: Path, folder: Path) -> None:

@@ -48,6 +48,13 @@ class Optimize(str, Enum):
     TIME = "time"
 
 
+def _spot_distance(metres: float) -> float:
+    """The distance, if robots can stand so far apart."""
+    if metres != 0 and not 0.01 <= metres <= 100:
+        raise typer.BadParameter(f"{metres:g} metres; expected 0, or 0.01 to 100, such as 0.8")
+    return metres
+
+
 SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 GAME = "SCENARIO | TGA.xml TCTL.q"
 ENDS = typer.Option(
@@ -104,6 +111,15 @@ POSES = typer.Option(
 )
 COMPUTED_POSES = typer.Option(
     False, "--computed-poses", help="Points without a pose get a computed one: for simulated robots only."
+)
+DEFAULT_DISTANCE = 0.8
+"""SPOT_DISTANCE of workspace.spots, which takes long to import."""
+SPOT_DISTANCE = typer.Option(
+    DEFAULT_DISTANCE,
+    metavar="METRES",
+    help="How far apart robots stand at one place, side by side, unless the scenario has a pose for each (0: all at "
+    "the place's pose).",
+    callback=_spot_distance,
 )
 KEYS = typer.Option(
     None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."

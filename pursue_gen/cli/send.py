@@ -8,9 +8,20 @@ from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
 import typer
 
-from pursue_gen.cli.bundle import mission_of_scenario
+from pursue_gen.cli.bundle import Poses, mission_of_scenario
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import COMPUTED_POSES, EXPLAIN, JSON, KEY, KEYS, MISSION, POSES, REQUEST, with_request
+from pursue_gen.cli.options import (
+    COMPUTED_POSES,
+    EXPLAIN,
+    JSON,
+    KEY,
+    KEYS,
+    MISSION,
+    POSES,
+    REQUEST,
+    SPOT_DISTANCE,
+    with_request,
+)
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
 
@@ -46,6 +57,7 @@ def send(
     request: SolveRequest = REQUEST,
     poses: Optional[Path] = POSES,
     computed_poses: bool = COMPUTED_POSES,
+    spot_distance: float = SPOT_DISTANCE,
     explain: bool = EXPLAIN,
     as_json_: bool = JSON,
 ) -> None:
@@ -60,7 +72,8 @@ def send(
     from pursue_gen.transport.send_outcome import after_waiting, success
     from pursue_gen.transport.sender import wait as wait_for
 
-    is_default = request.is_default and poses is None and not computed_poses
+    places = Poses(poses, computed_poses, spot_distance)
+    is_default = request.is_default and places == Poses()
     _check_usage(mission, status, back, is_default)
     robots = read_robots(to)
     robots = robots if only is None else chosen(robots, only, to)
@@ -75,7 +88,7 @@ def send(
         if is_bundle(file):
             manifest, content = _signed_bundle(file, private, keys)
         else:
-            manifest, files = mission_of_scenario(file, request, poses, computed_poses, explain)
+            manifest, files = mission_of_scenario(file, request, places, explain)
             content = sign(manifest, files, private)
         sent = _send(robots, manifest, content, private, only is None, as_json_)
     rows = sent.rows

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, SCENARIO, Controllers, with_request
+from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, SCENARIO, SPOT_DISTANCE, Controllers, with_request
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def ws(
     ),
     docker: bool = typer.Option(False, "--docker", help="With Dockerfiles and a compose file: a container per node."),
     systemd: bool = typer.Option(False, "--systemd", help="With units of systemd, one per node."),
+    spot_distance: float = SPOT_DISTANCE,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
     """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
@@ -48,7 +49,7 @@ def ws(
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     won = solve_and_print(read, request, scenario if explain else None)
-    made = make_workspace(read, won, request, Extras(machines, docker, systemd), folder, force)
+    made = make_workspace(read, won, request, Extras(machines, docker, systemd, spot_distance), folder, force)
     info(made.margin)
     show(made.findings)
     print(made.folder)

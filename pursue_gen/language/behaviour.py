@@ -43,6 +43,13 @@ def reachable(agent: Agent, connected: Mapping[str, FrozenSet[str]]) -> FrozenSe
     return connected.get(agent.location.name, alone) if agent.mobile is not None else alone
 
 
+def robots_at(scenario: Scenario) -> Dict[str, Tuple[str, ...]]:
+    """For each POI the robots that may be there, in the order of their declaration."""
+    connected = components(scenario)
+    where = {agent.name: reachable(agent, connected) for agent in scenario.agents if agent.is_robot}
+    return {poi.name: tuple(name for name, places in where.items() if poi.name in places) for poi in scenario.pois}
+
+
 _Part = Tuple[Agent, Ref]
 """An agent, and where it names an event."""
 

@@ -124,6 +124,8 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     def all_of(kind: str, refs: Iterable[Optional[Ref]]) -> Iterator[Tuple[str, str, Span]]:
         return ((kind, ref.name, ref.span) for ref in refs if ref is not None)
 
+    for poi in scenario.pois:
+        yield from all_of("agent", [spot.robot for spot in poi.spots])
     for way in scenario.connections:
         yield "POI", way.a, way.ends[0]
         yield "POI", way.b, way.ends[1]

@@ -13,7 +13,7 @@ from lark import Token
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.messages import shown
-from pursue_gen.language.poses import read_pose
+from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
 
 MOST = 1_000_000
@@ -171,11 +171,9 @@ class _Builder:
         return 1
 
     def _poi(self, name: Token, pose: Optional[Token], span: Span) -> pml.Poi:
-        value = None
-        if pose is not None:
-            value, findings = read_pose(str(pose), span_of(pose, self.file))
-            self.findings += findings
-        return pml.Poi(_bare(name), value, span_of(name, self.file))
+        found = PoseComment(None) if pose is None else read_poses(str(pose), span_of(pose, self.file))
+        self.findings += found.findings
+        return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots)
 
     def _connection(self, a: Any, b: Any, distance: Token, span: Span) -> pml.Connection:
         first, second = self._ref(a), self._ref(b)

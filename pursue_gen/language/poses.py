@@ -1,44 +1,141 @@
-"""Poses in the thesis's way: a comment `//[x, y, z, qx, qy, qz, qw]` behind a point of interest."""
+"""Poses in the thesis's way: a comment `//[x, y, z, qx, qy, qz, qw]` behind a point of interest.
+
+Behind it in the same comment may stand the poses of single robots at this place: `bot2 [x, y, z, qx, qy, qz, qw]`.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Optional, Tuple
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.messages import shown
-from pursue_gen.language.scenario import Pose
+from pursue_gen.language.scenario import Pose, Ref, Spot
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d]\w*")
+_OPENING = re.compile(r"//[ \t]*(?P<name>[^\W\d]\w*)?[ \t]*\[")
+_NEXT = re.compile(r"[ \t]*,?[ \t]*(?P<name>[^\W\d]\w*)[ \t]*\[")
+_LIST = re.compile(r"\[([^\]]*)")
 _FORM = "write //[x, y, z, qx, qy, qz, qw]: metres and a unit quaternion; //[0, 0, 0, 0, 0, 0, 1] looks along x"
+_FORM_OF_ROBOT = "write the robot's name before its pose: //[x, y, z, qx, qy, qz, qw] bot2 [x, y, z, qx, qy, qz, qw]"
 _LONGEST = 40
 _LOOSE_UNIT = 0.05  # published poses have two decimals, so their quaternions are a little off unit length
 _TILT = 0.001
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
 
 
-def read_pose(comment: str, span: Span) -> Tuple[Optional[Pose], Tuple[Diagnostic, ...]]:
-    """The pose that a comment holds and what is wrong with it; None where it holds words only (a placeholder)."""
-    inner, bracket, _ = comment[comment.index("[") + 1 :].partition("]")
+@dataclass(frozen=True)
+class PoseComment:
+    """What a comment behind a place holds: its pose, those of single robots there, and what is wrong with them."""
+
+    pose: Optional[Pose]
+    spots: Tuple[Spot, ...] = ()
+    findings: Tuple[Diagnostic, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Item:
+    """A list in a comment: the name before it ("": the place's own), comment[start:end], and what is in it."""
+
+    name: str
+    start: int
+    end: int
+    inner: str
+    closed: bool
+
+
+def read_poses(comment: str, span: Span) -> PoseComment:
+    """The poses that a comment holds; none where it holds words only (a placeholder). `span`: of the comment."""
+    place, *others = list(_items(comment))
+    if place.name:
+        if not _is_pose(place.inner):
+            return PoseComment(None)  # an ordinary comment
+        message = f"the pose of the place has to come before the one of {shown(place.name, 60)}"
+        return PoseComment(None, (), (error("PML020", message, _part(span, place), _FORM_OF_ROBOT),))
+    pose, findings = _read_list(place, span, "a pose", _FORM)
+    spots: Dict[str, Spot] = {}
+    for item in others:
+        here = _part(span, item)
+        found, more = _read_list(item, here, f"the pose of {shown(item.name, 60)}", _FORM_OF_ROBOT)
+        findings += more
+        if item.name in spots:
+            message = f"{shown(item.name, 60)} has two poses at this place"
+            findings += (error("PML022", message, here, "delete one of them"),)
+        elif found is not None:
+            spots[item.name] = Spot(Ref(item.name, _name_part(span, item)), found)
+    findings += _without_name(comment, (others or [place])[-1].end, span)
+    return PoseComment(pose, tuple(spots.values()), findings)
+
+
+def robots_in(comment: str) -> List[Tuple[str, int]]:
+    """The robots that have a pose in such a comment, each with the offset of its name."""
+    place, *others = list(_items(comment))
+    return [] if place.name else [(item.name, item.start) for item in others]
+
+
+def _items(comment: str) -> Iterator[_Item]:
+    """The lists of a comment, the place's own first, as long as each is closed and the next one follows it."""
+    match = _OPENING.match(comment)
+    while match is not None:
+        inner, bracket, _ = comment[match.end() :].partition("]")
+        start = match.start("name") if match["name"] else match.end() - 1
+        end = match.end() + len(inner) + len(bracket)
+        yield _Item(match["name"] or "", start, end, inner, bool(bracket))
+        match = _NEXT.match(comment, end) if bracket else None
+
+
+def _without_name(comment: str, end: int, span: Span) -> Tuple[Diagnostic, ...]:
+    """An error for the first list of numbers in the rest of a comment: nobody knows whose pose it is."""
+    for match in _LIST.finditer(comment, end):
+        if _is_pose(match[1]):
+            here = Span(span.file, span.line, span.column + match.start(), span.line, span.column + match.end())
+            return (error("PML020", "a robot's name is expected before this list of numbers", here, _FORM_OF_ROBOT),)
+    return ()
+
+
+def _part(span: Span, item: _Item) -> Span:
+    return Span(span.file, span.line, span.column + item.start, span.line, span.column + item.end)
+
+
+def _name_part(span: Span, item: _Item) -> Span:
+    begin = span.column + item.start
+    return Span(span.file, span.line, begin, span.line, begin + len(item.name))
+
+
+def _split(inner: str) -> List[str]:
     items = [item.strip() for item in inner.split(",")]
     if len(items) > 1 and not items[-1]:
         items.pop()
-    if all(_WORD.fullmatch(item) for item in items):
+    return items
+
+
+def _is_pose(inner: str) -> bool:
+    """Is this list meant as a pose? More than two items, a number among them."""
+    items = _split(inner)
+    return len(items) > 2 and any(_NUMBER.fullmatch(item) for item in items)
+
+
+def _read_list(item: _Item, span: Span, what: str, form: str) -> Tuple[Optional[Pose], Tuple[Diagnostic, ...]]:
+    """The pose in a list, None for words; `what` it is called in messages, `form`: what to write."""
+    items = _split(item.inner)
+    if all(_WORD.fullmatch(one) for one in items) or (item.name and item.closed and len(items) == 1):
         return None, ()
-    if not bracket:
-        return None, (error("PML020", "this pose is not closed: expected `]` behind its seven numbers", span, _FORM),)
-    for number, item in enumerate(items, 1):
-        if len(item) > _LONGEST or not _NUMBER.fullmatch(item):
-            found = f"'{shown(item)}'" if item else "empty"
-            message = f"a pose holds numbers only, but its item {number} is {found}"
-            return None, (error("PML020", message, span, _FORM),)
+    if not item.closed:
+        message = f"{what} is not closed: expected `]` behind its seven numbers"
+        return None, (error("PML020", message, span, form),)
+    for number, one in enumerate(items, 1):
+        if len(one) > _LONGEST or not _NUMBER.fullmatch(one):
+            found = f"'{shown(one)}'" if one else "empty"
+            return None, (error("PML020", f"{what} holds numbers only, but its item {number} is {found}", span, form),)
     if len(items) != 7:
-        return None, (error("PML020", f"a pose has seven numbers, here are {len(items)}", span, _FORM),)
-    numbers = tuple(float(item) for item in items)
+        return None, (error("PML020", f"{what} has seven numbers, here are {len(items)}", span, form),)
+    numbers = tuple(float(one) for one in items)
     if any(abs(number) > _FARTHEST for number in numbers):
-        return None, (error("PML020", "a pose farther than a thousand kilometres away cannot be meant", span, _FORM),)
+        message = f"{what} farther than a thousand kilometres away cannot be meant"
+        return None, (error("PML020", message, span, form),)
     return _pose_of(numbers, span)
 
 

@@ -22,12 +22,32 @@ class Pose:
 
 
 @dataclass(frozen=True)
+class Ref:
+    """A name where it is used (not declared)."""
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where one robot stands at a place, instead of at the place's pose."""
+
+    robot: Ref
+    pose: Pose
+
+
+@dataclass(frozen=True)
 class Poi:
-    """A point of interest; `pose` is None where the author gave none or left the thesis's placeholder."""
+    """A point of interest; `pose` is None where the author gave none or left the thesis's placeholder.
+
+    `spots` are the poses that single robots have there, each robot once.
+    """
 
     name: str
     pose: Optional[Pose]
     span: Span
+    spots: Tuple[Spot, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -42,14 +62,6 @@ class Connection:
     distance: int
     span: Span
     ends: Tuple[Span, Span]
-
-
-@dataclass(frozen=True)
-class Ref:
-    """A name where it is used (not declared)."""
-
-    name: str
-    span: Span
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Tuple
 from lark import Token
 
 from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.poses import robots_in
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS, MEANINGS
 from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, kind_behind, statements
@@ -16,6 +17,7 @@ from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, kind
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
 _WORD_BEFORE = re.compile(r"[\w-]*\Z")
+_BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
 _HOLE = re.compile(r"\{(=?)([^}]*)\}")
 _SPECIAL = re.compile(r"[$},|\\]")
@@ -46,7 +48,7 @@ class Completion:
 def complete(document: Document, offset: int) -> Tuple[Completion, ...]:
     """What may be written at an offset; the likeliest first."""
     if document.in_comment(offset):
-        return ()
+        return tuple(_robots(document, offset))
     place = _place(document, offset)
     if place.quoted is not None:
         return tuple(_missing(document, place, place.quoted))
@@ -125,6 +127,23 @@ def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Itera
         about = " ".join(document.text[part.start : part.end].split())[:200]
         token = "HUMAN" if name == "human" else "WORD"
         yield Completion(name, name, token, "name", place.start, place.end, kind, about, of=kind)
+
+
+def _robots(document: Document, offset: int) -> Iterator[Completion]:
+    """The robots that may get a pose behind the others in the comment of a place."""
+    for part in document.statements:
+        for token in part.tokens:
+            start = token.start_pos or 0
+            if token.type == "POSE" and start < offset <= start + len(token):
+                before = _BEHIND_POSE.search(document.text, start, offset)
+                after = _WORD_AFTER.match(document.text, offset)
+                if before is None or after is None:
+                    return
+                pose, used = str(token).partition("[")[2].partition("]")[0], dict(robots_in(str(token)))
+                for agent in document.scenario.agents:
+                    if agent.is_robot and agent.name not in used:
+                        insert, span = f"{agent.name} [{pose}]", (before.start(1), after.end())
+                        yield Completion(agent.name, insert, "WORD", "name", *span, "its pose here", of="agent")
 
 
 def _last_word(place: _Place) -> str:

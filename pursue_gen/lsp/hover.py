@@ -104,6 +104,8 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
     lines += _if_any("happens here", here)
     if poi.pose is not None:
         lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
+    for spot in poi.spots:
+        lines.append(f"- {spot.robot.name} stands at x = {spot.pose.x:g} m, y = {spot.pose.y:g} m")
     return lines
 
 

@@ -9,6 +9,7 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Tup
 from lark import Token, UnexpectedToken
 
 from pursue_gen.language.messages import KEYWORDS, STATEMENTS
+from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
 
 COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"})
@@ -146,4 +147,7 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
             kind = _USED.get((part.kind, token.type))
         elif kind is not None and token.type in ("WORD", "HUMAN") and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
+        elif token.type == "POSE":
+            places = [(name, start + offset) for name, offset in robots_in(str(token))]
+            found += [Occurrence(name, "agent", at, at + len(name), False, number) for name, at in places]
     return found

@@ -6,6 +6,7 @@ import bisect
 from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.finding import FAULT, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
@@ -34,12 +35,12 @@ def check_robots(
     """Goals and actions that no state asked for, those that were never sent, goals that lead elsewhere."""
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots)
-    where = {name: (pose.x, pose.y, pose.z) for name, pose in poses(game.scenario)[0].items()}
+    where = {robot: _places(game.scenario, robot) for robot in robots}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
     found: List[Finding] = []
     told: Set[int] = set()
-    places: Dict[str, Point] = {}
+    places: Dict[str, Dict[str, Point]] = {robot: {} for robot in robots}
     for order in record.orders:
         place = diary.activity(order)
         if place is None:
@@ -55,7 +56,7 @@ def check_robots(
             text = f"{order.node} commands {robot}, which is for {' or '.join(sorted(owners))}"
             found.append(Finding(FAULT, "owner", state.seq, text))
         if order.goal is not None and location in ways:
-            problem = _elsewhere(order.goal, ways[location], places, where)
+            problem = _elsewhere(order.goal, ways[location], places[robot], where[robot])
             found += [Finding(FAULT, "goal", state.seq, f"{robot} is sent {problem}")] if problem else []
     if not record.problems:
         asked = {state.seq for _, state, _, is_command in steps if is_command}
@@ -108,6 +109,16 @@ class _ActivityIndex:
             if order.at <= self._activities[place][1] + LATE
         ]
         return min(fitting)[1] if fitting else None
+
+
+def _places(scenario: Scenario, robot: str) -> Dict[str, Point]:
+    """The points that are known for a robot: its own poses, else those of the places.
+
+    Where it stands beside another robot is for the workspace to say; that is never at the pose of another place.
+    """
+    found = {name: (pose.x, pose.y, pose.z) for name, pose in poses(scenario)[0].items()}
+    own = {poi.name: s.pose for poi in scenario.pois for s in poi.spots if s.robot.name == robot}
+    return {**found, **{name: (pose.x, pose.y, pose.z) for name, pose in own.items()}}
 
 
 def _elsewhere(

@@ -12,7 +12,8 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.transport.keys import Ed25519PrivateKey  # first: it says what to do without cryptography
 from pursue_gen.transport.poses_file import with_poses
 from pursue_gen.workspace.generate import generate, mission_of
-from pursue_gen.workspace.make import options_for
+from pursue_gen.workspace.make import Extras, options_for
+from pursue_gen.workspace.spots import SPOT_DISTANCE
 from pursue_runtime.bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
 
 SUFFIX = ".pursue"
@@ -24,12 +25,15 @@ def is_bundle(file: Path) -> bool:
     return file.name.endswith(SUFFIX)
 
 
-def make_mission(scenario: Scenario, won: Solution, request: SolveRequest) -> Tuple[Manifest, Dict[str, bytes]]:
+def make_mission(
+    scenario: Scenario, won: Solution, request: SolveRequest, spot_distance: float = SPOT_DISTANCE
+) -> Tuple[Manifest, Dict[str, bytes]]:
     """The mission of a scenario and its proven solution: its manifest, and `package/name.yaml` → content.
 
-    It is the same as that of a workspace for the same request. Raises as `generate`.
+    It is the same as that of a workspace for the same request and distance (metres). Raises as `generate`.
     """
-    files = generate(scenario, won.network, won.objective, won.strategy, options_for(request, won))
+    options = options_for(request, won, extras=Extras(spot_distance=spot_distance))
+    files = generate(scenario, won.network, won.objective, won.strategy, options)
     return mission_of(scenario.name, files)
 
 

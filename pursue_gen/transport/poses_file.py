@@ -4,36 +4,55 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.messages import shown
-from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.language.scenario import Poi, Pose, Ref, Scenario, Spot
 from pursue_gen.language.similar import closest
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FORM = "write NAME: [x, y, z, qx, qy, qz, qw]: metres on the map, and a unit quaternion; 0, 0, 0, 1 looks along x"
+_KEYS = ("format", "computed", "poses", "robots")
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
 _LOOSE = 0.05  # so much may a quaternion's length be off, as in scenarios
 _ROUNDING = 1e-9
 
 
+@dataclass(frozen=True)
+class GivenPoses:
+    """The poses of a file: place → pose, and robot → place → pose for single robots."""
+
+    places: Mapping[str, Pose]
+    own: Mapping[str, Mapping[str, Pose]]
+
+
 def with_poses(scenario: Scenario, file: Path) -> Scenario:
-    """The scenario with the poses of the file, which come before its own.
+    """The scenario with the poses of the file. Those that the scenario has at the places of the file do not count.
 
     Raises PursueError (exit status 2) with the places of everything that is wrong.
     """
-    poses = read_poses(file, tuple(poi.name for poi in scenario.pois))
-    return replace(scenario, pois=tuple(replace(poi, pose=poses.get(poi.name, poi.pose)) for poi in scenario.pois))
+    robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
+    given = read_poses(file, tuple(poi.name for poi in scenario.pois), robots)
+    return replace(scenario, pois=tuple(_placed(poi, given) for poi in scenario.pois))
 
 
-def read_poses(file: Path, points: Tuple[str, ...]) -> Dict[str, Pose]:
-    """The poses in a poses.yaml; `points` are the names that it may have. Raises as `with_poses`."""
-    text = read_text(file, "a file of poses, such as config/poses.yaml of a workspace")
-    reader = _Reader(str(file), points)
+def _placed(poi: Poi, given: GivenPoses) -> Poi:
+    """The point with what is given for it."""
+    if poi.name not in given.places:
+        return poi
+    own = [(robot, table[poi.name]) for robot, table in given.own.items() if poi.name in table]
+    spots = tuple(Spot(Ref(robot, poi.span), pose) for robot, pose in own)
+    return replace(poi, pose=given.places[poi.name], spots=spots)
+
+
+def read_poses(file: Path, points: Tuple[str, ...], robots: Tuple[str, ...] = ()) -> GivenPoses:
+    """The poses in a poses.yaml; `points` and `robots` are the names that it may have. Raises as `with_poses`."""
+    text = read_text(file, "a file of poses, such as config/poses.yaml of a workspace's UI")
+    reader = _Reader(str(file), points, robots)
     poses = reader.poses(compose_yaml(text, str(file), "TRN011", _FORM))
     if reader.findings:
         raise PursueError(reader.findings, exit_status=2)
@@ -43,33 +62,51 @@ def read_poses(file: Path, points: Tuple[str, ...]) -> Dict[str, Pose]:
 class _Reader:
     """Walks over YAML's nodes, which know their places, and gathers what is wrong."""
 
-    def __init__(self, file: str, points: Tuple[str, ...]) -> None:
+    def __init__(self, file: str, points: Tuple[str, ...], robots: Tuple[str, ...]) -> None:
         self._file = file
         self._points = points
+        self._robots = robots
         self.findings: List[Diagnostic] = []
 
-    def poses(self, root: Any) -> Dict[str, Pose]:
+    def poses(self, root: Any) -> GivenPoses:
         top = {} if root is None else self._entries(root, "the lines format: 1 and poses:")
-        form, computed, listed = (top.get(name, (None, None))[1] for name in ("format", "computed", "poses"))
-        if form is not None and form.value != "1":
-            self._wrong(form, "this is of a format that is not known; expected format: 1", _FORM)
+        form, computed, listed, robots = (top.get(name, (None, None))[1] for name in _KEYS)
+        if form is not None and form.value not in ("1", "2"):
+            self._wrong(form, "this is of a format that is not known; expected format: 1 or 2", _FORM)
         if computed is not None and str(computed.value).lower() in ("true", "yes", "on"):
             hint = "put your map's poses here and say computed: false; for simulated robots use --computed-poses"
             self._wrong(computed, "these poses are computed from distances, not measured", hint)
-        for name in [name for name in top if name not in ("format", "computed", "poses")]:
-            self._wrong(top[name][0], f"'{shown(name)}' is not known here; expected format, computed, poses", _FORM)
+        for name in [name for name in top if name not in _KEYS]:
+            self._wrong(top[name][0], f"'{shown(name)}' is not known here; expected {', '.join(_KEYS)}", _FORM)
         if listed is None:
             self._wrong(root, "there are no poses here; expected poses: and a line for each point", _FORM)
-            return {}
+            return GivenPoses({}, {})
+        places = self._table(listed)
+        own: Dict[str, Dict[str, Pose]] = {}
+        tables = {} if robots is None else self._entries(robots, "a table of poses for each robot")
+        for robot, (key, node) in tables.items():
+            if robot not in self._robots:
+                self._unknown(key, "robot", robot, self._robots)
+                continue
+            own[robot] = self._table(node)
+            for name in [name for name in own[robot] if name not in places]:
+                self._wrong(node, f"{robot} has a pose at {name}, which is not among poses:", _FORM)
+        return GivenPoses(places, own)
+
+    def _table(self, root: Any) -> Dict[str, Pose]:
+        """The poses in a mapping of points."""
         found = {}
-        for name, (key, node) in self._entries(listed, "a line for each point").items():
+        for name, (key, node) in self._entries(root, "a line for each point").items():
             if name in self._points:
                 found[name] = self._pose(node)
-                continue
-            meant = closest(name, self._points)
-            hint = f"did you mean {meant}?" if meant else f"its points are {', '.join(self._points)}"
-            self._wrong(key, f"the scenario has no point '{shown(name)}'", hint)
+            else:
+                self._unknown(key, "point", name, self._points)
         return {name: pose for name, pose in found.items() if pose is not None}
+
+    def _unknown(self, key: Any, kind: str, name: str, known: Tuple[str, ...]) -> None:
+        meant = closest(name, known)
+        hint = f"did you mean {meant}?" if meant else f"its {kind}s are {', '.join(known)}"
+        self._wrong(key, f"the scenario has no {kind} '{shown(name)}'", hint)
 
     def _entries(self, node: Any, expected: str) -> Dict[str, Tuple[Any, Any]]:
         """name → the nodes of this key and of its value, of a mapping."""

@@ -30,6 +30,7 @@ from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Kind, Objective, is_end
 from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
+from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class Options:
     `ends` and `slack`: the rest of the rules of that game (see `solving.rules.Rules`), for new plans.
     `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
-    `systemd`: with files for containers, and for services. The rest goes into the manifests.
+    `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
+    where the scenario does not say where they stand. The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
@@ -55,6 +57,7 @@ class Options:
     machines: Machines = ONE_MACHINE
     docker: bool = False
     systemd: bool = False
+    spot_distance: float = SPOT_DISTANCE
     maintainer: str = "maintainer"
     maintainer_email: str = "maintainer@example.org"
     license: str = "BSD-3-Clause"

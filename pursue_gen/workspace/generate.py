@@ -14,8 +14,7 @@ import jinja2
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
-from pursue_gen.drawing.layout import poses
-from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy, partition, strategy_file
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
@@ -36,6 +35,8 @@ from pursue_gen.workspace.packages import (
     runtime_package,
     templates_dir,
 )
+from pursue_gen.workspace.poses_text import poses_text
+from pursue_gen.workspace.spots import placing
 from pursue_runtime.manifest import MISSION, Manifest, make_manifest, mission_file
 
 _UI = "UI"
@@ -55,14 +56,14 @@ def generate(
     _check_name(scenario)
     subs = partition(strategy, network, scenario.agents, options.controllers, options.reach_obj)
     controllers = [sub for sub in subs if sub.controller != _UI]
-    where, computed = poses(scenario)
+    where = placing(scenario, options.spot_distance)
     templates = templates_dir()
     jinja = environment(templates)
     trace = expected.first_report(network)
     values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
     data = {
-        "poses": _poses(scenario, where, computed),
+        "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, __version__).encode(),
@@ -72,7 +73,9 @@ def generate(
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
     files: Dict[str, bytes] = {}
-    packages = _with_mission(_packages(scenario, subs, data, options), scenario)
+    sent = {sub.controller: [agent for agent in sub.agents if agent in where.spots] for sub in subs}
+    poses_of = {controller: poses_text(scenario, where, robots) for controller, robots in sent.items()}
+    packages = _with_mission(_packages(scenario, subs, data, poses_of, options), scenario)
     _check_packages(packages)
     for package in packages:
         for path, content in files_of(package, values, jinja, templates).items():
@@ -81,8 +84,8 @@ def generate(
     names = [package.name for package in packages]
     files.update(deploy.docker_files(jinja, values, names) if options.docker else {})
     files.update(deploy.systemd_files(jinja, values, options.machines) if options.systemd else {})
-    files["map.svg"] = map_svg.draw(scenario, where, computed).encode()
-    files["README.md"] = _readme(jinja, {**values, "margin": options.margin}, scenario, packages, computed)
+    files["map.svg"] = map_svg.draw(scenario, where.places, where.computed).encode()
+    files["README.md"] = _readme(jinja, {**values, "margin": options.margin}, scenario, packages, where.computed)
     return files
 
 
@@ -142,9 +145,13 @@ def _check_packages(packages: Sequence[Package]) -> None:
 
 
 def _packages(
-    scenario: Scenario, subs: Sequence[SubStrategy], data: Mapping[str, bytes], options: Options
+    scenario: Scenario,
+    subs: Sequence[SubStrategy],
+    data: Mapping[str, bytes],
+    poses_of: Mapping[str, bytes],
+    options: Options,
 ) -> List[Package]:
-    """The packages with what their manifests say and their data, the controllers first."""
+    """The packages with what their manifests say and their data, the controllers first; `poses_of` by controller."""
     packages = []
     people: Dict[str, bytes] = {}
     for sub in subs:
@@ -154,7 +161,7 @@ def _packages(
             continue
         commanded = " and ".join(sub.agents) or "nobody"
         summary = f"The controller that commands {commanded}."
-        files = {"config/strategy.yaml": text, "config/poses.yaml": data["poses"]}
+        files = {"config/strategy.yaml": text, "config/poses.yaml": poses_of[sub.controller]}
         packages.append(Package(sub.controller, "controller", summary, files))
     observer = {f"config/{name}.yaml": data[name] for name in ("model", "cover", "controllers", "game")}
     packages.append(Package("observer", "observer", "The observer: keeps the state of the mission.", observer))
@@ -189,20 +196,6 @@ def _expected(
     owner = {agent: sub.controller for sub in controllers for agent in sub.agents if agent in robots}
     nodes = ["observer", "simulator", _UI, *commands]
     return expected.expected(network, objective, owner, commands, nodes)
-
-
-def _poses(scenario: Scenario, where: Mapping[str, Pose], computed: bool) -> bytes:
-    """The text of poses.yaml."""
-    head = [f"Where the points of {scenario.name} are, in frame map, written by pursue-gen {__version__}."]
-    if computed:
-        given = {poi.name for poi in scenario.pois if poi.pose is not None}
-        missing = [name for name in where if name not in given]
-        head.append(f"Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
-    head.append("[x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
-    numbers = {
-        name: inline([float(number) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw)]) for name, p in where.items()
-    }
-    return yaml_text({"format": 1, "computed": computed, "poses": numbers}, head).encode()
 
 
 def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:

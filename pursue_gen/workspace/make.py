@@ -12,20 +12,25 @@ from pursue_gen.proof.margin import QUICK, describe, strategy_margin
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, machines_for, write_workspace
+from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
 
 
 @dataclass(frozen=True)
 class Extras:
-    """What a workspace may have besides: a machines.yaml, and files for containers and for services."""
+    """What a workspace may have besides: a machines.yaml, and files for containers and for services.
+
+    `spot_distance`: metres between the robots at one place.
+    """
 
     machines: Optional[Path] = None
     docker: bool = False
     systemd: bool = False
+    spot_distance: float = SPOT_DISTANCE
 
 
 @dataclass(frozen=True)
 class Made:
-    """A workspace on the disk: its folder, the margin of its strategy in sentences, findings on its machines.yaml."""
+    """A workspace on the disk: its folder, the margin of its strategy in sentences, and findings (spots, machines)."""
 
     folder: Path
     margin: str
@@ -43,6 +48,7 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         margin,
         docker=extras.docker,
         systemd=extras.systemd,
+        spot_distance=extras.spot_distance,
     )
 
 
@@ -59,8 +65,9 @@ def make_workspace(
     found = strategy_margin(won.network, won.objective, won.strategy, won.reaction, QUICK, limits)
     margin = describe(found, won.strategy)
     options = options_for(request, won, margin, extras)
-    findings: Tuple[Diagnostic, ...] = ()
+    findings = spots_in_one(scenario, extras.spot_distance)
     if extras.machines is not None:
-        options, findings = machines_for(extras.machines, scenario, won.network, won.strategy, options)
+        options, more = machines_for(extras.machines, scenario, won.network, won.strategy, options)
+        findings += more
     written = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder, force)
     return Made(written, margin, findings)

@@ -56,6 +56,33 @@ def test_names_that_fit(line: str, names: List[str]) -> None:
     assert labels(WHOLE.format(line), "name") == names
 
 
+ROBOTS = 'agent "bot1" controllable location a\nagent "bot2" controllable location a\nagent "man" location a\n'
+
+
+@pytest.mark.parametrize(
+    ("comment", "names"),
+    [
+        ("//[1, 2, 0, 0, 0, 0, 1] |", ["bot1", "bot2"]),
+        ("//[1, 2, 0, 0, 0, 0, 1], b|", ["bot1", "bot2"]),
+        ("//[1, 2, 0, 0, 0, 0, 1] bot2 [1, 3, 0, 0, 0, 0, 1] |", ["bot1"]),
+        ("//[1, 2, 0, | 0, 0, 0, 1]", []),
+        ("//|[1, 2, 0, 0, 0, 0, 1]", []),
+        ("//[1, 2, 0, 0, 0, 0, 1] the hall |", []),
+        ("// the hall |", []),
+    ],
+)
+def test_robots_that_may_have_a_pose_of_their_own(comment: str, names: List[str]) -> None:
+    assert labels(f'poi "a" {comment}\n{ROBOTS}', "name") == names
+
+
+def test_a_robots_pose_begins_with_that_of_the_place() -> None:
+    plain, at = marked(f'poi "a" //[1, 2, 0, 0, 0, 0, 1] bo| the hall\n{ROBOTS}')
+    item = complete(Document.of(plain, "x.pur"), at)[1]
+    changed = applied(plain, (Edit(item.start, item.end, item.insert),))
+    assert changed.splitlines()[0] == 'poi "a" //[1, 2, 0, 0, 0, 0, 1] bot2 [1, 2, 0, 0, 0, 0, 1] the hall'
+    assert read(changed, "x.pur").diagnostics == ()
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [

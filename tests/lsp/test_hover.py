@@ -55,6 +55,13 @@ def test_a_nested_rule_reads_from_left_to_right() -> None:
     assert "- a, then b, then (c or d), then e" in told('rule "', text)
 
 
+def test_a_place_tells_where_robots_stand() -> None:
+    pose = "[1, 2, 0, 0, 0, 0, 1]"
+    text = SMALL.replace('poi "a"', f'poi "a" //{pose} bot [1, 2.5, 0, 0, 0, 0, 1]')
+    assert "- on the robot's map at x = 1 m, y = 2 m\n- bot stands at x = 1 m, y = 2.5 m" in told('poi "', text)
+    assert "**bot**: a robot" in told(f"//{pose} bo", text)
+
+
 def test_an_unknown_name_is_told_as_that() -> None:
     assert told("do ", 'poi "a"\nreach_objective: do nothing') == "There is no event `nothing`."
 

@@ -54,6 +54,16 @@ def test_renaming_changes_every_occurrence_and_nothing_else() -> None:
     assert not check(parse(renamed, "x.pur"))
 
 
+def test_renaming_a_robot_changes_its_poses() -> None:
+    pose = "[1, 2, 0, 0, 0, 0, 1]"
+    text = SMALL.replace('poi "a"', f'poi "a" //{pose} man {pose} bot {pose}, not bot')
+    document = Document.of(text, "x.pur")
+    (declared,) = definition(document, at(text, f"man {pose} bo"))
+    assert text[declared.start - 7 : declared.end + 1] == 'agent "bot"'
+    renamed = applied(text, rename(document, at(text, 'agent "bo'), "cart"))
+    assert f"man {pose} cart {pose}, not bot\n" in renamed and 'agent "cart"' in renamed
+
+
 @pytest.mark.parametrize(
     ("new", "reason"),
     [

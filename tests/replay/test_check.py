@@ -199,6 +199,17 @@ def test_a_goal_that_leads_elsewhere_is_a_fault() -> None:
     assert kinds(found(made)) == [("goal", 4)]
 
 
+def test_two_robots_may_be_sent_to_different_spots_of_one_place_but_each_always_to_its_own() -> None:
+    both_to_a = [(1.5, "bot1_c2a@", "controller_bot1"), (1.6, "bot2_c2a@", "controller_bot2")]
+    made = mission(tuple(both_to_a))
+    assert "goal" not in {kind for kind, _ in kinds(found(made))}
+    beside = replace(made.heard[-1][3], y=made.heard[-1][3].y + 0.8)
+    made.heard[-1] = (*made.heard[-1][:3], beside)
+    assert "goal" not in {kind for kind, _ in kinds(found(made))}
+    made.order(made.states[-1].stamp + 0.01, "bot2", "a")
+    assert "goal" in {kind for kind, _ in kinds(found(made))}
+
+
 def test_what_was_not_read_makes_no_goal_missing_but_is_told() -> None:
     made = mission()
     made.heard = [message for message in made.heard if message[1] != "/bot2/move_base_simple/goal"]

@@ -41,14 +41,15 @@ class Robots:
     """Two fake robots at the initial point of the scenario, and what they have heard."""
 
     def __init__(self, ros: Ros, workspace: Path, logs: Path, there: Dict[str, str], **more: Dict[str, Any]) -> None:
-        poses = yaml.safe_load((workspace / "src/controller_bot1/config/poses.yaml").read_text())["poses"]
+        files = {bot: workspace / f"src/controller_{bot}/config/poses.yaml" for bot in ("bot1", "bot2")}
+        poses = {bot: yaml.safe_load(file.read_text())["poses"] for bot, file in files.items()}
         usual: Dict[str, Dict[str, Any]] = {"bot1": {"acts": 3.5 * UNIT}, "bot2": {"acts": 6.5 * UNIT}}
         robots = {
-            name: {"start": poses["c"][:2], "travel": 9.5 * UNIT, **settings, **more.get(name, {})}
+            name: {"start": poses[name]["c"][:2], "travel": 9.5 * UNIT, **settings, **more.get(name, {})}
             for name, settings in usual.items()
         }
         self.log = logs / "robots"
-        self.goals = {f"{x:.2f} {y:.2f}": poi for poi, (x, y, *_) in poses.items()}
+        self.goals = {f"{x:.2f} {y:.2f}": poi for own in poses.values() for poi, (x, y, *_) in own.items()}
         (logs / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
         ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, **there)
         self.process = ros.start(f"exec python3 {FAKE}", workspace, self.log, **there)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("cryptography", reason="cryptography is not installed")
 
+from pursue_gen.cli.options import DEFAULT_DISTANCE
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Pose
@@ -23,6 +24,7 @@ from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.transport.bundles import make_mission, placed, read_bundle, sign
 from pursue_gen.transport.keys import load_private, new_key, public_keys
 from pursue_gen.transport.poses_file import read_poses, with_poses
+from pursue_gen.workspace.spots import SPOT_DISTANCE
 from pursue_runtime.bundle import Bundle, Manifest, fingerprint, make_manifest, mission_file
 from tests.authoring.commands import Outcome, pursue
 
@@ -244,10 +246,11 @@ def test_poses_from_a_file(keys: Path) -> None:
     assert done.status == 0, done.err
     bundle = opened(Path("scenario_1.pursue"), keys)
     assert bundle.digest != computed
-    for package in (*bundle.manifest.controllers, "UI"):
+    assert bundle.manifest.controllers == ("controller_bot1", "controller_bot2", "controllerObj")
+    for package, y in zip((*bundle.manifest.controllers, "UI"), (2.5, 1.7, 2.5, 2.5)):
         data = yaml.safe_load(bundle.files[f"{package}/poses.yaml"])
         assert data["computed"] is False
-        assert data["poses"]["b"] == [1.0, 2.5, 0.0, 0.0, 0.0, 1.0, 0.0]
+        assert data["poses"]["b"] == [1.0, y, 0.0, 0.0, 0.0, 1.0, 0.0]  # it looks back: its left side is that of -y
     Path("again.yaml").write_bytes(bundle.files["UI/poses.yaml"])
     assert pursue("bundle", FIRST, "--poses", "again.yaml", "-o", "again.pursue").out.split()[1] == bundle.digest
 
@@ -259,6 +262,30 @@ def test_the_files_poses_come_before_the_scenarios_own(tmp_path: Path) -> None:
     placed = {poi.name: poi.pose for poi in with_poses(scenario, Path("lab.yaml")).pois}
     assert placed.pop("a") == Pose(9.0, 8.0, 7.0, 0.0, 0.0, 0.0, 1.0)
     assert placed == {name: pose for name, pose in own.items() if name != "a"}
+
+
+def test_poses_of_single_robots_come_from_the_file_and_replace_the_scenarios(keys: Path) -> None:
+    own = "[5, 6, 0, 0, 0, 0, 1]"
+    Path("own.pur").write_text(Path(FIRST).read_text().replace('poi "b"', f'poi "b" //{own} bot1 {own}'))
+    Path("lab.yaml").write_text(POSES.replace("format: 1", "format: 2") + f"robots: {{bot2: {{b: {own}}}}}\n")
+    place = with_poses(load("own.pur"), Path("lab.yaml")).pois[1]
+    assert [(spot.robot.name, spot.pose.x, spot.pose.y) for spot in place.spots] == [("bot2", 5.0, 6.0)]
+    assert pursue("bundle", "own.pur", "--poses", "lab.yaml", "--controllers", "centralized").status == 0
+    files = opened(Path("own.pursue"), keys).files
+    data = yaml.safe_load(files["controller/poses.yaml"])
+    assert (data["format"], data["poses"]["b"][:2], data["robots"]["bot2"]["b"][:2]) == (2, [1.0, 2.5], [5.0, 6.0])
+    assert list(data["robots"]["bot2"]) == ["a", "b", "c"] and list(data["robots"]) == ["bot2"]
+
+
+def test_the_spot_distance_is_part_of_the_mission(keys: Path) -> None:
+    Path("lab.yaml").write_text(POSES)
+    for wrong in ("-1", "nan", "inf", "1e-9", "1000"):
+        told(pursue("bundle", FIRST, "--spot-distance", wrong), 2, "--spot-distance", "0.01 to 100")
+    assert DEFAULT_DISTANCE == SPOT_DISTANCE
+    done = pursue("bundle", FIRST, "--poses", "lab.yaml", "--spot-distance", "0")
+    assert done.status == 0 and "WSP007" in done.err and "bot1 and bot2" in done.err
+    files = opened(Path("scenario_1.pursue"), keys).files
+    assert files["controller_bot2/poses.yaml"].splitlines()[2:] == files["UI/poses.yaml"].splitlines()[2:]
 
 
 def test_what_the_file_leaves_out_is_still_missing() -> None:
@@ -290,7 +317,11 @@ def test_computed_poses_are_not_taken_for_measured_ones() -> None:
         ("b: [1,", "b: [1\n  ,,", "6:4", "not YAML"),
         ("b: [1,", "b: &x [*x,", "5:6", "expected a number"),
         ("  b: [1,", '  "a": [1,', "5:3", "twice"),
-        ("format: 1", "format: 2", "1:9", "format"),
+        ("format: 1", "format: 3", "1:9", "format"),
+        (POSES, POSES + "robots: {bot3: {b: [1, 2, 0, 0, 0, 0, 1]}}\n", "7:10", "no robot 'bot3'"),
+        (POSES, POSES + "robots: {bot2: {x: [1, 2, 0, 0, 0, 0, 1]}}\n", "7:17", "no point 'x'"),
+        (POSES, POSES + "robots: {bot2: {b: [1, 2, 0, 0, 0, 0]}}\n", "7:20", "seven numbers, here are 6"),
+        (POSES, POSES + "robots: [bot2]\n", "7:9", "a table of poses for each robot"),
         ("format: 1", "[a]: 1", "1:1", "expected a name"),
         ("format: 1", "speed: 1", "1:1", "'speed' is not known"),
         ("computed: false", "computed: yes", "2:11", "not measured"),
@@ -320,13 +351,13 @@ NUMBERS = st.floats(-1e6, 1e6, allow_nan=False)
 @given(NUMBERS, NUMBERS, NUMBERS)
 def test_numbers_of_every_size_are_read_as_they_are_written(x: float, y: float, z: float) -> None:
     Path("lab.yaml").write_text(f"poses:\n  a: [{x!r}, {y!r}, {z!r}, 0, 0, 0, 1]\n")
-    assert read_poses(Path("lab.yaml"), ("a",)) == {"a": Pose(x, y, z, 0.0, 0.0, 0.0, 1.0)}
+    assert read_poses(Path("lab.yaml"), ("a",)).places == {"a": Pose(x, y, z, 0.0, 0.0, 0.0, 1.0)}
 
 
 @given(st.text(max_size=80))
 def test_no_text_gives_anything_but_poses_or_places(text: str) -> None:
     Path("lab.yaml").write_bytes(text.encode("utf-8", "surrogatepass"))
     try:
-        assert set(read_poses(Path("lab.yaml"), ("a",))) <= {"a"}
+        assert set(read_poses(Path("lab.yaml"), ("a",)).places) <= {"a"}
     except PursueError as problem:
         assert problem.exit_status == 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import dataclasses
 import json
+import math
 import re
 import subprocess
 import sys
@@ -25,6 +26,7 @@ from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
 from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
 from pursue_runtime import bundle
+from pursue_runtime.poses import read_poses
 
 SHAPES = [
     ("thesis/scenario_1", "distributed", "dedicated"),
@@ -235,6 +237,50 @@ def test_what_stands_beside_the_packages_tells_the_same_game() -> None:
     plan = read_plan(generated["UPPAAL_plan.txt"].decode(), network, "plan")
     assert {b.state for b in plan.blocks} == {b.state for b in strategy.blocks if b.wait or b.commands}
     assert generated["catch_the_thief.pur"].decode() == scenario.text
+
+
+def sent(generated: Dict[str, bytes], package: str) -> Dict[str, Dict[str, List[float]]]:
+    """robot → place → pose, as the package's controller reads them."""
+    content = yaml.safe_load(generated[f"src/{package}/config/poses.yaml"])
+    strategy = yaml.safe_load(generated[f"src/{package}/config/strategy.yaml"])
+    return read_poses(content).of(agent for agent in strategy["commands_agents"] if agent != "reachObj")
+
+
+@pytest.mark.parametrize("name", ["thesis/catch_the_thief", "thesis/scenario_1"])
+def test_two_robots_never_have_the_same_pose_at_one_place(name: str) -> None:
+    distributed = files(name)
+    apart: Dict[str, Dict[str, List[float]]] = {}
+    for package in sorted(packages(distributed)):
+        if package.startswith("controller_"):
+            apart.update(sent(distributed, package))
+    first, second = apart.values()
+    places = yaml.safe_load(distributed["src/UI/config/poses.yaml"])["poses"]
+    assert first == places
+    for place in places:
+        assert math.dist(first[place][:2], second[place][:2]) >= 0.798
+        assert first[place][2:] == second[place][2:]
+    for shape in ("centralized", "general"):
+        assert sent(files(name, shape), "controller") == apart
+
+
+def test_the_format_of_poses_says_whether_robots_differ() -> None:
+    for shape, package, number in (
+        ("distributed", "controller_polBot2", 1),
+        ("centralized", "controller", 2),
+        ("centralized", "UI", 1),
+    ):
+        content = files("thesis/catch_the_thief", shape)[f"src/{package}/config/poses.yaml"]
+        data = yaml.safe_load(content)
+        assert (data["format"], "robots" in data) == (number, number == 2)
+        assert (b"0.8 m apart (--spot-distance)" in content) == (package != "UI")
+
+
+def test_the_spot_distance_changes_poses_and_nothing_of_the_game() -> None:
+    near, far = (generate(*world("thesis/scenario_1"), Options(spot_distance=metres)) for metres in (0.0, 3.0))
+    for path in near:
+        same = near[path] == far[path] or path.endswith("config/mission.yaml")
+        assert same == (path not in ("src/controller_bot1/config/poses.yaml", "src/controller_bot2/config/poses.yaml"))
+    assert sent(near, "controller_bot2")["bot2"] == sent(near, "controller_bot1")["bot1"]
 
 
 def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:

@@ -15,7 +15,7 @@ syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"
 syntax keyword pursueTodo TODO FIXME contained
 syntax match pursueComment "//.*" contains=pursueTodo
-syntax match pursuePose "//[ \t]*\[.*"
+syntax match pursuePose "//[ \t]*\(\h\w*[ \t]*\)\?\[.*"
 syntax region pursueComment start="/\*" end="\*/" contains=pursueTodo
 
 highlight default link pursueStatement Statement

@@ -1,0 +1,50 @@
+"""The text of poses.yaml: where the places are, for the robots of one package."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Sequence
+
+from pursue_gen import __version__
+from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.workspace.spots import Placing, Table
+
+
+def poses_text(scenario: Scenario, placing: Placing, robots: Sequence[str] = ()) -> bytes:
+    """The text of poses.yaml for a package that sends these robots to their spots; without robots it has the places.
+
+    One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2).
+    """
+    places, spots = placing.places, placing.spots
+    head = [_title(scenario, robots)]
+    if placing.computed:
+        missing = [poi.name for poi in scenario.pois if poi.pose is None]
+        head.append(f"Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
+    shared = any(len(present) > 1 for present in robots_at(scenario).values())
+    if robots and shared and placing.distance > 0:
+        head.append(f"Robots that may be at one place stand {placing.distance:g} m apart (--spot-distance).")
+    head.append("[x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
+    own: Dict[str, Table] = {}
+    if len(robots) == 1:
+        places = spots[robots[0]]
+    else:
+        differ = {robot: {name: p for name, p in spots[robot].items() if p != places[name]} for robot in robots}
+        own = {robot: table for robot, table in differ.items() if table}
+    data: Dict[str, Any] = {"format": 2 if own else 1, "computed": placing.computed, "poses": _lines(places)}
+    if own:
+        data["robots"] = {robot: _lines(table) for robot, table in own.items()}
+    return yaml_text(data, head).encode()
+
+
+def _title(scenario: Scenario, robots: Sequence[str]) -> str:
+    where = f"Where the points of {scenario.name} are"
+    if robots:
+        where = f"Where {' and '.join(robots)} stand{'s' if len(robots) == 1 else ''} at the points of {scenario.name}"
+    return f"{where}, in frame map, written by pursue-gen {__version__}."
+
+
+def _lines(table: Table) -> Dict[str, Any]:
+    return {
+        name: inline([float(number) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw)]) for name, p in table.items()
+    }

@@ -1,0 +1,135 @@
+"""Where each robot stands at each place: at its own pose if the scenario has one, else beside the place's pose."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from itertools import count
+from typing import DefaultDict, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, counted, warning
+from pursue_gen.drawing.layout import poses
+from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.scenario import Poi, Pose, Scenario
+
+SPOT_DISTANCE = 0.8
+"""Metres between the robots at one place, by default: room for two robots of the size of a Turtlebot."""
+
+_DECIMALS = 3
+_ROUNDING = 0.002  # metres by which two rounded spots may be nearer
+_ROOM = 4  # spots that are tried for each robot until it may be near another place
+
+Point = Tuple[float, float]
+Table = Mapping[str, Pose]
+"""place → pose."""
+
+
+@dataclass(frozen=True)
+class Placing:
+    """Where robots are sent: `places` has the places' poses, `spots` a table for each robot.
+
+    `computed`: some of the places' poses are, from distances. `distance`: metres between the robots at one place.
+    """
+
+    places: Table
+    spots: Mapping[str, Table]
+    computed: bool
+    distance: float
+
+
+def placing(scenario: Scenario, distance: float) -> Placing:
+    """The poses of a scenario, computed ones for places without, and the robots' spots."""
+    places, computed = poses(scenario)
+    return Placing(places, spots(scenario, places, distance), computed, distance)
+
+
+def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[str, Pose]]:
+    """robot → place → the pose to which the robot is sent there; `places` has the places' own poses.
+
+    A pose that the scenario gives for a robot stays as it is. Of the other robots that may be at a place, the first has
+    the place's pose. The rest stand beside it, left and right in turn, `distance` metres from each other and, where
+    there is room, from the poses of other places. All look in the same direction. Positions are rounded to millimetres.
+    With distance 0 all have the place's pose.
+    """
+    own = {poi.name: {spot.robot.name: spot.pose for spot in poi.spots} for poi in scenario.pois}
+    found = {
+        agent.name: {place: own[place].get(agent.name, pose) for place, pose in places.items()}
+        for agent in scenario.agents
+        if agent.is_robot
+    }
+    if distance <= 0:
+        return found
+    present = robots_at(scenario)
+    given = {poi.name: [places[poi.name], *own[poi.name].values()] for poi in scenario.pois}
+    everywhere = _Taken(distance, (pose for those in given.values() for pose in those))
+    for poi in scenario.pois:
+        here = _Taken(distance, given[poi.name])
+        for robot in _without_own(poi, present[poi.name])[1:]:
+            spot = _beside(places[poi.name], distance, here, everywhere, _ROOM * len(present[poi.name]))
+            found[robot][poi.name] = spot
+            everywhere.add(spot)
+            here.add(spot)
+    return found
+
+
+def spots_in_one(scenario: Scenario, distance: float) -> Tuple[Diagnostic, ...]:
+    """A warning for the first place at which several robots have one pose, because their distance is 0."""
+    present = robots_at(scenario)
+    shared = [(poi, _without_own(poi, present[poi.name])) for poi in scenario.pois]
+    crowded = [(poi, robots) for poi, robots in shared if len(robots) > 1]
+    if distance > 0 or not crowded:
+        return ()
+    poi, robots = crowded[0]
+    more = f" ({counted(len(crowded) - 1, 'more place')} like this)" if len(crowded) > 1 else ""
+    message = f"{' and '.join(robots)} have one pose at {poi.name}: real robots would run into each other{more}"
+    hint = f"leave --spot-distance 0 out, or give each its own: {poi.name} //[…] {robots[1]} [x, y, z, qx, qy, qz, qw]"
+    return (warning("WSP007", message, poi.span, hint),)
+
+
+def _without_own(poi: Poi, robots: Sequence[str]) -> List[str]:
+    """Those of the robots that have no pose of their own at the place."""
+    own = {spot.robot.name for spot in poi.spots}
+    return [robot for robot in robots if robot not in own]
+
+
+class _Taken:
+    """Points from which others have to be `distance` metres away."""
+
+    def __init__(self, distance: float, poses: Iterable[Pose]) -> None:
+        self._distance = distance
+        self._cells: DefaultDict[Tuple[int, int], List[Point]] = defaultdict(list)
+        for pose in poses:
+            self.add(pose)
+
+    def add(self, pose: Pose) -> None:
+        """Take the point of a pose."""
+        self._cells[self._cell(pose)].append((pose.x, pose.y))
+
+    def near(self, pose: Pose) -> bool:
+        """Return True if a point is too near to the pose."""
+        i, j = self._cell(pose)
+        around = (point for x in (i - 1, i, i + 1) for y in (j - 1, j, j + 1) for point in self._cells.get((x, y), ()))
+        return any(math.dist(point, (pose.x, pose.y)) < self._distance - _ROUNDING for point in around)
+
+    def _cell(self, pose: Pose) -> Tuple[int, int]:
+        return math.floor(pose.x / self._distance), math.floor(pose.y / self._distance)
+
+
+def _beside(pose: Pose, distance: float, here: _Taken, everywhere: _Taken, most: int) -> Pose:
+    """The first free spot beside a pose; after `most` of them the first that is free as far as this place goes."""
+    yaw = math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
+    second: Optional[Pose] = None
+    for number in count(1):
+        steps = (number + 1) // 2 * (1 if number % 2 else -1)
+        x, y = pose.x - steps * distance * math.sin(yaw), pose.y + steps * distance * math.cos(yaw)
+        spot = replace(pose, x=_rounded(x), y=_rounded(y))
+        if not here.near(spot):
+            second = second or spot
+            if number > most or not everywhere.near(spot):
+                break
+    return spot if number <= most else second or spot
+
+
+def _rounded(metres: float) -> float:
+    return round(metres, _DECIMALS) + 0.0  # + 0.0: no -0.0 in generated files
