@@ -11,6 +11,7 @@ PLAN = "pursue/plan"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED, FAILED = "_plan_", "_failed_"
+BLOCKED, FREE = "_blocked_", "_free_"
 
 
 class Word(NamedTuple):

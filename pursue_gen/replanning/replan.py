@@ -95,8 +95,9 @@ def _cannot_be_met(game: Network, request: Request) -> str:
         if name not in agents:
             return f"{_objective(request.scenario)} cannot be met any more: {why}"
     absent = [name for name in agents if name in request.excused or name in over]
-    without = f" without relying on {' and '.join(absent)}" if absent else ""
-    return f"{_objective(request.scenario)} cannot be guaranteed from here{without}"
+    without = [f"without relying on {' and '.join(absent)}"] if absent else []
+    without += [f"without the way between {a} and {b}" for a, b in sorted(request.blocked) if a < b]
+    return " ".join([f"{_objective(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
 
 
 def _objective(scenario: Scenario) -> str:

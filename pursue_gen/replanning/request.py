@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Mapping
+from typing import Any, Dict, FrozenSet, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
@@ -22,7 +22,7 @@ class Request:
     """A plan is wanted for this scenario, from this place, by controllers of that shape (see `partition`).
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
-    `excused`. It may take so many `seconds`, 0: any number.
+    `excused`, and nobody is sent along the ways in `blocked`. It may take so many `seconds`, 0: any number.
     """
 
     scenario: Scenario
@@ -34,6 +34,7 @@ class Request:
     clocks: Mapping[str, Fraction]
     ahead: Fraction
     excused: FrozenSet[str]
+    blocked: FrozenSet[Tuple[str, str]]
     seconds: float
 
 
@@ -56,8 +57,9 @@ def read_request(data: object) -> Request:
             if not isinstance(value, kind) or isinstance(value, bool):
                 raise wrong(f"{key} is {_shown(value)}", what)
     clocks = _object(_of(request, "clocks", "the request"), "clocks")
+    scenario = _scenario(name, text)
     return Request(
-        scenario=_scenario(name, text),
+        scenario=scenario,
         rules=_rules(_object(_of(game, "rules", "game"), "rules")),
         controllers=_text(game, "controllers", "game"),
         reach_obj=_text(game, "reach_obj", "game"),
@@ -66,6 +68,7 @@ def read_request(data: object) -> Request:
         clocks={key: _time(value, key) for key, value in clocks.items()},
         ahead=_time(_of(request, "ahead", "the request"), "ahead"),
         excused=frozenset(excused),
+        blocked=_ways(request.get("blocked", ()), scenario),
         seconds=float(seconds),
     )
 
@@ -85,6 +88,15 @@ def _scenario(name: str, text: str) -> Scenario:
             raise PursueError(problem.diagnostics, 2) from None
     assert reading.scenario is not None
     return reading.scenario
+
+
+def _ways(data: object, scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
+    """The ways, each in both directions."""
+    known = [pair for way in scenario.connections for pair in ((way.a, way.b), (way.b, way.a))]
+    lists = (list, tuple)
+    if not isinstance(data, lists) or not all(isinstance(way, lists) and tuple(way) in known for way in data):
+        raise wrong(f"blocked is {_shown(data)}", "a list of pairs of places that are connected, [] for none")
+    return frozenset(pair for a, b in data for pair in ((a, b), (b, a)))
 
 
 def _rules(data: Mapping[str, Any]) -> Rules:

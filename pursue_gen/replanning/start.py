@@ -9,6 +9,7 @@ from math import ceil
 from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
+from pursue_gen.tga.names import going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
 from pursue_gen.zones.scale import least_common_multiple
 
@@ -22,10 +23,12 @@ def network_from(network: Network, request: Request) -> Network:
     """The network in the state of the request, `ahead` time units later, without the moves that cannot be relied on.
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
-    than the model allows may stay. Raises PursueError (exit status 2) for a place that the network does not have.
+    than the model allows may stay; nobody is sent along a blocked way. Raises PursueError (exit status 2) for a place
+    that the network does not have.
     """
     locations, values, clocks = _place(network, request)
     agents = {agent.name for agent in request.scenario.agents}
+    blocked = {going(*way) for way in request.blocked}
     automata = []
     for automaton in network.automata:
         here = locations[automaton.name]
@@ -34,7 +37,7 @@ def network_from(network: Network, request: Request) -> Network:
             moved = _idle(_unbounded(moved, here), here, clocks)
         elif automaton.name in agents and passed_bounds(automaton, here, clocks):
             moved = _unbounded(moved, here)
-        automata.append(moved)
+        automata.append(_without_ways(moved, blocked) if automaton.name in agents else moved)
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
     grid = least_common_multiple((reaction.denominator, _FINEST))
@@ -98,6 +101,12 @@ def _unbounded(automaton: Automaton, here: str) -> Automaton:
     """It may stay where it is for ever."""
     locations = (replace(place, invariant=()) if place.name == here else place for place in automaton.locations)
     return replace(automaton, locations=tuple(locations))
+
+
+def _without_ways(automaton: Automaton, blocked: AbstractSet[str]) -> Automaton:
+    """The automaton without commands to begin these movements."""
+    edges = tuple(edge for edge in automaton.edges if not (edge.controllable and edge.target in blocked))
+    return replace(automaton, edges=edges)
 
 
 def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Automaton:

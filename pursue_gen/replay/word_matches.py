@@ -10,7 +10,7 @@ from pursue_gen.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.replay.moves import DiscreteState, Moves
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
-from pursue_runtime.words import FAILED, FINISH, PING, PLANNED, START, STOP
+from pursue_runtime.words import BLOCKED, FAILED, FINISH, FREE, PING, PLANNED, START, STOP
 
 CONTROL = (START, PING, STOP, FINISH)
 APART = 60.0
@@ -56,7 +56,7 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, System
 
 
 def _control(word: RecordedWord) -> bool:
-    return word.text in CONTROL or word.event in (PLANNED, FAILED)
+    return word.text in CONTROL or word.event in (PLANNED, FAILED, BLOCKED, FREE)
 
 
 def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> List[Finding]:
@@ -70,6 +70,9 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
     for word in record.words:
         if word.text == STOP:
             found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} said {STOP}"))
+        elif word.event in (BLOCKED, FREE):
+            text = f"{_sender(word)} said {word.text}"
+            found.append(Finding(WORLD if word.event == BLOCKED else NOTE, "way", now(word).seq, text))
         elif word.event == FAILED:
             found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot do what it was told"))
     for word in said.unmatched:

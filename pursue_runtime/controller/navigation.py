@@ -12,12 +12,12 @@ from typing import Any, Callable, Deque, List, Mapping, NamedTuple, Optional, Tu
 
 from pursue_runtime.data import DataError
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.words import FAILED, Word, format_word
+from pursue_runtime.words import BLOCKED, FAILED, Word, format_word
 
 GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
 
-SUCCEEDED = 3
-FAILURES = {2: "preempted", 4: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
+SUCCEEDED, ABORTED = 3, 4
+FAILURES = {2: "preempted", ABORTED: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
 """The statuses with which a goal may end, as actionlib_msgs/GoalStatus numbers them."""
 
 
@@ -144,7 +144,7 @@ class Navigation:
         self._running = running
         if way is None or self._progress is None or self._progress.movement != way:
             self._progress = Progress(way) if way else None  # also one that was begun by hand: its end counts
-        elif lost and self._progress.report == self._failure_word():
+        elif lost and self._progress.report not in ("", self._end_word(self._progress)):
             self._progress.confirmed = True
 
     def start(self, way: Movement, now: float) -> None:
@@ -233,7 +233,7 @@ class Navigation:
             trip.goal_at = now + self.settings.retry_delay
         else:
             self._log("err", f"{self.name} on its way to {trip.movement.poi}: {how} {trip.goals} times; giving up")
-            self._report(trip, self._failure_word())
+            self._report(trip, format_word(Word(self.name, BLOCKED if how == FAILURES[ABORTED] else FAILED)))
 
     @staticmethod
     def _report(trip: Progress, word: str) -> None:
@@ -249,6 +249,3 @@ class Navigation:
 
     def _end_word(self, trip: Progress) -> str:
         return f"{self.name}_{trip.movement.location}2{trip.movement.poi}"
-
-    def _failure_word(self) -> str:
-        return format_word(Word(self.name, FAILED))

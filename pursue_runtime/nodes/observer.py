@@ -266,10 +266,11 @@ class Observer:
             late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.silent))
             values: Dict[str, object] = {"mission": mission.name, "seq": mission.seq, "status": mission.status}
             values.update({"plan": mission.plan, "planning": f"{self.planner.seconds:.0f} s"})
-            values.update({"late": late, "lost": lost, "silent": away})
+            blocked = " ".join("-".join(way) for way in sorted(mission.blocked))
+            values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
             values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")
-            warns = mission.late or mission.lost or mission.status == HOLDING
+            warns = mission.late or mission.lost or mission.blocked or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
         return Report(self.words.get_num_connections() > 0, level, message, values)
 

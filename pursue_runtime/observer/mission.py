@@ -9,8 +9,9 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
+from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_of
 from pursue_runtime.state import HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import FAILED, FINISH, PING, PLANNED, START, STOP, Word, parse_word
+from pursue_runtime.words import BLOCKED, FAILED, FINISH, FREE, PING, PLANNED, START, STOP, Word, parse_word
 from pursue_runtime.zones import EPSILON, INFINITY, due
 
 Log = Callable[[str, str], None]
@@ -56,6 +57,7 @@ class Mission:
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
+        self.blocked: Set[Way] = set()
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
         self._on_uncovered, self._lost_after = on_uncovered, lost_after
@@ -93,7 +95,7 @@ class Mission:
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        return (self.seq, self.status, self.reason, *people, *self._early, *self._planning.revision())
+        return (self.seq, self.status, self.reason, *people, *self.blocked, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
         """Return when to call `on_time` if no input comes before; None: never."""
@@ -125,6 +127,8 @@ class Mission:
             return self._on_plan_receipt(word.agent, word.seq, now)
         elif word.event == FAILED:
             return self._on_failure(word.agent, now)
+        elif word.event in (BLOCKED, FREE):
+            return self._on_way(word, now)
         elif word.seq is not None and self.status == HOLDING:
             self._reject("held", f"{text} while the mission holds", level="info")
         elif word.seq is not None and word.seq != self.seq:
@@ -299,6 +303,7 @@ class Mission:
         `patience`: the time units for which clocks may be outside what the plan covers.
         """
         trouble = self._planning.unexcused(self.lost)
+        trouble = trouble or self._planning.unavoided(self.blocked)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
         self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
         if trouble and self._on_uncovered == "stop":
@@ -335,7 +340,7 @@ class Mission:
         excused = frozenset(self.late | set(self.lost))
         ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan((self.counts["taken"], excused), position, now, excused, ahead)
+        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.blocked)
         return not self._planning.no_plan_reason
 
     def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
@@ -362,6 +367,24 @@ class Mission:
             self._reject("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
         elif agent not in self.lost:
             self._mark_lost(agent, "has failed")
+        return self._status_changes(now)
+
+    def _on_way(self, word: Word, now: float) -> List[SystemState]:
+        """Take a report that a way is blocked, or free again; a robot that reports it on its way cannot go on."""
+        agent = word.agent
+        place = self._automata.location_of(agent)
+        way = way_of(self.model, place or agent)
+        if way is None:
+            expected = "the name of a movement, such as going_a_to_b, or of an agent that moves"
+            self._reject("impossible", f"{agent}:{word.event}: expected {expected}")
+            return []
+        if word.event == FREE:
+            self.blocked.discard(way)
+        else:
+            self.blocked.add(way)
+            if place and agent not in self.lost:
+                self._mark_lost(agent, f"has found that {in_words(way)} is blocked")
+        self._log("warn", blocked_reason(self.blocked) or "no way is blocked any more")
         return self._status_changes(now)
 
     def _mark_lost(self, agent: str, why: str) -> None:

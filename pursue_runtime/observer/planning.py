@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
+from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.model import Position
+from pursue_runtime.observer.ways import Way, blocked_reason, check_avoids
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import StateTable, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
@@ -22,7 +23,7 @@ Cover = StateTable[Tuple[Zone, ...]]
 class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
-    The plan must not rely on the agents in `excused`.
+    The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`.
     """
 
     number: int
@@ -32,6 +33,7 @@ class PlanRequest(NamedTuple):
     stamp: float
     ahead: float
     excused: Tuple[str, ...]
+    blocked: Tuple[Way, ...] = ()
 
 
 class Proposal(NamedTuple):
@@ -45,14 +47,16 @@ class Proposal(NamedTuple):
 class Planning:
     """The steps from one plan to the next: request, proposal, acknowledgement by all controllers, in force.
 
-    `excused`: the agents on which the plan in force does not rely; `no_plan_reason`: why there is no plan from here;
-    `searched`: the seconds of real time that the planner has needed so far, 0 while they are within ~planning_limit.
+    `excused`: the agents on which the plan in force does not rely; `avoided`: the ways along which it sends nobody;
+    `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has needed
+    so far, 0 while they are within ~planning_limit.
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
         self.request: Optional[PlanRequest] = None
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
+        self.avoided: FrozenSet[Way] = frozenset()
         self.no_plan_reason = ""
         self.searched = 0.0
         self.lead_time = MIN_LEAD_TIME
@@ -71,10 +75,21 @@ class Planning:
         """Return which lost agents the plan in force relies on, and why they are lost; "" if there are none."""
         return " and ".join(f"{name} {lost[name]}" for name in sorted(set(lost) - self.excused))
 
+    def unavoided(self, blocked: AbstractSet[Way]) -> str:
+        """Return that blocked ways are such as the plan in force may use; "" if there are none."""
+        return blocked_reason(blocked - self.avoided)
+
     def request_plan(
-        self, place: object, position: Position, stamp: float, excused: FrozenSet[str], ahead: float
+        self,
+        place: object,
+        position: Position,
+        stamp: float,
+        ahead: float,
+        excused: FrozenSet[str],
+        blocked: AbstractSet[Way],
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
+        place = place, excused, frozenset(blocked)
         if place != self._place:
             self.reset()
             self._place = place
@@ -87,7 +102,7 @@ class Planning:
         self._number += 1
         self.searched = 0.0
         what = position.locations, position.values, position.clocks
-        self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)))
+        self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)), tuple(sorted(blocked)))
 
     def reset(self) -> None:
         """Drop the request and the proposal: no other plan is needed."""
@@ -109,6 +124,7 @@ class Planning:
         """Make the planner's answer the proposal; return False if it was not requested. Raises DataError, KeyError."""
         if self.request is None or number != self.request.number:
             return False
+        check_avoids(answer, self.request.blocked)
         data = {"format": 1, "plan": number, **{key: answer[key] for key in ("strategies", "people", "cover")}}
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)
         self.request = None
@@ -132,6 +148,7 @@ class Planning:
     def put_in_force(self, proposal: Proposal) -> None:
         """Note that the proposal is in force."""
         self.excused = frozenset(proposal.request.excused)
+        self.avoided = frozenset(proposal.request.blocked)
         self.reset()
 
     def expire(self, proposal: Proposal, now: float) -> None:

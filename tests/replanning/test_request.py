@@ -61,6 +61,11 @@ BAD = {
     "ahead of nothing": ({**GOOD, "ahead": True}, "ahead is True"),
     "excused strangers": ({**GOOD, "excused": ["bot9"]}, "bot9 is excused"),
     "excused text": ({**GOOD, "excused": "bot1"}, "excused is 'bot1'"),
+    "blocked text": ({**GOOD, "blocked": "c"}, "blocked is 'c'"),
+    "blocked places": ({**GOOD, "blocked": ["c", "b"]}, "blocked is ['c', 'b']"),
+    "a blocked way of three places": ({**GOOD, "blocked": [["a", "c", "b"]]}, "blocked is [['a', 'c', 'b']]"),
+    "a blocked way that is none": ({**GOOD, "blocked": [["a", "b"]]}, "blocked is [['a', 'b']]"),
+    "a blocked way of numbers": ({**GOOD, "blocked": [[{}, 1]]}, "blocked is [[{}, 1]]"),
     "a limit of nothing": ({**GOOD, "limit": 0}, "limit is 0"),
 }
 

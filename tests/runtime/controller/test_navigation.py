@@ -14,7 +14,7 @@ from pursue_runtime.data import DataError
 
 WAY = Movement("going_c_to_b", "b", 3.0, 4.0)
 BACK = Movement("going_b_to_c", "c", 0.0, 0.0)
-END, FAILED = "bot1_going_c_to_b2b", "bot1:_failed_"
+END, FAILED, BLOCKED = "bot1_going_c_to_b2b", "bot1:_failed_", "bot1:_blocked_"
 PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 2, 3, 4, 5, 8, 9
 
 
@@ -182,14 +182,20 @@ def test_after_a_failure_the_goal_is_sent_again_and_may_succeed(results: World, 
     assert results.words == [END]
 
 
-def test_a_robot_that_fails_again_and_again_has_failed(results: World) -> None:
+@pytest.mark.parametrize(
+    ("status", "word"),
+    [(ABORTED, BLOCKED), (REJECTED, FAILED), (PREEMPTED, FAILED), (RECALLED, FAILED), (LOST, FAILED)],
+)
+def test_a_robot_that_fails_again_and_again_has_failed_and_its_way_is_blocked_if_move_base_aborts(
+    results: World, status: int, word: str
+) -> None:
     for attempts in (1, 2, 3):
         assert len(results.goals) == attempts and results.words == []
-        results.result(ABORTED)
+        results.result(status if attempts == 3 else REJECTED)
         results.wait(1.5 if attempts < 3 else 0.0)
-    assert results.words == [FAILED]
+    assert results.words == [word]
     results.wait(10.0)
-    assert len(results.goals) == 3 and set(results.words) == {FAILED} and len(results.words) > 2
+    assert len(results.goals) == 3 and set(results.words) == {word} and len(results.words) > 2
 
 
 def test_a_failure_is_repeated_until_the_robot_counts_as_lost() -> None:
@@ -198,7 +204,7 @@ def test_a_failure_is_repeated_until_the_robot_counts_as_lost() -> None:
     world.result(ABORTED)
     assert world.wait(2.0) == [0.5, 1.5]
     world.state(lost=True)
-    assert world.wait(20.0) == [] and world.words == [FAILED] * 3
+    assert world.wait(20.0) == [] and world.words == [BLOCKED] * 3
 
 
 def test_a_failure_that_is_heard_twice_is_one() -> None:
@@ -349,7 +355,7 @@ def test_a_robot_that_failed_and_is_brought_there_is_there() -> None:
     world.state(lost=True)
     world.at(3.0, 4.0)
     world.wait(0.6)
-    assert world.words == [FAILED, END]
+    assert world.words == [BLOCKED, END]
 
 
 def test_success_elsewhere_is_told_as_a_warning() -> None:
@@ -399,9 +405,9 @@ def test_whatever_comes_it_speaks_of_the_present_way_alone(goals: str, ends: str
         sent += len(world.goals) - before
         assert all(goal.movement == way for goal in world.goals[before:]) and sent <= 3
         assert running or len(world.goals) == before
-        expected = {FAILED, f"bot1_{way.location}2{way.poi}"} if way else set()
+        expected = {FAILED, BLOCKED, f"bot1_{way.location}2{way.poi}"} if way else set()
         assert set(world.words[told:]) <= expected
-        assert ends != "words" or not set(world.words) - {FAILED}
+        assert ends != "words" or not set(world.words) - {FAILED, BLOCKED}
 
 
 # Settings -------------------------------------------------------------------------------------------------------------

@@ -240,6 +240,77 @@ def test_a_lost_robot_that_arrives_is_back() -> None:
     assert state.lost == () and state.status == "running"
 
 
+# Ways -----------------------------------------------------------------------------------------------------------------
+
+
+def test_a_robot_that_finds_its_way_blocked_is_lost_and_the_plan_is_to_avoid_that_way() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    state = made.hear("bot:_blocked_", 3.0)
+    assert (state.status, state.lost) == ("holding", ("bot",))
+    assert state.reason == "bot has found that the way between a and b is blocked; looking for another plan"
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.blocked) == (("bot",), (("a", "b"),))
+    assert made.hear("bot:_blocked_", 3.5) is None
+    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running" and made.mission.blocked == {("a", "b")}
+
+
+def test_anybody_may_report_that_a_way_is_blocked() -> None:
+    made = journey()
+    state = made.hear("going_a_to_b:_blocked_", 1.0)
+    assert (state.status, state.lost) == ("holding", ())
+    assert state.reason == "the way between a and b is blocked; looking for another plan"
+    assert made.mission.plan_request.blocked == (("a", "b"),) and made.mission.plan_request.excused == ()
+    assert planned(made, EVERYWHERE, 1.5)[-1].status == "running"
+    assert made.hear("going_a_to_b:_blocked_", 2.0) is None, "the plan avoids it"
+
+
+def test_a_way_that_is_blocked_while_a_plan_is_looked_for_is_part_of_another_request() -> None:
+    made = uncovered()
+    first = made.mission.plan_request.number
+    made.mission.on_plan(first, answer(EVERYWHERE), 4.2)
+    made.hear("going_a_to_b:_blocked_", 4.3)
+    assert made.mission.proposal is None and made.mission.plan_request.number == first + 1
+    assert made.mission.plan_request.blocked == (("a", "b"),)
+
+
+def test_a_plan_of_a_planner_that_does_not_know_of_blocked_ways_is_not_used() -> None:
+    made = journey()
+    made.hear("going_a_to_b:_blocked_", 1.0)
+    plan = answer(EVERYWHERE)
+    plan["strategies"]["two"] = {"strategy": [{"state": {}, "commands": [{"to": "b"}, {"to": "going_b_to_a"}]}]}
+    (state,) = made.mission.on_plan(made.mission.plan_request.number, plan, 1.5)
+    assert state.status == "stopped" and "it uses the way between a and b, which is blocked" in state.reason
+
+
+@pytest.mark.parametrize("strategies", [[], {"one": []}, {"one": {"strategy": [{}]}}, {"one": {"strategy": 7}}])
+def test_a_plan_whose_commands_cannot_be_read_is_not_used_where_a_way_is_blocked(strategies: Any) -> None:
+    made = journey()
+    made.hear("going_a_to_b:_blocked_", 1.0)
+    number = made.mission.plan_request.number
+    (state,) = made.mission.on_plan(number, {**answer(EVERYWHERE), "strategies": strategies}, 1.5)
+    assert state.status == "stopped" and "cannot be read" in state.reason
+
+
+def test_a_way_that_is_free_again_needs_no_plan() -> None:
+    made = journey()
+    made.hear("going_a_to_b:_blocked_", 1.0)
+    state = made.hear("going_a_to_b:_free_", 1.5)
+    assert (state.status, state.reason, made.mission.plan_request) == ("running", "", None)
+    made.hear("going_a_to_b:_blocked_", 1.6)
+    planned(made, EVERYWHERE, 1.7)
+    revision = made.mission.revision()
+    assert made.hear("going_a_to_b:_free_", 1.8) is None, "a plan that avoids it is still one"
+    assert made.mission.blocked == set() and made.mission.revision() != revision
+
+
+@pytest.mark.parametrize("who", ["bot", "dog", "rule", "nobody", "going_a_to_c", "a"])
+def test_where_nobody_moves_no_way_can_be_blocked(who: str) -> None:
+    made = journey()
+    assert made.hear(f"{who}:_blocked_", 1.0) is None and made.hear(f"{who}:_free_", 1.0) is None
+    assert made.mission.counts["impossible"] == 2 and not made.mission.blocked and not made.mission.lost
+
+
 # Controllers ----------------------------------------------------------------------------------------------------------
 
 

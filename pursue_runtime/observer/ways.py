@@ -1,0 +1,50 @@
+"""Ways of the map in the observer: which way a movement takes, and what is said of ways that are blocked."""
+
+from __future__ import annotations
+
+from typing import Any, Collection, Mapping, Optional, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.locations import is_movement, movement
+from pursue_runtime.model import Model
+
+Way = Tuple[str, str]
+"""The two places that a way connects, in alphabetical order."""
+
+
+def way_of(model: Model, location: str) -> Optional[Way]:
+    """Return the way that the movement at this location takes; None if no agent of the model moves there."""
+    for automaton in model.automata:
+        if is_movement(location) and location in automaton.invariants:
+            ends = {place for edge in automaton.edges for place in (edge.source, edge.target)
+                    if location in (edge.source, edge.target)} - {location}
+            if len(ends) == 2:
+                return min(ends), max(ends)
+    return None
+
+
+def in_words(way: Way) -> str:
+    """Return the way in words, as in "the way between a and b"."""
+    return f"the way between {way[0]} and {way[1]}"
+
+
+def blocked_reason(ways: Collection[Way]) -> str:
+    """Return that these ways are blocked; "" if there are none."""
+    return " and ".join(f"{in_words(way)} is blocked" for way in sorted(ways))
+
+
+def check_avoids(answer: Mapping[str, Any], ways: Collection[Way]) -> None:
+    """Raise DataError if a command of a planner's answer sends somebody along one of the ways, or cannot be read."""
+    for way in ways:
+        movements = {movement(*way), movement(*reversed(way))}
+        try:
+            commands = [
+                command["to"]
+                for data in (*answer["strategies"].values(), answer["people"] or {})
+                for entry in data.get("strategy", ())
+                for command in entry["commands"]
+            ]
+        except (AttributeError, KeyError, TypeError) as problem:
+            raise DataError(f"its strategies lack or misspell something: {problem!r}") from problem
+        if not movements.isdisjoint(commands):
+            raise DataError(f"it uses {in_words(way)}, which is blocked; ~planner has to be of this version")

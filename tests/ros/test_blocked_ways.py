@@ -1,0 +1,86 @@
+"""A way that is blocked, in a mission: the planner finds a plan that avoids it, and robots take the other way."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from launched_mission import ENDED, LaunchedMission, State, launched
+from ros_world import Ros, generated, make
+
+from tests.waiting import PATIENCE
+
+pytestmark = pytest.mark.ros
+
+RING = """
+poi "a"
+poi "b"
+poi "c"
+poi "d"
+connect a and b distance 2
+connect b and c distance 2
+connect c and d distance 3
+connect d and a distance 3
+event "fetch" location c duration 2
+agent "bot1" controllable mobile 2 location a can_do fetch
+agent "bot2" controllable mobile 2 location a can_do fetch
+reach_objective: do fetch after 0
+"""
+"""Two ways lead from a to c: the one by b is shorter."""
+
+ENDS = {
+    **{f"going_{x}_to_{y}": 4 for x, y in ("ab", "ba", "bc", "cb")},
+    **{f"going_{x}_to_{y}": 6 for x, y in ("cd", "dc", "da", "ad")},
+    "doing_fetch_in_c": 2,
+}
+"""The time units after which each movement and action may end."""
+
+BLOCKED = ("going_b_to_c", "going_c_to_b")
+
+PLANNER = f"env PYTHONPATH={Path(__file__).resolve().parents[2]} {sys.executable} -m pursue_gen replan"
+"""The real one, of these sources."""
+
+LATE = 1000
+"""Time units by which robots may be late in their model: the test plays them, and a machine may stand still."""
+
+
+@pytest.fixture(scope="module")
+def ring(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("ring")
+    (folder / "ring.pur").write_text(RING)
+    return make(ros, generated(str(folder / "ring"), folder / "ws", slack={"bot1": LATE, "bot2": LATE}))
+
+
+def drive(run: LaunchedMission, until_location: str = "") -> State:
+    """Robots do what the state shows, each in its window, until one is at this location or the mission is over."""
+    ended = set()
+    deadline = time.monotonic() + 2 * PATIENCE
+    while time.monotonic() < deadline:
+        state = run.now()
+        places = {name: place for name, place in state.get("places", {}).items() if name in ("bot1", "bot2")}
+        if until_location in places.values() or state.status in ENDED:
+            return state
+        for robot, place in places.items():
+            key = robot, place, sum(event.startswith(robot) for event in run.steps())
+            lost = robot in state.get("lost", "").split(",")
+            if place in ENDS and not lost and key not in ended and state["clocks"][f"C{robot}"] > ENDS[place] + 0.2:
+                ended.add(key)
+                run.publish("fetchDONE" if place.startswith("doing") else f"{robot}_{place}2{place[-1]}")
+        time.sleep(0.05)
+    raise AssertionError(f"not over: {run.now()}\n{run.steps()}\n{run.output()[-6000:]}")
+
+
+def test_a_blocked_way_is_avoided_by_the_new_plan(ros: Ros, ring: Path, tmp_path: Path) -> None:
+    with launched(ros, ring, tmp_path, simulate=False, time_unit=0.5, lost_after=LATE, planner=PLANNER) as run:
+        drive(run, "going_a_to_b")
+        run.publish("going_c_to_b:_blocked_")
+        hold = run.until(lambda: next((state for state in run.states() if state.status == "holding"), None))
+        assert hold["reason"] == "the way between b and c is blocked; looking for another plan"
+        run.until(lambda: "plan" in run.now())
+        run.until(lambda: run.values("observer").get("blocked") == "b-c")
+        drive(run)
+        assert run.until_over() == "won", run.output()
+    places = {place for state in run.states() for place in state["places"].values()}
+    assert "going_d_to_c" in places and not places & set(BLOCKED)
