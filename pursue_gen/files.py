@@ -12,9 +12,8 @@ import tempfile
 from pathlib import Path
 from typing import Any, List, Mapping, Tuple
 
-import yaml
-
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_runtime.bounded import BadText, yaml_tree
 
 
 def read_text(file: Path, what: str) -> str:
@@ -68,17 +67,14 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
 def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
     """The text as PyYAML's tree of nodes, None for an empty text; `file` is its name in messages.
 
-    Raises PursueError with this code and hint where the text is not YAML (exit status 2).
+    Raises PursueError with this code and hint where the text is not YAML, or is refused (exit status 2).
     """
     try:
-        return yaml.compose(text, Loader=yaml.SafeLoader)
-    except (yaml.YAMLError, ValueError, RecursionError) as problem:
-        mark = getattr(problem, "problem_mark", None) or getattr(problem, "context_mark", None)
-        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        return yaml_tree(text)
+    except BadText as problem:
+        line, column = max(1, problem.line), max(1, problem.column)
         place = Span(file, line, column, line, column + 1)
-        raise PursueError(
-            [error(code, f"this is not YAML: {_yaml_reason(problem)}", place, hint)], exit_status=2
-        ) from None
+        raise PursueError([error(code, problem.reason, place, hint)], exit_status=2) from None
 
 
 def span_of(node: Any, file: str) -> Span:
@@ -103,9 +99,3 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
-
-
-def _yaml_reason(problem: Exception) -> str:
-    if isinstance(problem, RecursionError):
-        return "it is nested too deeply"
-    return str(getattr(problem, "problem", None) or getattr(problem, "reason", None) or str(problem).split("\n")[0])

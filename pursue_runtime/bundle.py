@@ -26,6 +26,7 @@ from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
 from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.manifest import (
     FORMAT,
     ID_LENGTH,
@@ -193,9 +194,9 @@ def _unzipped(content: bytes) -> Dict[str, bytes]:
 
 def _object(text: bytes, name: str) -> Dict[str, Any]:
     try:
-        facts = json.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise Refused("bad_bundle", f"{name} is not JSON") from problem
+        facts = read_json(text)
+    except BadText as problem:
+        raise Refused("bad_bundle", f"{name}: {problem}") from problem
     if not isinstance(facts, dict):
         raise Refused("bad_bundle", f"{name} is not what it should be")
     return facts

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, NamedTuple
 
-import yaml
-
 from pursue_runtime import __version__
+from pursue_runtime.bounded import DATA, BadText, read_yaml
 
 FORMAT = 1
 """The format of data files that this run time reads."""
@@ -32,7 +31,7 @@ def read_data(path: str) -> Dict[str, Any]:
     """The content of one of the package's YAML files. Raises DataError."""
     try:
         with open(path, "rb") as file:
-            content = file.read()
+            content = file.read(DATA.size + 1)
     except OSError as problem:
         raise DataError(f"cannot read {path}: {problem}") from problem
     return parse_data(content, path)
@@ -41,9 +40,8 @@ def read_data(path: str) -> Dict[str, Any]:
 def parse_data(content: bytes, path: str) -> Dict[str, Any]:
     """What is in a YAML file of ours; `path` says in messages which one it is. Raises DataError."""
     try:
-        # The C loader is many times faster; it is missing where PyYAML was built without libyaml.
-        data = yaml.load(content, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except (ValueError, yaml.YAMLError) as problem:
+        data = read_yaml(content)
+    except BadText as problem:
         raise DataError(f"cannot read {path}: {problem}") from problem
     return check_format(data, path, NEWEST.get(os.path.basename(path), FORMAT))
 

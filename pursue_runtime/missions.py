@@ -9,10 +9,10 @@ that is called like its digest, with the data of each package, and a manifest wi
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 from typing import Any, Dict, Mapping, NamedTuple, Optional
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.data import DataError, Package, data_file, parse_data, read_data
 from pursue_runtime.folders import MISSIONS
 from pursue_runtime.manifest import ID_LENGTH, MISSION, OWN, is_digest
@@ -163,8 +163,8 @@ def _bytes(path: str) -> bytes:
 def _facts(path: str) -> Dict[str, Any]:
     """The content of one of the store's JSON files. Raises DataError."""
     try:
-        facts = json.loads(_bytes(path))
-    except (ValueError, RecursionError) as problem:
+        facts = read_json(_bytes(path))
+    except BadText as problem:
         raise DataError(f"{path} cannot be read: {problem}") from problem
     if not isinstance(facts, dict) or facts.get("format") != 1:
         raise DataError(f"{path} is not a file of format 1")

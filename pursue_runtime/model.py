@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import whole
 from pursue_runtime.data import DataError
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
@@ -173,4 +174,4 @@ def _bounds(texts: Any) -> Zone:
 
 def _test(text: str) -> Tuple[str, int]:
     name, _, value = text.partition("=")
-    return name.strip(), int(value)
+    return name.strip(), whole(value.strip())

@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from typing import Dict, Iterable, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import whole
+
 WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
@@ -97,8 +99,8 @@ def parse_state(text: str) -> Optional[SystemState]:
     head, _, reason = head.partition(" reason=")
     facts = dict(part.split("=", 1) for part in head.split() if "=" in part)
     try:
-        seq, stamp, unit = int(facts["seq"]), _finite(facts["stamp"]), _finite(facts.get("unit", "1"))
-        plan = int(facts.get("plan", "0"))
+        seq, stamp, unit = whole(facts["seq"]), _finite(facts["stamp"]), _finite(facts.get("unit", "1"))
+        plan = whole(facts.get("plan", "0"))
     except (KeyError, ValueError):
         return None
     if unit <= 0.0 or seq < 0:

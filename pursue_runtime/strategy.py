@@ -5,10 +5,9 @@ Clocks, bounds and delays are in time units, stamps in seconds of ROS time.
 
 from __future__ import annotations
 
-import json
-from fractions import Fraction
 from typing import Any, Dict, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
 
+from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
 from pursue_runtime.state import SystemState
 from pursue_runtime.zones import EPSILON, Zone, due, parse_zone
@@ -52,7 +51,7 @@ def read_cover(data: Mapping[str, Any]) -> StateTable[Tuple[Zone, ...]]:
     """For each state the zones in which the strategy knows what to do, from cover.yaml. Raises DataError."""
     try:
         return StateTable((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
-    except (KeyError, TypeError, ValueError) as problem:
+    except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise DataError(f"cover.yaml lacks or misspells something: {problem!r}") from problem
 
 
@@ -62,7 +61,7 @@ class Strategy:
     def __init__(self, data: Mapping[str, Any]) -> None:
         try:
             self.agents: List[str] = list(data["commands_agents"])
-            self.reaction = float(Fraction(str(data["reaction"])))
+            self.reaction = float(exact(data["reaction"]))
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
             self._table = StateTable(entries)
             self._instant = {
@@ -71,7 +70,7 @@ class Strategy:
                 for command in commands
                 if command.origin == command.target
             }
-        except (KeyError, TypeError, ValueError) as problem:
+        except (KeyError, TypeError, ValueError, AttributeError) as problem:
             raise DataError(f"strategy.yaml lacks or misspells something: {problem!r}") from problem
 
     def commands(self, state: SystemState) -> List[Command]:
@@ -139,8 +138,8 @@ def _command(data: Mapping[str, Any]) -> Command:
 def parse_plan(text: str) -> Dict[str, Any]:
     """The data of a plan on pursue/plan. Raises DataError."""
     try:
-        plan = json.loads(text)
-    except ValueError as problem:
+        plan = read_json(text)
+    except BadText as problem:
         raise DataError(f"not a plan: {problem}") from problem
     data = check_format(plan, "the new plan")
     if not isinstance(data.get("plan"), int):

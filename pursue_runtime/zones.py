@@ -9,6 +9,7 @@ import re
 from fractions import Fraction
 from typing import Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import quoted
 from pursue_runtime.data import DataError
 
 INFINITY = float("inf")
@@ -35,7 +36,7 @@ class Constraint(NamedTuple):
 Zone = Tuple[Constraint, ...]
 
 
-_NUMBER = r"-?\d+(?:\.\d+)?(?:/\d+)?"
+_NUMBER = r"-?\d{1,18}(?:\.\d{1,18}|/0{0,17}[1-9]\d{0,17})?"
 _SIDE = r"[A-Za-z_]\w*(?:\s*-\s*[A-Za-z_]\w*)?|" + _NUMBER
 _COMPARISON = re.compile(rf"\s*({_SIDE})\s*(<=|<|>=|>|==)\s*({_SIDE})\s*", re.ASCII)
 
@@ -48,11 +49,11 @@ def parse_zone(text: str) -> Zone:
     for part in text.split("&&"):
         match = _COMPARISON.fullmatch(part)
         if match is None:
-            raise DataError(f"not a comparison of clocks: {part.strip()!r} in {text!r}")
+            raise DataError(f"not a comparison of clocks: {quoted(part.strip())} in {quoted(text)}")
         first, operator, second = match.groups()
         (left, less, low), (right, minus, high) = _side(first), _side(second)
         if (left and right and (less or minus)) or not (left or right):
-            raise DataError(f"too many clocks, or none: {part.strip()!r}")
+            raise DataError(f"too many clocks, or none: {quoted(part.strip())}")
         # left - less + low OP right - minus + high; what is subtracted on one side is added on the other
         plus, minus, bound = left or minus, less or right, high - low
         if operator in ("<", "<=", "=="):

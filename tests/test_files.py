@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,7 +19,8 @@ def test_any_text_is_a_tree_or_an_error_with_a_place_in_it(text: str) -> None:
     except PursueError as problem:
         (found,) = problem.diagnostics
         assert problem.exit_status == 2 and found.code == "TRN011" and found.hint == "write it so"
-        assert found.message.startswith("this is not YAML: ") and len(found.message) > 20
+        refused = r"this is not YAML: ..|(?:anchors|tags) .*are not read|more than|expected one document"
+        assert re.match(refused, found.message)
         assert found.span is not None and 1 <= found.span.line <= len(text.splitlines()) + 1
         return
     span = span_of(root, "some.yaml")
@@ -34,5 +37,5 @@ def test_nodes_know_their_places() -> None:
 
 @pytest.mark.parametrize("text", ["[" * 5000, "{" * 5000])
 def test_brackets_without_end_are_an_error(text: str) -> None:
-    with pytest.raises(PursueError, match="this is not YAML"):
+    with pytest.raises(PursueError, match="more than 16 levels are nested"):
         compose_yaml(text, "some.yaml", "TRN011", "")

@@ -10,6 +10,7 @@ import threading
 
 from pursue_gen.cli.console import BROKEN_PIPE, guarded
 from pursue_gen.diagnostics import usage_error
+from pursue_runtime.bounded import DATA, BadText, read_json
 
 
 @guarded
@@ -24,10 +25,10 @@ def replan() -> None:
 
     threading.Thread(target=_end_with_reader, daemon=True).start()
     try:
-        request = json.loads(sys.stdin.buffer.read().decode("utf-8"))
-    except (ValueError, RecursionError) as problem:
+        request = read_json(sys.stdin.buffer.read(DATA.size + 1))
+    except BadText as problem:
         hint = "see docs/run_time.md, 'game.yaml, and what a planner is asked'"
-        raise usage_error(f"the request is not JSON: {problem}", hint) from None
+        raise usage_error(f"the request cannot be read: {problem}", hint) from None
     print(json.dumps(answer(request)))
 
 

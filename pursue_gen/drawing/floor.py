@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
-import yaml
-
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import read_text
+from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _LARGEST = 64_000_000
@@ -71,11 +70,9 @@ def read_floor(file: Path) -> Floor:
 def _yaml(file: Path) -> Dict[str, Any]:
     text = read_text(file, "a map of map_server, such as map.yaml")
     try:
-        data = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as problem:
-        mark = getattr(problem, "problem_mark", None)
-        place = f" (line {mark.line + 1})" if mark else ""
-        raise _bad(file, f"it is not YAML{place}", "lines such as resolution: 0.05") from None
+        data = read_yaml(text, SETTINGS)
+    except BadText as problem:
+        raise _bad(file, str(problem), "lines such as resolution: 0.05") from None
     if not isinstance(data, dict):
         raise _bad(file, "it holds no settings", "the lines image:, resolution: and origin:")
     return data

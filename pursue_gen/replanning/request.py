@@ -12,6 +12,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
+from pursue_runtime.bounded import exact
 
 _LONGEST = 1e9
 """The largest value of a clock, in time units."""
@@ -109,10 +110,10 @@ def _rules(data: Mapping[str, Any]) -> Rules:
             raise wrong(f"the slack of {agent} is {_shown(late)}", "a whole number of time units")
     given = _of(data, "reaction", "rules")
     try:
-        reaction = Fraction(str(given))
-    except (ValueError, ZeroDivisionError):
+        reaction = exact(given)
+    except ValueError:
         reaction = Fraction(-1)
-    if isinstance(given, bool) or not 0 <= reaction <= 1000 or reaction.denominator > 1000:
+    if not 0 <= reaction <= 1000 or reaction.denominator > 1000:
         raise wrong(f"reaction is {_shown(given)}", "a number of time units from 0 to 1000, such as 0.1 or 1/20")
     return Rules(ends, reaction, dict(slack))
 

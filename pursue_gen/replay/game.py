@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, Mapping, Optional, Tuple
-
-import yaml
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import read_text
@@ -25,6 +20,7 @@ from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from pursue_runtime.bounded import BadText, exact, read_yaml, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
 NAME_IT = "name the scenario: pursue-gen replay FILE SCENARIO"
@@ -62,11 +58,11 @@ def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]
     """The source that game.yaml describes. Raises PursueError (exit status 2)."""
     try:
         rules = data["rules"]
-        slack = {str(agent): int(units) for agent, units in dict(rules.get("slack") or {}).items()}
-        told = Rules(str(rules["ends"]), Fraction(str(rules["reaction"])), slack)
+        slack = {str(agent): whole(str(units)) for agent, units in dict(rules.get("slack") or {}).items()}
+        told = Rules(str(rules["ends"]), exact(rules["reaction"]), slack)
         name, text = str(data["name"]), str(data["scenario"])
         shape = str(data.get("controllers", DISTRIBUTED)), str(data.get("reach_obj", DEDICATED))
-    except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
+    except (KeyError, TypeError, ValueError, AttributeError) as problem:
         message = f"{file} does not describe a game: {problem!r}"
         raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
     return Source(name, text, file, told, *shape, plan)
@@ -86,12 +82,10 @@ def from_workspace(folder: Path) -> Source:
 
 def read_game(text: str, file: str) -> Mapping[str, Any]:
     """The data in a game.yaml. Raises PursueError (exit status 2)."""
-    data: Any = None
-    with contextlib.suppress(ValueError, RecursionError):  # JSON is YAML, and its reader is many times faster
-        data = json.loads(text)
-    if data is None:
-        with contextlib.suppress(yaml.YAMLError, RecursionError):
-            data = yaml.safe_load(text)
+    try:
+        data = read_yaml(text)
+    except BadText as problem:
+        raise PursueError([error("RPL005", f"{file} does not describe a game: {problem}", hint=NAME_IT)], 2) from None
     if not isinstance(data, dict):
         raise PursueError([error("RPL005", f"{file} does not describe a game", hint=NAME_IT)], 2)
     return data

@@ -5,13 +5,13 @@ A journal holds no states: `worked_out` walks the scenario's automata by its wor
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_gen.tga.network import Objective
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
@@ -81,8 +81,8 @@ def _unit(head: Mapping[str, Any]) -> Optional[float]:
 
 def _object(line: str) -> Optional[Dict[str, Any]]:
     try:
-        data = json.loads(line)
-    except (ValueError, RecursionError):
+        data = read_json(line)
+    except BadText:
         return None
     return data if isinstance(data, dict) else None
 

@@ -11,6 +11,7 @@ from pursue_gen.replay.moves import DiscreteState
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.words import event_word
+from pursue_runtime.bounded import exact
 
 EPSILON = 1e-6
 Payload = TypeVar("Payload")
@@ -74,7 +75,7 @@ def of_plan(data: Mapping[str, Any]) -> Orders:
     try:
         strategies = {**data["strategies"], **({"UI": data["people"]} if data.get("people") else {})}
         owners = _owners((name, part["commands_agents"]) for name, part in strategies.items())
-        reaction = max((Fraction(str(part["reaction"])) for part in strategies.values()), default=Fraction(1, 10))
+        reaction = max((exact(part["reaction"]) for part in strategies.values()), default=Fraction(1, 10))
         orders = Orders(owners=owners, reaction=float(reaction))
         for part in strategies.values():
             for entry in part["strategy"]:
@@ -83,7 +84,7 @@ def of_plan(data: Mapping[str, Any]) -> Orders:
                     orders.commands.add(entry["state"], Command(str(command["agent"]), str(command["do"]), zones))
         for entry in data["cover"]["cover"]:
             orders.cover.add(entry["state"], tuple(read_zone(zone) for zone in entry["zones"]))
-    except (KeyError, TypeError, AttributeError, ZeroDivisionError) as problem:
+    except (KeyError, TypeError, AttributeError) as problem:
         raise ValueError(f"it lacks or misspells something: {problem!r}") from None
     return orders
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import struct
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -11,6 +10,7 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.replay.journal import Journal, read_journal
 from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.state import SystemState, parse_state
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
@@ -106,8 +106,8 @@ def _position(data: bytes) -> Optional[Tuple[float, float, float]]:
 
 def _json(text: str) -> Optional[Mapping[str, Any]]:
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
+        data = read_json(text)
+    except BadText:
         return None
     return data if isinstance(data, dict) else None
 

@@ -16,6 +16,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Listener
 from pursue_gen.tga.network import Network, Objective, is_end
+from pursue_runtime.bounded import DIGITS, exact
 
 _GENERAL = "general"
 
@@ -80,8 +81,8 @@ def solution_of(
 def _reaction(text: str) -> Fraction:
     hint = "a number of time units from 0 on, such as 0.1, 1/20 or 0"
     try:
-        value = Fraction(text)
-    except (ValueError, ZeroDivisionError):
+        value = exact(text)
+    except ValueError:
         raise usage_error(f"the reaction is '{text}'", hint) from None
     if value < 0 or value > 1000 or value.denominator > 1000:
         raise usage_error(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
@@ -93,7 +94,7 @@ def _slack(network: Network, texts: Sequence[str]) -> Dict[str, int]:
     slack: Dict[str, int] = {}
     for text in texts:
         agent, named, number = text.rpartition("=")
-        if not (number.isascii() and number.isdigit()) or (named and not agent):
+        if not (number.isascii() and number.isdigit() and len(number) <= DIGITS) or (named and not agent):
             raise usage_error(f"the slack is '{text}'", "a number of time units such as 2, or for one agent bot1=2")
         controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
         slack.update((name, int(number)) for name in ([agent] if named else controlled))

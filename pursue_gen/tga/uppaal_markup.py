@@ -15,6 +15,8 @@ from pursue_gen.diagnostics import PursueError, Span, error
 
 _LETTERS, _ELEMENTS, _DEPTH = 10_000_000, 100_000, 20
 """How much a text may hold. Networks of a hundred automata stay far below; UPPAAL's own files are 6 elements deep."""
+_MESSAGE = 300
+"""Letters of a message."""
 _EXPECTED = "an UPPAAL network (<nta>…</nta>) was expected"
 _ESCAPES = "in texts and attributes & is written &amp; and < is written &lt;"
 
@@ -45,7 +47,12 @@ class Element:
 
     def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
         """Raises a PursueError at this element."""
-        raise PursueError([error(code, message, self.span, hint)])
+        raise PursueError([error(code, shortened(message), self.span, hint)])
+
+
+def shortened(message: str) -> str:
+    """The message, cut where it repeats a long text."""
+    return message if len(message) <= _MESSAGE else message[: _MESSAGE - 1] + "…"
 
 
 def read_markup(text: str, file: str) -> Element:

@@ -24,7 +24,7 @@ from pursue_gen.tga.uppaal_labels import (
     parse_update,
     tokens,
 )
-from pursue_gen.tga.uppaal_markup import Element, read_markup
+from pursue_gen.tga.uppaal_markup import Element, read_markup, shortened
 
 T = TypeVar("T")
 Raw = TypeVar("Raw")
@@ -77,7 +77,7 @@ def read_query(text: str, file: str) -> Objective:
     lines = text.rstrip().split("\n")
     span = Span(file, 1, 1, len(lines), len(lines[-1]) + 1)
     shown = lines[0].strip() if lines[0].strip() else "an empty file"
-    raise PursueError([error("TGA005", f"'{shown}' is not a query that this tool can play", span, hint)])
+    raise PursueError([error("TGA005", shortened(f"'{shown}' is not a query that this tool can play"), span, hint)])
 
 
 def _uncommented(text: str, instead: str = " ") -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import http.client
-import json
 import socket
 import ssl
 import threading
@@ -16,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Tuple
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.manifest import OWN, is_digest
 
 PORT = 13000
@@ -229,8 +229,8 @@ def _object(code: int, content: bytes) -> Mapping[str, Any]:
     if len(content) > ANSWER_LIMIT:
         raise Unreached(f"its answer has more than {ANSWER_LIMIT} bytes", True)
     try:
-        facts = json.loads(content)
-    except (ValueError, RecursionError):
+        facts = read_json(content)
+    except BadText:
         facts = None
     if not isinstance(facts, dict):
         raise Unreached(f"answers with status {code}, and not as a robot does", True)

@@ -21,6 +21,7 @@ from pathlib import Path, PurePosixPath
 from typing import Dict, Iterator, List, Mapping
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_runtime.bounded import read_json
 
 MANIFEST = ".pursue_gen.json"
 _STAGE = ".pursue_gen.new"
@@ -58,7 +59,7 @@ def _digest(content: bytes) -> str:
 def _known(folder: Path) -> Dict[str, str]:
     """path → digest of what was generated here before; empty where there is no manifest that can be read."""
     try:
-        files = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"]
+        files = read_json((folder / MANIFEST).read_bytes())["files"]
         return {path: digest for path, digest in files.items() if _inside(path) and isinstance(digest, str)}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}

@@ -13,6 +13,7 @@ import re
 import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import DATA, BadText, read_json
 from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
 from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.trusted_keys import KeyFolder
@@ -73,8 +74,8 @@ def is_loopback(host: str) -> bool:
 def parse_status(text: str) -> Optional[Dict[str, Any]]:
     """The reader's status from its topic; None for anything else that somebody publishes there."""
     try:
-        status = json.loads(text) if len(text) <= STATUS_LENGTH else None
-    except (ValueError, RecursionError):
+        status = read_json(text, DATA._replace(size=STATUS_LENGTH))
+    except BadText:
         return None
     if not isinstance(status, dict) or status.get("format") != 1:
         return None

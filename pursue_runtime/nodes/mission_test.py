@@ -6,7 +6,6 @@ node reports that it is ready and the observer is connected, so that no message 
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import threading
@@ -20,6 +19,7 @@ from geometry_msgs.msg import PoseStamped
 from pursue_msgs.msg import SystemState
 from std_msgs.msg import String
 
+from pursue_runtime.bounded import read_json
 from pursue_runtime.data import Package
 
 CONNECTED = 60.0  # seconds of the wall clock for all nodes to come up
@@ -138,8 +138,8 @@ class MissionTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        with open(os.path.join(cls.folder, "expected.json")) as data:
-            cls.expected = json.load(data)
+        with open(os.path.join(cls.folder, "expected.json"), "rb") as file:
+            cls.expected = read_json(file.read())
         rospy.init_node("mission_test")
         cls.record = Record(cls.expected["robots"])
         cls.events = rospy.Publisher("pursue/events", String, queue_size=10)

@@ -12,6 +12,7 @@ import threading
 import time
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.observer.planning import PlanRequest
 
 PlannerAnswer = Tuple[int, Optional[Dict[str, Any]], str]
@@ -115,8 +116,9 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 def _read(output: bytes, errors: bytes, status: int) -> Tuple[Optional[Dict[str, Any]], str]:
     try:
-        answer = json.loads(output)
+        answer = read_json(output)
         return (answer, "") if answer["won"] else (None, str(answer["why"]))
-    except (ValueError, KeyError, TypeError):
+    except (BadText, KeyError, TypeError) as problem:
         lines = errors.decode(errors="replace").strip().splitlines()
-        return None, f"the planner failed (status {status})" + (f": {lines[-1]}" if lines else "")
+        why = lines[-1] if lines else f"its answer cannot be used: {problem}" if output else ""
+        return None, f"the planner failed (status {status})" + (f": {why}" if why else "")

@@ -8,10 +8,10 @@ from __future__ import annotations
 import base64
 import binascii
 import hashlib
-import json
 import os
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import DATA, BadText, read_json
 from pursue_runtime.bundle import (
     ABORT,
     COMMIT,
@@ -192,8 +192,8 @@ class Reader:
         if text.count("{") > 1 or text.count(",") > 1 or "[" in text:  # nothing that would grow when it is read
             raise Refused("bad_order", "not a message for this robot")
         try:
-            message = json.loads(text)
-        except (ValueError, RecursionError) as problem:
+            message = read_json(text, DATA._replace(size=len(text)))
+        except BadText as problem:
             raise Refused("bad_order", "not a message for this robot") from problem
         if not (isinstance(message, dict) and isinstance(message.get("order"), str)):
             raise Refused("bad_order", "there is no order in the message")

@@ -17,6 +17,7 @@ import shutil
 import zipfile
 from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, is_digest, mission_file, mission_id
 
 STATE = "state.json"
@@ -67,13 +68,13 @@ def read_state(folder: str) -> Optional[StoreState]:
     """The state on the disk, None where there is none yet. Raises StoreError where it cannot be used."""
     path = os.path.join(folder, STATE)
     try:
-        facts = json.loads(_read(path))
+        facts = read_json(_read(path))
     except FileNotFoundError:
         return None
     except OSError as problem:
         raise StoreError(f"cannot read {path}: {problem.strerror}") from problem
-    except (ValueError, RecursionError) as problem:
-        raise StoreError(f"{path} is damaged") from problem
+    except BadText as problem:
+        raise StoreError(f"{path} is damaged: {problem}") from problem
     state = _state(facts)
     if state is None:
         raise StoreError(f"{path} is damaged, or of another version")
@@ -114,9 +115,9 @@ def manifest(folder: str, digest: str) -> Dict[str, Any]:
     if hashlib.sha256(text).hexdigest() != digest:
         raise StoreError(f"the {MANIFEST} of mission {mission_id(digest)} is damaged")
     try:
-        facts: Dict[str, Any] = json.loads(text)
+        facts: Dict[str, Any] = read_json(text)
         good = facts["format"] == 1 and all(type(one) is str for one in [facts["scenario"], *facts["files"].values()])
-    except (ValueError, RecursionError, LookupError, TypeError, AttributeError):
+    except (ValueError, LookupError, TypeError, AttributeError):
         good = False
     if not good:
         raise StoreError(f"mission {mission_id(digest)} is of another version")

@@ -5,9 +5,9 @@ Moments are time units since the start of the mission.
 
 from __future__ import annotations
 
-import json
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
@@ -34,8 +34,8 @@ class PageRequest(NamedTuple):
 def read_request(text: Any) -> PageRequest:
     """Reads a message of the page. Raises ValueError with what was expected."""
     try:
-        data = json.loads(text)
-    except (TypeError, ValueError, RecursionError) as problem:
+        data = read_json(text)
+    except (TypeError, BadText) as problem:
         raise ValueError(f"not JSON; {_expected()}") from problem
     known = isinstance(data, dict) and isinstance(data.get("do"), str) and data["do"] in REQUESTS
     word = data.get("word", "") if known else None

@@ -15,6 +15,8 @@ from typing import Any, Collection, List, Tuple
 
 import yaml
 
+from pursue_runtime.bounded import BadText, node_value, yaml_tree
+
 EXPECTED = "expected `- {at: <time units since the start>, do: <word>}`"
 CONTROL_WORDS = ("_ping_", "_stop_", "Finish!")
 
@@ -37,23 +39,20 @@ def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[TraceStep,
     Raises TraceError, with every fault of the file in it.
     """
     try:
-        loader = yaml.SafeLoader(text)
-        root = loader.get_single_node()
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark else 1
-        raise TraceError(f"{file}:{line}: not YAML: {getattr(error, 'problem', error)}; {EXPECTED}") from error
+        root = yaml_tree(text)
+    except BadText as error:
+        raise TraceError(f"{file}:{error.line or 1}: {error.reason}; {EXPECTED}") from error
     if not isinstance(root, yaml.SequenceNode):
         raise TraceError(f"{file}:1: a trace is a list of steps: {EXPECTED}")
     steps: List[TraceStep] = []
     faults: List[str] = []
     for number, node in enumerate(root.value, start=1):
         try:
-            step = _step(loader.construct_object(node, deep=True), words)
+            step = _step(node_value(node), words)
             if steps and step.at < steps[-1].at:
                 raise TraceError(f"at {step.at:g} comes after at {steps[-1].at:g}; expected the steps in order of time")
             steps.append(step)
-        except (ValueError, yaml.YAMLError) as error:
+        except ValueError as error:
             faults.append(f"{file}:{node.start_mark.line + 1}: step {number}: {error}")
     if faults:
         raise TraceError("\n".join(faults))

@@ -315,7 +315,7 @@ def test_computed_poses_are_not_taken_for_measured_ones() -> None:
         ("b: [1, 2.5, 0, 0, 0, 1, 0]", "b: [1, 2.5, 0, 0, 0, 0, 0]", "5:18", "length 0.00"),
         ("b: [1, 2.5, 0, 0, 0, 1, 0]", "b: [1, 2.5, 0, 0, 0, 1, 1]", "5:18", "length 1.41"),
         ("b: [1,", "b: [1\n  ,,", "6:4", "not YAML"),
-        ("b: [1,", "b: &x [*x,", "5:6", "expected a number"),
+        ("b: [1,", "b: &x [*x,", "5:6", "anchors"),
         ("  b: [1,", '  "a": [1,', "5:3", "twice"),
         ("format: 1", "format: 3", "1:9", "format"),
         (POSES, POSES + "robots: {bot3: {b: [1, 2, 0, 0, 0, 0, 1]}}\n", "7:10", "no robot 'bot3'"),
@@ -328,7 +328,7 @@ def test_computed_poses_are_not_taken_for_measured_ones() -> None:
         (POSES, "", "1:1", "no poses"),
         (POSES, "- a\n", "1:1", "format: 1 and poses:"),
         (POSES, "poses: [a]\n", "1:8", "a line for each point"),
-        (POSES, "{" * 900, "1:1", "not YAML"),
+        (POSES, "{" * 900, "1:17", "more than 16 levels are nested"),
         (POSES, "poses: \x00\n", "1:1", "not YAML"),
     ],
 )

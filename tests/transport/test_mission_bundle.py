@@ -259,7 +259,7 @@ def test_a_name_with_a_nul_is_refused() -> None:
 @pytest.mark.parametrize(
     ("changes", "code"),
     [
-        ({"format": 2}, "bad_version"), ({"format": None}, "bad_version"), ({"format": 10**400}, "bad_version"),
+        ({"format": 2}, "bad_version"), ({"format": None}, "bad_version"), ({"format": 10**400}, "bad_bundle"),
         ({"scenario": "../x"}, "bad_bundle"), ({"scenario": 7}, "bad_bundle"), ({"scenario": ""}, "bad_bundle"),
         ({"generator": 1}, "bad_bundle"), ({"generator": "1\x1b[31m"}, "bad_bundle"),
         ({"generator": ""}, "bad_bundle"),
