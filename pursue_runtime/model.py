@@ -35,10 +35,11 @@ class Automaton(NamedTuple):
     initial: str
     invariants: Dict[str, Zone]
     edges: Tuple[Edge, ...]
+    by_source: Dict[str, Tuple[Edge, ...]]
 
-    def edges_from(self, location: str) -> Iterator[Edge]:
+    def edges_from(self, location: str) -> Tuple[Edge, ...]:
         """Its edges there, in order."""
-        return (edge for edge in self.edges if edge.source == location)
+        return self.by_source.get(location, ())
 
 
 class Move(NamedTuple):
@@ -150,7 +151,8 @@ def _automaton(data: Mapping[str, Any]) -> Automaton:
     unknown = {place for edge in edges for place in (edge.source, edge.target)} - set(invariants)
     if unknown or data["initial"] not in invariants:
         raise ValueError(f"{data['name']}: unknown location among {sorted(unknown) or data['initial']}")
-    return Automaton(str(data["name"]), str(data["kind"]), str(data["initial"]), invariants, edges)
+    by_source = {location: tuple(edge for edge in edges if edge.source == location) for location in invariants}
+    return Automaton(str(data["name"]), str(data["kind"]), str(data["initial"]), invariants, edges, by_source)
 
 
 def _edge(data: Mapping[str, Any]) -> Edge:

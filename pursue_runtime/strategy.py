@@ -27,10 +27,11 @@ class StateTable(Generic[Payload]):
 
     def find(self, state: SystemState) -> List[Payload]:
         """What was entered for this state, in order of entry."""
-        everything = state.discrete()
+        locations, values = state.locations, state.values
         found: List[Payload] = []
         for names, table in self._tables.items():
-            found += table.get(tuple(everything.get(name, "") for name in names), [])
+            parts = [locations[name] if name in locations else str(values.get(name, "")) for name in names]
+            found += table.get(tuple(parts), [])
         return found
 
     def __len__(self) -> int:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class OpponentKind(str, Enum):
-    """What the agents do that nobody controls."""
+    """What uncontrollable agents do."""
 
     RANDOM = "random"
     WORST = "worst"
@@ -31,7 +31,7 @@ class OpponentKind(str, Enum):
 
 
 OPPONENT = typer.Option(
-    OpponentKind.MIXED, help="What the agents do that nobody controls; mixed: one of the others in each mission."
+    OpponentKind.MIXED, help="What uncontrollable agents do; mixed: one of the others in each mission."
 )
 
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan instead of solving.")

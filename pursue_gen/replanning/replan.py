@@ -10,6 +10,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
+from pursue_gen.proof.checker import LIMIT
 from pursue_gen.replanning.request import Request, read_request
 from pursue_gen.replanning.start import network_from, passed_bounds
 from pursue_gen.solving.options import SolveOptions
@@ -25,15 +26,17 @@ _AT_A_LIMIT = 5
 """The exit status of errors at a limit."""
 
 
-def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
+def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     """The answer to a request, both as JSON holds them (see docs/run_time.md).
 
+    `states`: limits the work to so many discrete states for the solver and as many symbolic ones for each look of the
+    checker, in the place of time and memory, so that the answer does not depend on the machine; 0: it may depend.
     Every plan in an answer has been proven by the checker. Raises PursueError (exit status 2) for a request that cannot
     be used.
     """
     start = time.monotonic()
     request = read_request(data)
-    limits = Limits(request.seconds, careful_memory()).since(start)
+    limits = Limits(states=states) if states else Limits(request.seconds, careful_memory()).since(start)
     ideal, objective = translate(request.scenario), scenario_objective(request.scenario)
     try:
         game = played(ideal, request.rules)
@@ -49,7 +52,9 @@ def replan(data: Mapping[str, Any]) -> Dict[str, Any]:
         if verdict.strategy is None:
             return _lost(_cannot_be_met(game, request))
         left = SolveOptions(limits.since(start))
-        strategy = prove(network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left)
+        strategy = prove(
+            network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT
+        )
     except PursueError as problem:
         if problem.exit_status != _AT_A_LIMIT:
             return _lost(f"the plan that was found is not proven: {problem}")
@@ -66,6 +71,8 @@ def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, An
 
 def _at_limit(limits: Limits) -> str:
     """Which limit has ended the search."""
+    if limits.states:
+        return f"within {limits.states} states"
     if 0 < limits.seconds <= limits.spent:
         return f"within {limits.seconds:g} s"
     return f"with {limits.memory} MiB of memory, which is what the planner may use on this machine"

@@ -22,14 +22,14 @@ FAULTS: Mapping[str, str] = {
     "cut": "the machine of a controller and its robot is cut off for 1 to 60 s; what was sent comes later",
     "early": "one movement or action in 5 ends before the model's window, by up to half of its least duration",
     "late": "one movement or action in 5 ends 0.2 to 15 time units after the model's window",
-    "failed": "a robot says in the midst of something that it cannot do it; half of them do it 1 to 40 later",
-    "silent": "a robot is never heard of again, from the midst of something on",
+    "failed": "a robot reports during a movement or action that it cannot finish it; half finish it 1 to 40 later",
+    "silent": "a robot reports nothing more, from some time during a movement or action on",
     "junk": "up to ten words on pursue/events that mean nothing, are impossible, or are commands for earlier states",
 }
 """Every kind of fault, and its parameters."""
 
 HARMLESS = ("duplicates", "junk")
-"""What makes nobody late: missions in which nothing else goes wrong are won as if nothing did."""
+"""Faults that delay no agent: missions in which nothing else goes wrong are won as if nothing did."""
 
 
 def read_faults(text: str) -> Tuple[str, ...]:
@@ -58,7 +58,7 @@ class Crash:
 @dataclass(frozen=True)
 class Breakdown:
     """The robot's `number`-th activity goes wrong after `share` of its least duration; `back`: it ends so much later
-    than that (time units), None: never. `says`: it tells."""
+    than that (time units), None: never. `reported`: it reports the failure."""
 
     robot: str
     number: int
@@ -153,6 +153,6 @@ class FaultPlan:
         if not kinds or not robots:
             return None
         draw = self._draw
-        says = draw.choice(kinds) == "failed"
-        back = draw.uniform(1.0, 40.0) if says and draw.random() < 0.5 else None
-        return Breakdown(draw.choice(list(robots)), draw.randint(1, 3), draw.random(), says, back)
+        reported = draw.choice(kinds) == "failed"
+        back = draw.uniform(1.0, 40.0) if reported and draw.random() < 0.5 else None
+        return Breakdown(draw.choice(list(robots)), draw.randint(1, 3), draw.random(), reported, back)

@@ -1,9 +1,9 @@
-"""Who watches the mission: by the network and the strategy as the solver had them, not by the run time.
+"""The independent judge of a mission: by the network and the strategy as the solver had them, not by the run time.
 
 Each state that the observer publishes must follow from the one before by one joint move of the network, at clocks that
 allow it; what is not so may be a report that a fault has put off the model, but never a command. A command must be
 held by the strategy in force in the state before, and have been due there since the state began (without faults: no
-longer ago than the reaction). A robot is told only what is such a command, and only while it is still to be done.
+longer ago than the reaction). A robot gets only such commands as orders, and only while they are still to be done.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class TakenStep(NamedTuple):
 
 
 class Judge:
-    """Watches one mission. `problems`: what must never be; `off_model`: how often the world left the model."""
+    """Checks one mission. `problems`: what must never be; `off_model`: how often the world left the model."""
 
     def __init__(self, arena: Arena, commands: Commands, bad: Optional[Tuple[str, str]], reaction: float,
                  faults: bool = False, offset: float = 0.0) -> None:
@@ -48,7 +48,7 @@ class Judge:
         self._ordered: Set[Tuple[str, int]] = set()
 
     def on_plan(self, number: int, strategies: Mapping[str, Any], people: Optional[Mapping[str, Any]]) -> None:
-        """A new plan has been announced under this number."""
+        """A new plan has been published under this number."""
         parts = [*strategies.values(), *([people] if people else [])]
         self._plans[number] = commands_in(parts)
 
@@ -112,7 +112,7 @@ class Judge:
         self.off_model += 1
 
     def _is_deadline(self, move: JointMove) -> bool:
-        """True for the step that tells that a deadline has passed: no command, though nobody else owns it."""
+        """True for the step that marks a passed deadline: it is no command, though no other agent owns it."""
         first = move.moves[0]
         return self._bad == (first.automaton, first.edge.target)
 
@@ -123,7 +123,7 @@ class Judge:
             self._problem(f"{what} is a command, but the mission was {before.status}")
         plan = self._plans.get(before.plan)
         if plan is None:
-            self._problem(f"plan {before.plan} is in force, which nobody has announced")
+            self._problem(f"plan {before.plan} is in force, which was never published")
             return
         held = plan.find(before.discrete(), state.agent, state.event)
         if not held:
@@ -136,20 +136,20 @@ class Judge:
 
     def _check_clocks(self, state: SystemState, now: float) -> None:
         for clock, zero in self._zeros.items():
-            told, value = state.clocks.get(clock, -1.0), (now - zero) / state.unit
-            if abs(told - value) > EPSILON:
-                self._problem(f"state {state.seq}: {clock} is {told}, not {value}")
+            stated, value = state.clocks.get(clock, -1.0), (now - zero) / state.unit
+            if abs(stated - value) > EPSILON:
+                self._problem(f"state {state.seq}: {clock} is {stated}, not {value}")
                 return
 
     # Orders -----------------------------------------------------------------------------------------------------------
 
     def on_order(self, agent: str, trigger: str, target: str, seq: int, newest: int, again: bool) -> None:
-        """A controller tells its robot what to do, because of state `seq`, when `newest` is the last that it knows.
+        """A controller sends its robot an order, because of state `seq`, when `newest` is the newest that it knows.
 
-        `again`: it was started again, and may say it once more, while the news that it is done is on its way.
+        `again`: it was restarted, and may send it once more, while the state that follows is on its way.
         """
         last = next((step for step in reversed(self.steps) if step.seq <= seq and step.agent == agent), None)
-        what = f"{agent} is told {trigger} ({target})"
+        what = f"{agent} gets the order {trigger} ({target})"
         if seq < newest:
             self._problem(f"wrong order: {what}, as of state {seq}, though state {newest} is known")
         elif last is None or (last.target, True) != (target, last.commanded):

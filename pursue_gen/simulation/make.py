@@ -14,7 +14,7 @@ from pursue_gen.tga.network import Kind
 from pursue_gen.workspace.make import options_for
 
 _LONG, _SHORT = 1000.0, 200.0
-"""When a mission is over, in time units, unless it is said: with a goal, and without one."""
+"""The default time after which a mission is over, in time units: with a goal, and without one."""
 _LONGEST = 1e6
 
 

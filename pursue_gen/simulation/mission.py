@@ -39,7 +39,7 @@ GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
 """How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these
 STOPPED, a safe stop, and LOST, because a fault broke what the strategy was promised."""
 
-JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "nobody:nothing@3", "_plan_@1", "@@", ":_failed_")
+JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_plan_@1", "@@", ":_failed_")
 """Words on pursue/events that change nothing."""
 
 HEARTBEAT, SILENCE, PLANNING = 1.0, 20.0, 10.0
@@ -187,7 +187,7 @@ class SimulatedMission:
             self._people.on_state(state)
 
     def _send_state(self, node: ControllerNode, state: SystemState, latest: float) -> None:
-        """Sends a state to a controller: to the process that listens now."""
+        """Sends a state to a controller: to the process that is subscribed now."""
         self._connections.send(f"state:{node.name}", latest, _to(node, lambda: node.on_state(state)), node.name)
 
     def _send_plan(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
@@ -199,7 +199,7 @@ class SimulatedMission:
         self._connections.send(connection, latest, deliver, machine)
 
     def publish_plan(self, plan: Dict[str, Any]) -> None:
-        """The observer has another plan for everybody."""
+        """The observer publishes another plan."""
         self._plan = plan
         self._judge.on_plan(plan["plan"], plan["strategies"], plan["people"])
         self._note(f"plan {plan['plan']} is published")
@@ -209,19 +209,19 @@ class SimulatedMission:
             self._people.on_plan(plan)
 
     def request_plan(self, request: Optional[PlanRequest]) -> None:
-        """The observer wants another plan, or none any longer."""
+        """The observer requests another plan, or needs none any longer."""
         self._planner.request_plan(request)
 
     def publish_word(self, node: str, word: Word, latest: float) -> None:
-        """A controller or the UI says a word."""
+        """A controller or the UI publishes a word."""
         text = format_word(word)
-        self._note(f"{node} says {text}")
+        self._note(f"{node} publishes {text}")
         self._published.append(text)
         self._send_word(f"word:{node}", text, max(0.0, latest - self.events.now), node)
 
     def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
-        """A controller tells its robot what to do."""
-        self._note(f"{node} tells {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
+        """A controller sends its robot an order."""
+        self._note(f"{node} orders {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
         self._judge.on_order(order.agent, order.trigger, order.target, seq, newest, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
@@ -234,8 +234,20 @@ class SimulatedMission:
         machine = self._stage.controller_of(agent) or ""
         self._send_word(f"report:{agent}", text, 0.0, machine)
 
+    def _report_move(self, text: str) -> None:
+        """Reports what an uncontrollable agent does. If another event of this instant comes first, the agent has
+        chosen again, in the new state: without faults no report is late, so the earlier choice is dropped."""
+        agent, seq = text.partition(":")[0], self._observer.mission.seq
+        self._note(f"{agent} reports {text}")
+
+        def deliver() -> None:
+            if self.faulty or self._observer.mission.seq == seq:
+                self._observer.call("hear", text)
+
+        self._connections.send(f"report:{agent}", 0.0, _to(self._observer, deliver))
+
     def _choose_move(self, state: SystemState) -> None:
-        """The agents that nobody controls look at the state."""
+        """The uncontrollable agents choose what to do in this state."""
         deed = None
         if state.status in LIVE:
             network, clocks = self._stage.arena.network, state.clocks_at(self.events.now)
@@ -247,14 +259,14 @@ class SimulatedMission:
 
     def _act(self) -> None:
         if self._word:
-            self._report(self._word.partition(":")[0], self._word)
+            self._report_move(self._word)
         elif self._latched is not None:
             self._choose_move(self._latched)
 
     # Faults -----------------------------------------------------------------------------------------------------------
 
     def _heartbeat(self) -> None:
-        """Once a second: the observer says its state again, and notices who is silent."""
+        """Once a second: the observer publishes its state again, and finds controllers that are silent."""
         events, observer = self.events, self._observer
         live = observer.mission.status in LIVE
         events.schedule(events.now + HEARTBEAT, self._heartbeat)
@@ -266,7 +278,7 @@ class SimulatedMission:
                 continue
             away = name in observer.mission.silent
             if away and self._reachable[name] == events.now:
-                self._note(f"{name} is heard again")
+                self._note(f"{name} is back")
                 observer.call("back", name)
             elif not away and live and events.now > self._reachable[name] + SILENCE:
                 self._note(f"{name} is silent")
@@ -305,7 +317,7 @@ class SimulatedMission:
         if word is not None and word.seq == mission.seq:
             return
         self.fault_plan.count("junk")
-        self._note(f"somebody says {text[:40]!r}")
+        self._note(f"an unknown node publishes {text[:40]!r}")
         self._observer.call("hear", text)
 
     def _on_planner(self, name: str, *args: Any) -> None:
@@ -322,7 +334,7 @@ class SimulatedMission:
         if level != "info":
             self._note(f"observer, {level}: {text}")
             if not self.faulty:
-                self._complaints.append(f"the observer complains: {text}")
+                self._complaints.append(f"the observer warns: {text}")
 
 
 def simulate_mission(stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining] = None,

@@ -29,20 +29,20 @@ class MissionLinks(Protocol):
     faulty: bool
 
     def publish(self, state: SystemState) -> None:
-        """The observer says a state."""
+        """The observer publishes a state."""
 
     def publish_plan(self, plan: Dict[str, Any]) -> None:
-        """The observer has another plan for everybody."""
+        """The observer publishes another plan."""
 
     def request_plan(self, request: Optional[PlanRequest]) -> None:
-        """The observer wants another plan (None: no longer)."""
+        """The observer requests another plan (None: it needs none)."""
 
     def publish_word(self, node: str, word: Word, latest: float) -> None:
-        """A controller or the UI says a word, which is promised to be heard by the moment `latest`."""
+        """A controller or the UI publishes a word, which without faults arrives by the time `latest`."""
 
     def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
-        """A controller tells its robot what to do, because of state `seq`; `newest` is the last one that it knows,
-        `again`: it was started again since it has told it anything."""
+        """A controller sends its robot an order, because of state `seq`; `newest` is the newest one that it knows,
+        `again`: it was restarted since its last order."""
 
 
 class ObserverNode:
@@ -64,7 +64,7 @@ class ObserverNode:
         )
 
     def call(self, name: str, *args: Any) -> None:
-        """Calls the mission, writes down what has changed it, and says what follows."""
+        """Calls the mission, writes the call to the journal if it changed the mission, and publishes what follows."""
         if not self.alive:
             return
         mission, now = self.mission, self._links.events.now
@@ -76,7 +76,7 @@ class ObserverNode:
         self._publish(states)
 
     def heartbeat(self) -> None:
-        """Says the state again."""
+        """Publishes the state again."""
         if self.alive:
             if self.mission.proposal is not None:
                 self._proposed = 0
@@ -139,7 +139,7 @@ class ControllerNode:
         if receipt:
             self._links.publish_word(self.name, receipt, self._links.events.now)
         if known is None or (known.seq, known.status) != (state.seq, state.status):
-            self._set_timer()  # a state that is said again must not make it more patient
+            self._set_timer()  # a state that is published again must not delay the next resend
 
     def on_plan(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""
@@ -179,7 +179,7 @@ class ControllerNode:
 
 
 class PeopleNode:
-    """The part of the UI that tells human allies what to do. It hears the observer at once."""
+    """The part of the UI that instructs human allies. It gets the states without delay."""
 
     def __init__(self, stage: Stage, links: MissionLinks) -> None:
         self._stage, self._links = stage, links

@@ -1,4 +1,4 @@
-"""What the agents do that nobody controls, and when: nothing, anything, or what is worst for the strategy."""
+"""What uncontrollable agents do, and when: nothing, anything, or what is worst for the strategy."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class OpponentMove(NamedTuple):
 
 
 def options(stage: Stage, state: State, point: Tuple[float, ...]) -> List[Option]:
-    """What the agents that nobody controls may do in this state, from these clocks (0 first) on, but for ends."""
+    """What the uncontrollable agents may do in this state, from these clocks (0 first) on, but for ends."""
     found = []
     for move in stage.arena.situation(state).moves:
         first = move.moves[0]

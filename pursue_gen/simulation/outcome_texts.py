@@ -19,7 +19,7 @@ END_TEXTS = {
 
 
 def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
-    """The outcomes with their times; `guaranteed` is what is said of the strategy's time."""
+    """The outcomes with their times; `guaranteed` is a sentence on the time that the strategy guarantees."""
     cells = [["outcome", "missions", "%", "min", "median", "worst"]]
     for row in summary.rows:
         share = f"{100 * row.missions / summary.missions:.1f}"

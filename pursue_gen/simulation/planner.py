@@ -12,12 +12,13 @@ from pursue_runtime.observer.planning import PlanRequest
 MIN_TIME, MAX_TIME = 0.2, 3.0
 """Seconds between which the planner answers."""
 
-LIMIT = 10.0
-"""Seconds that it really may take, as the observer's ~planning_limit has it."""
+STATES = 12_000
+"""The states that the planner may take (see `replan`): a search ends at the same point on every machine."""
 
 
 class SimulatedPlanner:
-    """Looks for one plan at a time; `answer` gets `planned` or `unplanned`, and what the mission is to be told."""
+    """Looks for one plan at a time; `answer` gets the name of a call of the mission, `planned` or `unplanned`, and its
+    arguments."""
 
     def __init__(self, stage: Stage, events: EventQueue, seed: str, answer: Callable[..., None]) -> None:
         self._stage, self._events, self._answer = stage, events, answer
@@ -48,6 +49,5 @@ class SimulatedPlanner:
             return {"won": False, "why": "the workspace has no planner"}
         from pursue_gen.replanning import replan
 
-
         what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
-        return dict(replan({"format": 1, "game": self._stage.request, "limit": LIMIT, **what}))
+        return dict(replan({"format": 1, "game": self._stage.request, **what}, STATES))

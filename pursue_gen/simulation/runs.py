@@ -67,8 +67,8 @@ class Summary:
 
 
 def case_of(scenario: Scenario, won: Solution, options: Options, settings: Settings) -> Tuple[Case, bool]:
-    """The case with what the solver can tell of times: how long a mission takes at most, and how long it may be
-    expected to take. Also: can the worst opponent tell plays by their length?"""
+    """The case with the longest time that a mission takes, and the time within which faults begin. Also whether the
+    worst opponent can compare the lengths of plays."""
     remaining = Remaining(won)
     bound = remaining.bound()
     span = _SPAN if bound is None else _PART * bound
@@ -143,7 +143,8 @@ def _received(end: Connection) -> List[Outcome]:
 
 def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable[[int], Any] = lambda done: None,
              shown: int = 1, remaining: bool = True) -> Summary:
-    """Plays the missions; `told` hears how many are done. The first `shown` failures come with their plays."""
+    """Plays the missions; `progress` is called with the number of missions that are done. The first `shown`
+    failures come with their plays."""
     times: Dict[str, List[float]] = {}
     happened: Counter[str] = Counter()
     failed: List[Outcome] = []

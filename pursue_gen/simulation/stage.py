@@ -20,10 +20,11 @@ from pursue_runtime.strategy import Strategy, read_cover
 class Stage:
     """A workspace's data as its nodes have them, and the game and strategy they were made from.
 
-    `strategies`: each controller's, by the controller's name; `people`: what human allies are told. `reaction` is in
-    time units. `arena`: the joint moves of the network, as the checker reads it; `commands`: those of the strategy
-    as the solver made it. `reports`: the agents whose ends are reported by the world, not commanded. `request`: what
-    planning again is told of the game (config/game.yaml); None where the workspace has no such file.
+    `strategies`: each controller's, by the controller's name; `people`: the instructions for human allies.
+    `reaction` is in time units. `arena`: the joint moves of the network, as the checker reads it; `commands`: those
+    of the strategy as the solver made it. `reports`: the agents whose ends are reported by the world, not
+    commanded. `request`: what the planner gets of the game (config/game.yaml); None where the workspace has no such
+    file.
     """
 
     scenario: Scenario
@@ -45,7 +46,7 @@ class Stage:
 
     @property
     def opponents(self) -> Tuple[str, ...]:
-        """The agents that nobody controls."""
+        """The uncontrollable agents."""
         return tuple(agent.name for agent in self.scenario.agents if not agent.controllable)
 
     def controller_of(self, robot: str) -> Optional[str]:

@@ -1,6 +1,6 @@
 """The simulated world: robots, people and other agents end what they do, early and late in the model's window alike.
 
-The run time's simulator tells the ends, one for each agent; here is drawn when, and what breaks.
+The run time's simulator reports the ends, one simulator for each agent; here is drawn when they end, and what fails.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class FaultyDurations:
 
 
 class SimulatedAgent:
-    """An agent that moves and acts. Its ends are words, brought by `say`."""
+    """An agent that moves and acts. `publish` takes its reports."""
 
     def __init__(self, stage: Stage, agent: str, events: EventQueue, fault_plan: FaultPlan, seed: str,
                  publish: Callable[[str, str], None], promised: float) -> None:

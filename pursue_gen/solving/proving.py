@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.proof.checker import pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import LIMIT, pruned, pruned_ranks, verify
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
@@ -25,17 +25,19 @@ def prove(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     options: SolveOptions = DEFAULT,
     simpler: bool = True,
+    states: int = LIMIT,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
-    `simpler`: in fewer zones and bounds, proven once more, where that costs little. Raises PursueError with the play
+    `simpler`: in fewer zones and bounds, proven once more, where that costs little. `states`: the most symbolic states
+    that each look of the checker may take. Raises PursueError with the play
     that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states included.
     """
     start, limits, progress = time.monotonic(), options.limits, options.progress
-    report = verify(network, objective, strategy, reaction, ranks=ranks, limits=limits, progress=progress)
+    report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
     if not report.ok and ranks is not None:
         ranks = None
-        report = verify(network, objective, strategy, reaction, limits=limits.since(start), progress=progress)
+        report = verify(network, objective, strategy, reaction, states, limits=limits.since(start), progress=progress)
     if report.reason.startswith("limit"):
         hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
         raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)

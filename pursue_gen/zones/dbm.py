@@ -58,6 +58,16 @@ def _transposition(dim: int) -> Callable[[Tuple[int, ...]], Tuple[int, ...]]:
     return operator.itemgetter(*(j * dim + i for i in range(dim) for j in range(dim)))
 
 
+@lru_cache(maxsize=4096)
+def _extrapolation(max_constants: Tuple[int, ...]) -> Tuple[Tuple[int, ...], Tuple[int, ...]]:
+    """For each bound of a matrix: above what it becomes infinite, and what it is at least."""
+    dim = len(max_constants)
+    pairs = [(i, j) for i in range(dim) for j in range(dim)]
+    highs = (INF if i == j else raw(max_constants[i], strict=False) for i, j in pairs)
+    lows = (-INF if i == j else raw(-max_constants[j], strict=True) for i, j in pairs)
+    return tuple(highs), tuple(lows)
+
+
 def _close(m: List[int], dim: int) -> bool:
     """Make the matrix canonical in place (Floyd and Warshall); false if it holds no point."""
     for k in range(dim):
@@ -336,17 +346,11 @@ class Dbm:
         `max_constants[i]` is the largest scaled constant that clock i is compared with; entry 0 is 0.
         """
         assert len(max_constants) == self.dim and max_constants[0] == 0
-        dim, m = self.dim, list(self.m)
-        for i in range(dim):
-            for j in range(dim):
-                at = i * dim + j
-                if i == j:
-                    continue
-                if m[at] > raw(max_constants[i], strict=False):
-                    m[at] = INF
-                elif m[at] < raw(-max_constants[j], strict=True):
-                    m[at] = raw(-max_constants[j], strict=True)
+        highs, lows = _extrapolation(tuple(max_constants))
+        m = [
+            INF if bound > high else bound if bound >= low else low for bound, high, low in zip(self.m, highs, lows)
+        ]
         if tuple(m) == self.m:
             return self
-        _close(m, dim)
-        return Dbm(dim, tuple(m))
+        _close(m, self.dim)
+        return Dbm(self.dim, tuple(m))

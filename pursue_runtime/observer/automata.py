@@ -6,28 +6,45 @@ Times are seconds of ROS time, delays are time units.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Dict, Iterable, List, Optional, Tuple
+from typing import Dict, Iterable, List, MutableMapping, Optional, Tuple
+from weakref import WeakKeyDictionary
 
 from transitions import Machine
 
 from pursue_runtime.model import Automaton, Edge, Model, Move, Position
 from pursue_runtime.zones import due, holds
 
+_machines: MutableMapping[Model, Dict[str, Machine]] = WeakKeyDictionary()
+
+
+def machines_of(model: Model) -> Dict[str, Machine]:
+    """Return the `transitions` machine of each automaton, by name: locations are its states, the words of edges its
+    triggers. A process builds them once for each model; they keep no location."""
+    if model not in _machines:
+        _machines[model] = {automaton.name: _machine(automaton) for automaton in model.automata}
+    return _machines[model]
+
+
+def _machine(automaton: Automaton) -> Machine:
+    machine = Machine(
+        model=None, states=list(automaton.invariants), initial=automaton.initial, auto_transitions=False
+    )
+    for edge in automaton.edges:
+        machine.add_transition(edge.word, edge.source, edge.target)
+    return machine
+
 
 class AutomatonMachine:
-    """One automaton as a `transitions` machine: locations are its states, the words of edges its triggers.
+    """One automaton of a mission: its location, on a `transitions` machine.
 
-    The machine keeps the location and which words leave it; guards, clocks and the receivers of a word belong to
-    several automata at once, so the model evaluates them and this class applies the edge that it has chosen.
+    The machine knows which words leave a location; guards, clocks and the receivers of a word belong to several
+    automata at once, so the model evaluates them and this class applies the edge that it has chosen.
     """
 
-    def __init__(self, automaton: Automaton) -> None:
-        self._model = SimpleNamespace()  # the machine gives it a state, and names that scenarios choose
-        self._machine = Machine(
-            model=self._model, states=list(automaton.invariants), initial=automaton.initial, auto_transitions=False
-        )
-        for edge in automaton.edges:
-            self._machine.add_transition(edge.word, edge.source, edge.target)
+    def __init__(self, machine: Machine) -> None:
+        self._machine = machine
+        self._model = SimpleNamespace()
+        machine.set_state(str(machine.initial), self._model)
 
     @property
     def location(self) -> str:
@@ -40,7 +57,7 @@ class AutomatonMachine:
         The state is set directly: several edges of a location may have the same word, and evaluating the trigger's
         conditions once more took a quarter of a reaction. Raises AssertionError for an edge from another location.
         """
-        if edge.word not in self._machine.get_triggers(self.location):
+        if self.location not in self._machine.events[edge.word].transitions:
             raise AssertionError(f"{edge.word} does not start at {self.location}")
         self._machine.set_state(edge.target, self._model)
 
@@ -51,7 +68,7 @@ class Automata:
     def __init__(self, model: Model, unit: float) -> None:
         self.model = model
         self.unit = unit
-        self._machines = {automaton.name: AutomatonMachine(automaton) for automaton in model.automata}
+        self._machines = {name: AutomatonMachine(machine) for name, machine in machines_of(model).items()}
         self._values = dict(model.variables)
         self._zeros: Dict[str, float] = {}  # the time of the last reset of each clock
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import sys
 from typing import Any, Dict, List
@@ -205,3 +206,12 @@ def test_the_data_of_an_answer_is_what_render_writes() -> None:
     answer = won(asked("thesis/scenario_1", state, [0] * len(network.clocks)))
     for sub in partition(solution.strategy, network, scenario.agents):
         assert yaml.safe_load(render(sub, "s", "0", solution.reaction)) == answer["strategies"][sub.controller]
+
+
+def test_with_a_limit_on_states_neither_time_nor_memory_of_the_machine_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = beginning("thesis/scenario_4", limit=1e-5)
+    monkeypatch.setattr(importlib.import_module("pursue_gen.replanning.replan"), "careful_memory", lambda: 1)
+    assert replan(request, states=12_000) == replan(beginning("thesis/scenario_4"), states=12_000)
+    assert replan(request, states=12_000)["won"]
+    assert replan(request, states=10)["why"] == "no plan was found within 10 states"
+    assert not replan(request)["won"]

@@ -31,10 +31,10 @@ SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
         "_begun",
         "orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))",
         'orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
-        "wrong order: polBot1 is told",
+        "wrong order: polBot1 gets the order",
     ),
 }  # fmt: skip
-"""A class of the run time, its method, a part of its code, what takes the place of that, and what the judge says."""
+"""A class of the run time, its method, a part of its code, what takes the place of that, and what the judge reports."""
 
 
 @pytest.mark.parametrize("what", SABOTAGE)
@@ -70,7 +70,7 @@ def test_a_command_at_another_time_is_seen() -> None:
     late = next(line for line in text.splitlines() if " < CecoBot" in line and "- 1 < " in line)
     early = sabotaged(name, path, late, late.replace("1 <", "0 <"))
     outcomes = missions(name, 10, Settings("random", until=100.0), early)
-    assert any("was not due there" in o.reason or "complains" in o.reason for o in outcomes if o.end == FAILED)
+    assert any("was not due there" in o.reason or "the observer warns" in o.reason for o in outcomes if o.end == FAILED)
 
 
 # The judge alone ------------------------------------------------------------------------------------------------------
@@ -90,7 +90,7 @@ def first(seq: int = 1, now: float = 0.0, **more: Any) -> Any:
 
 
 def leaving(now: float, **more: Any) -> Any:
-    """polBot1 leaves for b, as nobody commands before reachObj is unlocked."""
+    """polBot1 leaves for b, which no strategy commands before reachObj is unlocked."""
     state = first(2, now)
     state.locations["polBot1"] = "going_a_to_b"
     state.values["PpolBot1"] = -12
@@ -129,7 +129,7 @@ def test_an_order_as_of_an_old_state_is_a_problem() -> None:
     assert "though state 2 is known" in watching.problems[0]
 
 
-def test_a_state_may_be_said_again_but_not_another_one() -> None:
+def test_a_state_may_be_published_again_but_not_another_one() -> None:
     watching = judge()
     watching.on_state(first(), 0.0)
     watching.on_state(first(now=1.0), 1.0)

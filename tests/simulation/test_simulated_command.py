@@ -21,10 +21,11 @@ from pursue_gen.synthesis.native import engine as native
 FIRST, THIEF = (SCENARIOS / "thesis" / f"{name}.pur" for name in ("scenario_1", "catch_the_thief"))
 
 
-def called(*words: Any) -> "subprocess.CompletedProcess[str]":
-    """The command in a process of its own."""
+def called(*words: Any, **environment: str) -> "subprocess.CompletedProcess[str]":
+    """The command in a process of its own, with these environment variables as well."""
     command = [sys.executable, "-m", "pursue_gen", "sim", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+    environ = {**os.environ, **environment}
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False, env=environ)
     assert "Traceback" not in done.stderr, done.stderr
     return done
 
@@ -40,15 +41,22 @@ def test_a_table_and_what_is_guaranteed() -> None:
     assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
 
 
-def test_jobs_do_not_change_what_comes_out() -> None:
+def test_neither_the_number_of_processes_nor_the_hash_seed_changes_what_comes_out() -> None:
     words = (FIRST, "--runs", 45, "--faults", "delay,loss,deaths", "--json")
-    alone, both = (called(*words, "--jobs", jobs) for jobs in (1, 2))
+    alone, both = (called(*words, "--jobs", jobs, PYTHONHASHSEED=str(jobs)) for jobs in (1, 2))
     assert alone.returncode == both.returncode == 0, alone.stderr + both.stderr
     assert json.loads(alone.stdout) == json.loads(both.stdout)
     facts = json.loads(alone.stdout)
     assert (facts["missions"], facts["faults"]) == (45, ["delay", "loss", "deaths"])
     assert sum(row["missions"] for row in facts["outcomes"].values()) == 45
     assert set(facts["happened"]) == {"delay", "loss", "deaths"}
+
+
+def test_new_plans_are_the_same_for_each_hash_seed() -> None:
+    words = (THIEF, "--runs", 12, "--faults", "late,failed,silent", "--json")
+    one, other = (called(*words, PYTHONHASHSEED=seed) for seed in ("1", "2"))
+    assert json.loads(one.stdout)["planned"] > 0
+    assert json.loads(one.stdout) == json.loads(other.stdout)
 
 
 def test_a_failure_is_shown_with_its_play_and_can_be_repeated() -> None:
@@ -103,9 +111,9 @@ def test_ctrl_c_ends_all_processes() -> None:
             while process.poll() is None and len(children.read_text().split()) < 2:
                 time.sleep(0.05)
             os.killpg(process.pid, signal.SIGINT)
-            _, said = process.communicate(timeout=300)
+            _, errors = process.communicate(timeout=300)
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
-    assert process.returncode == 130, said
-    assert b"Traceback" not in said
+    assert process.returncode == 130, errors
+    assert b"Traceback" not in errors

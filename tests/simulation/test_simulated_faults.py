@@ -64,7 +64,7 @@ def test_what_happens_to_messages() -> None:
     assert [k for k, _ in overtaken] != list(range(400))
 
 
-def test_a_machine_that_is_cut_off_hears_all_of_it_later() -> None:
+def test_a_machine_that_is_cut_off_gets_all_messages_later() -> None:
     about = trouble("cut")
     assert about.cut is not None
     machine, begin, end = about.cut

@@ -69,13 +69,13 @@ def test_with_a_fault_missions_reach_the_goal_or_stop_safely(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", HARMLESS)
-def test_a_fault_that_delays_nobody_changes_no_outcome(kind: str) -> None:
+def test_a_fault_that_delays_no_agent_changes_no_outcome(kind: str) -> None:
     outcomes = missions(THIEF, 40, Settings("random", (kind,)))
     assert {outcome.end for outcome in outcomes} == {GOAL}, [(o.seed, o.reason) for o in outcomes if o.end == FAILED]
     assert sum(outcome.happened.get(kind, 0) for outcome in outcomes) > 20
 
 
-def test_robots_off_their_model_are_told_apart_from_wrong_commands() -> None:
+def test_robots_off_their_model_are_no_wrong_commands() -> None:
     outcomes = missions(THIEF, 20, Settings("random", ("late",)))
     assert sum(outcome.off_model for outcome in outcomes) > 0
     assert not any(outcome.problems for outcome in outcomes)
