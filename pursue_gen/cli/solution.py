@@ -10,7 +10,6 @@ from pursue_gen import language
 from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.inputs import are_scenario, game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
@@ -52,6 +51,8 @@ def explain_loss(
     """
     if not wanted or not is_lost(problem) or not are_scenario(files):
         return {}
+    from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
+
     show(problem.diagnostics)
     seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS
     info(f"Looking for what would change that, for at most {seconds:g} s (--no-explain leaves it out) …")

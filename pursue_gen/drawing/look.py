@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from typing import Dict, Iterable, Mapping, Sequence, Tuple
-from xml.sax.saxutils import escape
 
 FONT = "'DejaVu Sans',Verdana,Helvetica,Arial,sans-serif"
 TEXT_SIZE, SMALL_SIZE = 14, 12  # px
@@ -31,6 +30,7 @@ _DASHES = ("", "8 4", "2 3", "10 3 2 3", "14 5", "5 2 1 2 1 2", "1 5", "12 2")
 _SHAPES = ("circle", "square", "triangle", "diamond", "hexagon", "cross", "pentagon", "star")
 _FILLS = ("solid", "diagonal", "dots", "cross", "level", "upright", "counter", "empty")
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_ESCAPED = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;"})
 _POLYGONS: Mapping[str, Tuple[Tuple[float, float], ...]] = {
     "square": ((-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)),
     "triangle": ((0, -1.05), (1, 0.8), (-1, 0.8)),
@@ -79,7 +79,7 @@ def clean(words: object) -> str:
 
 def safe(words: object) -> str:
     """The text escaped for XML and HTML, between tags and in attributes."""
-    return escape(clean(words), {'"': "&quot;", "'": "&#39;"})
+    return clean(words).translate(_ESCAPED)
 
 
 def number(value: float) -> str:

@@ -59,7 +59,10 @@ class Arena:
         self.variable = {name: k for k, (name, _) in enumerate(network.variables)}
         self.initial: State = (tuple(a.initial for a in network.automata), tuple(v for _, v in network.variables))
         self.start = self._start()
-        self._locations: List[Dict[str, Location]] = [{loc.name: loc for loc in a.locations} for a in network.automata]
+        self._located = [
+            {location.name: self._bounds_of(k, location) for location in automaton.locations}
+            for k, automaton in enumerate(network.automata)
+        ]
         self._edges: Dict[Tuple[int, str], List[Edge]] = {}
         for k, automaton in enumerate(network.automata):
             for edge in automaton.edges:
@@ -124,12 +127,11 @@ class Arena:
             if bound.op in (">", ">=", "=="):
                 yield 0, x, raw(-c, bound.op == ">")
 
+    def _bounds_of(self, k: int, location: Location) -> Tuple[Bound, ...]:
+        return tuple((k, i, bound) for i, _, bound in self.limits(location.invariant))
+
     def _bounds(self, state: State) -> Tuple[Bound, ...]:
-        return tuple(
-            (k, i, bound)
-            for k, name in enumerate(state[0])
-            for i, _, bound in self.limits(self._locations[k][name].invariant)
-        )
+        return tuple(bound for located, name in zip(self._located, state[0]) for bound in located[name])
 
     def _worked_out(self, state: State) -> Situation:
         bounds = self._bounds(state)

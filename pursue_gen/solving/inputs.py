@@ -14,7 +14,6 @@ from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.uppaal import read_network, read_query
 
 _NETWORK_SUFFIX = ".xml"
 
@@ -55,6 +54,8 @@ def load_game(files: Sequence[Path]) -> Tuple[Network, Objective]:
     if len(files) != 2:
         message = "expected one scenario, or a network and its query"
         raise usage_error(message, "pursue-gen solve SCENARIO | TGA.xml TCTL.q")
+    from pursue_gen.tga.uppaal_read import read_network, read_query
+
     model, query = files
     network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

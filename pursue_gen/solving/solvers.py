@@ -1,4 +1,7 @@
-"""Solvers of the games: the built-in one, or UPPAAL-TIGA's verifytga where it is installed."""
+"""Solvers of the games: the built-in one, or UPPAAL-TIGA's verifytga where it is installed.
+
+What only UPPAAL-TIGA needs is imported when it is used.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,7 @@ from pursue_gen.files import write_texts
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, fastest_solution, guaranteed, solution
-from pursue_gen.solving.verifytga import ToolError, run_verifytga
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.tga.network import Kind, Network, Objective
 
 
@@ -34,6 +35,8 @@ def solved(network: Network, objective: Objective, rules: Rules, options: SolveO
     if options.engine is not None:
         message = f"{options.engine} is an engine of the built-in solver"
         raise usage_error(message, "use --engine or --solver verifytga, not both")
+    from pursue_gen.solving.verifytga import run_verifytga
+
     game = played(network, rules)
     verdict = run_verifytga(game, objective, options.verifytga, options.limits, rules.reaction, options.progress)
     assert verdict.strategy is not None  # it raises where there is none
@@ -51,6 +54,9 @@ def keep_counter(problem: PursueError, network: Network, objective: Objective, p
 
     None, with nothing written, where there is no counter-strategy or no such file.
     """
+    from pursue_gen.solving.verifytga import ToolError
+    from pursue_gen.synthesis.plan import write_plan
+
     if not isinstance(problem, ToolError) or problem.counter is None or plan is None:
         return None
     if plan.exists() and not plan.is_file():  # nothing stands beside /dev/null
