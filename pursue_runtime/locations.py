@@ -1,6 +1,7 @@
 """Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`).
 
-The only place for these two prefixes; the generator has them from here.
+The only place for these two prefixes, and for that of the variable of an agent's position; the generator has them from
+here.
 """
 
 from __future__ import annotations
@@ -41,6 +42,16 @@ def is_end(source: str, target: str) -> bool:
 def action_of(location: str) -> str:
     """Return the event of an action's location; other locations as they are."""
     return location[len(_ACTION) :].rsplit("_in_", 1)[0] if is_action(location) else location
+
+
+def place_of(location: str) -> str:
+    """Return the POI where an agent is, also in an action; of a movement the location as it is."""
+    return location[len(_ACTION) :].rsplit("_in_", 1)[1] if is_action(location) else location
+
+
+def position_variable(agent: str) -> str:
+    """Return the variable that holds where an agent is."""
+    return f"P{agent}"
 
 
 def in_words(location: str) -> str:

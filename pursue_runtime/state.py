@@ -6,13 +6,16 @@ Clocks are in time units, stamps in seconds of ROS time.
 from __future__ import annotations
 
 import re
-from typing import Dict, Iterable, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
 
 WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
+
+AGENT_LISTS = ("late", "lost", "held", "displaced", "returning")
+"""The fields of a state that are lists of agents."""
 
 LATE = 60.0
 """Seconds of real time for which a state with an earlier number and stamp counts as older than the last one received;
@@ -28,7 +31,9 @@ class SystemState(NamedTuple):
 
     `unit` is how many seconds a time unit lasts, `plan` the number of the plan in force (0: the workspace's own),
     `mission` the id of the mission whose state this is, "" for the one of the workspace. `late` names the agents that
-    should have finished by now, `lost` those that nothing is expected of any more.
+    should have finished by now, `lost` those that nothing is expected of any more, `held` those that wait for a person.
+    `displaced` names the robots that are not known to be where the state has them, `returning` those of them that are
+    to go back there.
     """
 
     seq: int
@@ -45,6 +50,9 @@ class SystemState(NamedTuple):
     lost: Tuple[str, ...] = ()
     mission: str = ""
     late: Tuple[str, ...] = ()
+    held: Tuple[str, ...] = ()
+    displaced: Tuple[str, ...] = ()
+    returning: Tuple[str, ...] = ()
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""
@@ -74,7 +82,7 @@ def older(state: SystemState, known: SystemState) -> bool:
 def format_state(state: SystemState) -> str:
     """The text on pursue/system_state: the thesis's, with a first line for us."""
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
-    agents = ("late", ",".join(state.late)), ("lost", ",".join(state.lost))
+    agents = tuple((key, ",".join(getattr(state, key))) for key in AGENT_LISTS)
     led_by = ("event", state.event), ("agent", state.agent), *agents
     facts = (("mission", state.mission), ("plan", state.plan), *led_by)
     head += [f"{key}={value}" for key, value in facts if value]
@@ -114,9 +122,10 @@ def parse_state(text: str) -> Optional[SystemState]:
             locations[name] = value
     clocks = {name: float(value) for name, value in _pairs(continuous) if _DECIMAL.fullmatch(value)}
     event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
-    late, lost = (tuple(name for name in facts.get(key, "").split(",") if name) for key in ("late", "lost"))
-    led_by = event, agent, status, reason, unit, plan, lost
-    return SystemState(seq, stamp, locations, values, clocks, *led_by, facts.get("mission", ""), late)
+    lists: Dict[str, Any] = {key: tuple(filter(None, facts.get(key, "").split(","))) for key in AGENT_LISTS}
+    led_by = event, agent, status, reason, unit, plan
+    state = SystemState(seq, stamp, locations, values, clocks, *led_by, mission=facts.get("mission", ""))
+    return state._replace(**lists)
 
 
 def _finite(text: str) -> float:

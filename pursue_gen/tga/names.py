@@ -29,9 +29,8 @@ def agent_clock(agent: str) -> str:
     return f"C{agent}"
 
 
-def agent_position(agent: str) -> str:
-    """The variable that holds where an agent is."""
-    return f"P{agent}"
+agent_position = locations.position_variable
+"""The variable that holds where an agent is."""
 
 
 def rule_turn(rule: str) -> str:

@@ -1,113 +1,69 @@
-"""When a robot gets its goals, and which ends and failures of its movements are reported.
+"""When a robot gets its goals and actions, and what of its movements is reported.
 
 Times are seconds of ROS time, `real` of the monotonic clock; distances are metres.
 """
 
 from __future__ import annotations
 
-import math
-from collections import deque
 from dataclasses import dataclass
-from typing import Any, Callable, Deque, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.data import DataError
-from pursue_runtime.resend import resend_timeout
-from pursue_runtime.words import BLOCKED, FAILED, Word, format_word
+from pursue_runtime.controller.goal import ABORTED, CANCELLED, FAILURES, SUCCEEDED, Answer, Goal, GoalTracker, Movement
+from pursue_runtime.controller.reports import Report
+from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
+from pursue_runtime.words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, RobotReport, format_report
 
-GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
-
-SUCCEEDED, ABORTED = 3, 4
-FAILURES = {2: "preempted", ABORTED: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
-"""The statuses with which a goal may end, as actionlib_msgs/GoalStatus numbers them."""
-
-
-class Settings(NamedTuple):
-    """How one robot is connected. Each is a parameter of the node, or of one robot: `~ends`, `~bot1/ends`."""
-
-    goals: str = "simple"
-    ends: str = "words"
-    on_stop: str = "finish"
-    retries: int = 2
-    retry_delay: float = 1.0
-    end_tolerance: float = 0.3
-    end_settle: float = 0.5
-    clock_skew: float = 0.5
-    map_frame: str = "map"
-    base_frame: str = "{robot}/base_link"
-    simulated: bool = False
-
-    @property
-    def uses_results(self) -> bool:
-        """Return True if results of move_base are used."""
-        return self.goals == "action" or self.ends == "result"
-
-    @property
-    def uses_position(self) -> bool:
-        """Return True if the controller finds from the position that the robot has arrived."""
-        return self.ends in ("pose", "tf")
+GRACE = 2.0
+"""Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""
 
 
-def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
-    """The robot's settings among the node's parameters; those in the group of its name win. Raises DataError."""
-    own = given.get(robot, {})
-    if not isinstance(own, dict) or set(own) - set(Settings._fields):
-        raise DataError(f"~{robot} is {own!r}; expected some of {', '.join(Settings._fields)}")
-    values = {**given, **own}
-    defaults = Settings()._asdict()
-    settings = Settings(**{name: _checked(name, values[name], defaults[name]) for name in defaults if name in values})
-    for name, known in (("goals", GOALS), ("ends", ENDS), ("on_stop", ON_STOP)):
-        if getattr(settings, name) not in known:
-            raise DataError(f"~{name} of {robot} is {getattr(settings, name)!r}; expected one of {', '.join(known)}")
-    if settings.simulated and (settings.goals, settings.ends) != ("simple", "words"):
-        raise DataError(
-            f"goals:={settings.goals} and ends:={settings.ends} for {robot}, which is simulated: the simulator takes"
-            " simple goals and reports ends as words; leave these out, or set simulate:=false for real robots"
-        )
-    frames = (settings.map_frame.replace("{robot}", robot), settings.base_frame.replace("{robot}", robot))
-    return settings._replace(map_frame=frames[0], base_frame=frames[1])
+class View(NamedTuple):
+    """What a state says about one robot: its location ("": the mission does not run), and the movement (`way`) or the
+    place (`post`) that it stands for. The last four are the lists of the state that name the robot."""
+
+    location: str = ""
+    way: Optional[Movement] = None
+    post: Optional[Place] = None
+    running: bool = True
+    lost: bool = False
+    held: bool = False
+    displaced: bool = False
+    returning: bool = False
 
 
-def _checked(name: str, value: Any, default: Any) -> Any:
-    """The value as the type of its default; numbers are not negative. Raises DataError."""
-    kind = type(default)
-    if isinstance(value, kind) and kind in (bool, str):
-        return value
-    number = isinstance(value, (int, float)) and not isinstance(value, bool) and 0 <= value < math.inf
-    if number and kind in (int, float) and kind(value) == value:
-        return kind(value)
-    wanted = {bool: "true or false", str: "a name", int: "a whole number", float: "a number that is not negative"}
-    raise DataError(f"~{name} is {value!r}; expected {wanted[kind]}")
+class Action(NamedTuple):
+    """An action for a robot: it goes on at `location`, or is done at once ("")."""
 
-
-class Movement(NamedTuple):
-    """A movement: the location of the agent meanwhile, and the POI where it ends (x, y in metres)."""
-
+    trigger: str
     location: str
-    poi: str
-    x: float
-    y: float
 
 
-class Goal(NamedTuple):
-    """A goal for a robot, with an id of our own, which only action goals carry."""
+class Due(NamedTuple):
+    """What is to be sent to a robot now, and the word to publish."""
 
-    name: str
-    movement: Movement
+    goal: Optional[Goal] = None
+    action: Optional[Action] = None
+    word: Optional[str] = None
 
 
 @dataclass
-class Progress:
-    """The progress of a movement: `goals` is how many were sent for it, `goal` the id of the one in progress."""
+class Trip:
+    """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took."""
 
     movement: Movement
+    since: float
+    is_return: bool = False
     goal_at: Optional[float] = None
-    goal: str = ""
-    goals: int = 0
-    near_since: Optional[float] = None
-    report: str = ""
-    reports: int = 0
-    reported: float = 0.0
-    confirmed: bool = False
+    attempts: int = 0
+    has_arrived: bool = False
+    has_failed: bool = False
+    is_cancelled: bool = False  # by another node: it waits for a person
+
+    @property
+    def is_over(self) -> bool:
+        """Return True if no further goal is due."""
+        return self.has_arrived or self.has_failed
 
 
 Log = Callable[[str, str], None]
@@ -115,137 +71,246 @@ Log = Callable[[str, str], None]
 
 
 class Navigation:
-    """Goals for one robot, and what follows from its results and positions."""
+    """Goals and actions for one robot, and what follows from its results and positions.
+
+    The robot gets goals for the movement that the state shows, and gets an action only where it is known to be at the
+    action's place. If it is not, that is reported; while the state lists it as `returning` it gets a goal for its
+    place. A goal that somebody else has cancelled is sent again when the state has listed the robot as `held`, and
+    does so no more.
+    """
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
-        self.name = name
-        self.settings = settings
+        self.name, self.settings = name, settings
+        self.trouble = ""  # what an operator should know
         self._log = log
-        self._progress: Optional[Progress] = None
-        self._running = True
-        self._sent = self._earliest = -math.inf  # when its last goal was sent; the earliest stamp that it may have
-        self._answered: Deque[str] = deque(maxlen=8)
-
-    @property
-    def needs_position(self) -> bool:
-        """Return True while positions are needed."""
-        trip = self._progress
-        return self.settings.uses_position and trip is not None and trip.report != self._end_word(trip)
+        self._view = View()
+        self._trip: Optional[Trip] = None
+        self._goal = GoalTracker(settings)
+        self._at = Whereabouts(settings)
+        self._action: Optional[Action] = None
+        self._report: Optional[Report] = None
+        self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
 
     @property
     def goal(self) -> str:
         """Return the id of the goal in progress, "" if none."""
-        return self._progress.goal if self._progress else ""
+        return self._goal.current.name if self._goal.current else ""
+
+    @property
+    def is_open(self) -> bool:
+        """Return True while the robot may get goals and actions."""
+        return (self._view.running or self._view.returning) and not self._view.held
+
+    def is_placed(self, now: float) -> bool:
+        """Return True if the robot is known to be where the state has it, or the state says that it is not."""
+        return self._is_known(now) or self._view.displaced
 
     # What happens -----------------------------------------------------------------------------------------------------
 
-    def on_state(self, way: Optional[Movement], running: bool, lost: bool) -> None:
-        """Take from a state the movement of the robot (None: none); goals are sent only while it is `running`."""
-        self._running = running
-        if way is None or self._progress is None or self._progress.movement != way:
-            self._progress = Progress(way) if way else None  # also one that was begun by hand: its end counts
-        elif lost and self._progress.report not in ("", self._end_word(self._progress)):
-            self._progress.confirmed = True
+    def on_state(self, view: View, now: float) -> None:
+        """Take from a state what it says about the robot."""
+        before, self._view = self._view, view
+        if view.location != before.location:
+            self._enter(view, now)
+        if self._report is not None and self._is_shown(self._report.word, view):
+            self._report.confirmed = True
+        trip = self._trip
+        if trip is not None and trip.is_cancelled and before.held and not view.held:
+            trip.is_cancelled, trip.goal_at = False, now
+        if view.returning and view.post is not None and trip is None:
+            self._trip = Trip(Movement(view.location, view.post), now, is_return=True, goal_at=now)
+        elif trip is not None and trip.is_return and not view.returning:
+            self._trip = None
+            self._goal.drop()
 
     def start(self, way: Movement, now: float) -> None:
         """Start a movement: its goal is due now."""
-        self._progress = Progress(way, goal_at=now)
+        self._trip = Trip(way, now, goal_at=now)
 
-    def on_result(self, goal: str, stamp: float, status: int, now: float) -> None:
-        """Take a result of move_base for a goal that was sent at `stamp` (seconds)."""
-        trip = self._progress
-        if trip is None or trip.report == self._end_word(trip) or not self._is_current(trip, goal, stamp, status):
+    def act(self, trigger: str, location: str = "") -> None:
+        """Start an action: it is due as soon as the robot is known to be at its place."""
+        self._action = Action(trigger, location)
+
+    def on_result(self, answer: Answer, now: float) -> None:
+        """Take a result of move_base."""
+        trip = self._trip
+        if trip is None or trip.has_arrived or not self._goal.ends(answer):
             return
-        self._answered.append(goal)
-        if status == SUCCEEDED:
-            trip.goal = ""
-            if self.settings.ends == "result":
-                self._report(trip, self._end_word(trip))
-            elif self.settings.uses_position and trip.near_since is None:
-                self._log("warn", f"{self.name}: goal reached, but the position is not at {trip.movement.poi} yet")
+        if answer.status == SUCCEEDED:
+            self._on_success(trip)
+        elif answer.status in CANCELLED:
+            self._on_cancelled(trip, CANCELLED[answer.status], answer.text)
         else:
-            self._on_failure(trip, FAILURES[status], now)
+            self._on_failure(trip, FAILURES[answer.status], answer.text, now)
 
-    def on_position(self, x: float, y: float, now: float) -> None:
-        """Take a position on the map (metres)."""
-        trip = self._progress
-        if trip is None or not self.needs_position:
-            return
-        if math.hypot(x - trip.movement.x, y - trip.movement.y) > self.settings.end_tolerance:
-            trip.near_since = None
-        elif trip.near_since is None:
-            trip.near_since = now
+    def on_status(self, answers: Sequence[Answer], now: float, real: float) -> None:
+        """Take move_base's status: the goals that it has, and those that are over since a few seconds."""
+        for answer in self._goal.on_status(answers, real):
+            self.on_result(answer, now)
+        if self._trip is None and self._goal.others(answers):
+            self._at.on_departure()
+
+    def on_position(self, position: Position, now: float) -> None:
+        """Take a position on the map."""
+        self._at.on_position(position, now)
 
     # What is to be done -----------------------------------------------------------------------------------------------
 
-    def due(self, now: float, real: float) -> Tuple[Optional[Goal], Optional[str]]:
-        """Return the goal to send and the word to publish now, if any."""
-        trip = self._progress
-        if trip is None:
-            return None, None
-        if trip.near_since is not None and now >= self._arrival_at(trip.near_since) and self.needs_position:
-            self._report(trip, self._end_word(trip))
-        goal, word = None, None
-        if self._running and trip.goal_at is not None and now >= trip.goal_at:
-            goal = self._next_goal(trip, now)
-        if trip.report and not trip.confirmed and (trip.reports == 0 or real >= self._resend_at(trip)):
-            trip.reports, trip.reported, word = trip.reports + 1, real, trip.report
-        return goal, word
+    def due(self, now: float, real: float) -> Due:
+        """Return what is to be sent and published now, if anything."""
+        self._check_post(now)
+        trip = self._trip
+        goal, action = None, None
+        if trip is not None:
+            if not trip.is_return and now >= self._arrives_at(trip):
+                self._arrive(trip)
+            goal = self._due_goal(trip, now, real)
+        if self._action is not None and self._may_act(self._action, now):
+            action, self._action = self._action, None
+        word = self._report.due(real) if self._report is not None else None
+        return Due(goal, action, word)
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """Return when to call `due` again, in ROS time and on the real clock; None: not before the next input."""
-        trip = self._progress
-        if trip is None:
-            return None, None
-        moments: List[float] = [trip.goal_at] if self._running and trip.goal_at is not None else []
-        if trip.near_since is not None and self.needs_position:
-            moments.append(self._arrival_at(trip.near_since))
-        return min(moments, default=None), (self._resend_at(trip) if trip.reports and not trip.confirmed else None)
+        moments: List[float] = []
+        trip, post = self._trip, self._view.post
+        if trip is not None:
+            moments += [self._goal_due_at(trip)] if trip.goal_at is not None and self._may_go(trip) else []
+            moments += [] if trip.is_return else [self._arrives_at(trip)]
+        if post is not None and self._doubt is not None:
+            moments += [self._at.stands_at()] if self._at.is_near(post) else []
+            moments += [] if self._reports(DISPLACED) or self._view.displaced else [self._doubt + self._grace]
+        finite = [moment for moment in moments if moment < float("inf")]
+        return min(finite, default=None), (self._report.next_moment() if self._report else None)
 
-    # How --------------------------------------------------------------------------------------------------------------
+    # Where it is ------------------------------------------------------------------------------------------------------
 
-    def _next_goal(self, trip: Progress, now: float) -> Goal:
-        # A simple goal gets its id and stamp from the robot, whose clock may be behind. The goal before may still be
-        # answered (it is preempted by this one): what is nearer to that one is not taken for the answer to this.
-        self._earliest = now - min(self.settings.clock_skew, (now - self._sent) / 2)
-        self._sent = now
-        trip.goals += 1
-        trip.goal, trip.goal_at = f"{self.name}-{trip.movement.location}-{trip.goals}-{now:.6f}", None
-        return Goal(trip.goal, trip.movement)
+    def _is_known(self, now: float) -> bool:
+        """Return True if the robot is known to be at the place where the state has it."""
+        post = self._view.post
+        return post is None or self.settings.believes_words or self._at.is_known_at(post, now)
 
-    def _is_current(self, trip: Progress, goal: str, stamp: float, status: int) -> bool:
-        """Return True if the result belongs to the goal in progress."""
-        if not trip.goal or (status != SUCCEEDED and status not in FAILURES):
-            return False
-        if self.settings.goals == "action":
-            return goal == trip.goal
-        if goal and goal in self._answered:
-            return False
-        if not stamp or stamp >= self._earliest:  # who gives no stamp (a person, with rostopic) means now
-            return True
-        self._log("info", f"{self.name}: ignored a result from {self._sent - stamp:.1f} s before the current goal")
-        return False
+    def _check_post(self, now: float) -> None:
+        """Report that the robot is not known to be where the state has it, or that it is there again."""
+        post = self._view.post
+        if post is None or self.settings.believes_words:
+            return
+        if self._is_known(now):
+            self._doubt = None
+            if (self._view.displaced or self._reports(DISPLACED)) and not self._reports(BACK):
+                self.trouble = ""
+                self._log("info", f"{self.name} is at {post.poi}")
+                self._report = Report(self._word(BACK))
+            return
+        self._doubt = now if self._doubt is None else self._doubt
+        is_elsewhere = self._at.position is not None and not self._at.is_near(post)
+        if not is_elsewhere and now < self._doubt + self._grace:
+            return
+        self.trouble = self._at.describe(post)
+        if not self._view.displaced and not self._reports(DISPLACED):
+            self._log("warn", f"{self.name} {self.trouble}, where the state has it")
+            self._report = Report(self._word(DISPLACED, self.trouble))
 
-    def _on_failure(self, trip: Progress, how: str, now: float) -> None:
-        trip.goal = ""
-        if trip.goals <= self.settings.retries:
-            self._log("warn", f"{self.name} on its way to {trip.movement.poi}: {how}; trying again")
+    @property
+    def _grace(self) -> float:
+        return GRACE if self.settings.sources else 0.0
+
+    def _arrives_at(self, trip: Trip) -> float:
+        """Return when the robot has arrived by its position, if it does not move until then."""
+        if not self.settings.ends_by_position or trip.has_arrived or not self._at.is_near(trip.movement.place):
+            return float("inf")
+        return max(self._at.stands_at(), trip.since + self.settings.end_settle)
+
+    # Goals ------------------------------------------------------------------------------------------------------------
+
+    def _enter(self, view: View, now: float) -> None:
+        """Begin with another location: whatever belonged to the one before is over."""
+        self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
+        self._action = self._report = self._doubt = None
+        self.trouble = ""
+        self._goal.drop()
+        if view.way:
+            self._at.on_departure()
+
+    def _may_go(self, trip: Trip) -> bool:
+        """Return True if the robot may get a goal for this trip."""
+        wanted = self._view.returning if trip.is_return else self._view.running
+        return wanted and not (self._view.held or trip.is_cancelled or trip.is_over)
+
+    def _goal_due_at(self, trip: Trip) -> float:
+        """Return when the goal is due: a robot that is being moved is sent back when it stands."""
+        moment = trip.goal_at if trip.goal_at is not None else float("inf")
+        return max(moment, self._at.stands_at()) if trip.is_return and self._at.position is not None else moment
+
+    def _due_goal(self, trip: Trip, now: float, real: float) -> Optional[Goal]:
+        if not self._may_go(trip):
+            return None
+        if self._goal.is_lost:
+            self._log("warn", f"{self.name} does not have its goal {trip.movement.place.poi}: it is sent again")
+            return self._goal.send_again(now, real)
+        if now < self._goal_due_at(trip):
+            return None
+        trip.attempts, trip.goal_at = trip.attempts + 1, None
+        goal = Goal(f"{self.name}-{trip.movement.location}-{trip.attempts}-{now:.6f}", trip.movement)
+        self._goal.send(goal, now, real)
+        return goal
+
+    def _may_act(self, action: Action, now: float) -> bool:
+        """Return True if the action may be sent: what is done at once has been decided, also if the mission holds."""
+        return self._is_known(now) and (not action.location or (self._view.running and not self._view.held))
+
+    def _on_success(self, trip: Trip) -> None:
+        poi = trip.movement.place.poi
+        if self.settings.ends_by_position:
+            if not self._at.is_near(trip.movement.place):
+                self._log("warn", f"{self.name}: goal reached, but the position is not at {poi} yet")
+        elif trip.is_return or self.settings.ends == "words":
+            self._at.on_arrival(poi)
+        else:
+            self._arrive(trip)
+
+    def _arrive(self, trip: Trip) -> None:
+        """Report the end of the movement until the state shows it; no further goal is due."""
+        poi = trip.movement.place.poi
+        self._at.on_arrival(poi)
+        trip.has_arrived, trip.goal_at, self.trouble = True, None, ""
+        self._report = Report(f"{self.name}_{trip.movement.location}2{poi}")
+
+    def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
+        what = self._what(trip, how, text)
+        if trip.attempts <= self.settings.retries:
+            self.trouble = f"{what}; trying again"
+            self._log("warn", f"{self.name} {self.trouble}")
             trip.goal_at = now + self.settings.retry_delay
         else:
-            self._log("err", f"{self.name} on its way to {trip.movement.poi}: {how} {trip.goals} times; giving up")
-            self._report(trip, format_word(Word(self.name, BLOCKED if how == FAILURES[ABORTED] else FAILED)))
+            self.trouble = f"{what}; given up after {trip.attempts} goal{'s' * (trip.attempts > 1)}"
+            self._log("err", f"{self.name} {self.trouble}")
+            trip.has_failed = True
+            is_blocked = how == FAILURES[ABORTED] and not trip.is_return
+            self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble))
+
+    def _on_cancelled(self, trip: Trip, how: str, text: str) -> None:
+        self.trouble = self._what(trip, f"{how} by another node", text)
+        self._log("warn", f"{self.name} {self.trouble}; it is held until {self.name}:{RESUME} is published")
+        trip.is_cancelled, trip.attempts = True, 0
+        self._report = Report(self._word(HELD, self.trouble))
 
     @staticmethod
-    def _report(trip: Progress, word: str) -> None:
-        """Report this word until the state shows it; no further goal is due."""
-        trip.report, trip.reports, trip.confirmed, trip.goal_at = word, 0, False, None
+    def _what(trip: Trip, how: str, text: str) -> str:
+        way = "on its way back to" if trip.is_return else "on its way to"
+        return f"{way} {trip.movement.place.poi}: {how}" + (f": {text}" if text else "")
 
-    @staticmethod
-    def _resend_at(trip: Progress) -> float:
-        return trip.reported + resend_timeout(trip.reports)
+    # Reports ----------------------------------------------------------------------------------------------------------
 
-    def _arrival_at(self, near_since: float) -> float:
-        return near_since + self.settings.end_settle
+    def _word(self, event: str, text: str = "") -> str:
+        return format_report(RobotReport(self.name, event, text))
 
-    def _end_word(self, trip: Progress) -> str:
-        return f"{self.name}_{trip.movement.location}2{trip.movement.poi}"
+    def _reports(self, event: str) -> bool:
+        """Return True if the present report is of this kind."""
+        return self._report is not None and self._report.word.startswith(f"{self.name}:{event}")
+
+    def _is_shown(self, word: str, view: View) -> bool:
+        """Return True if the state shows what the word reports."""
+        shown = {FAILED: view.lost, BLOCKED: view.lost, HELD: view.held}
+        shown.update({DISPLACED: view.displaced, BACK: not view.displaced})
+        return any(shown[event] for event in shown if word.startswith(f"{self.name}:{event}"))

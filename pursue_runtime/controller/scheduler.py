@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import List, NamedTuple, Optional, Tuple
+from typing import Callable, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.locations import action_of, is_under_way
+from pursue_runtime.locations import action_of, is_movement, is_under_way
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older
 from pursue_runtime.strategy import Command, Plans, Strategy
 from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
+
+UNREADY = 0.2
+"""Seconds of real time until a command whose robot is not known to be in its place is looked at again."""
 
 
 class StartedActivity(NamedTuple):
@@ -81,8 +84,11 @@ class CommandScheduler:
         self.counts["taken"] += len(orders)
         return orders
 
-    def on_timer(self, now: float) -> Optional[Word]:
-        """Return the word to publish now: a command that is due, or one that got no answer."""
+    def on_timer(self, now: float, is_placed: Callable[[str], bool] = lambda agent: True) -> Optional[Word]:
+        """Return the word to publish now: a command that is due, or one that got no answer.
+
+        One that begins an action is not published unless `is_placed` is true of its agent.
+        """
         state = self.state
         if state is None or state.status != RUNNING:
             return None
@@ -98,6 +104,9 @@ class CommandScheduler:
         if self.planned is None or now < self.planned[0]:
             return None
         command = self.planned[1]
+        if not is_under_way(command.origin) and not is_movement(command.target) and not is_placed(command.agent):
+            self._patience = UNREADY
+            return None
         self.planned = None
         self._patience = resend_timeout(self._unanswered + 1)
         self.counts["sent_again" if self._unanswered else "sent"] += 1

@@ -83,10 +83,10 @@ class Controller:
         scheduler = self.follower.scheduler
         if scheduler is not None:
             orders = scheduler.on_state(state, rospy.get_time())
+            self.exegg.follow(state)  # before any command: a robot that is not in its place is reported first
             if scheduler.is_new:  # else the alarm stays as it is
                 self.wake()
             self.learned()
-            self.exegg.follow(state)
             for order in orders:
                 self.exegg.exeggute(*order)
             receipt = scheduler.repeated_receipt()
@@ -135,7 +135,7 @@ class Controller:
             scheduler = self.follower.scheduler
             if scheduler is None:
                 return
-            word = scheduler.on_timer(rospy.get_time())
+            word = scheduler.on_timer(rospy.get_time(), self.exegg.is_placed)
             if word:
                 self.exegg.announce(format_word(word))
             self.alarm.set(*scheduler.next_wakeup())
@@ -161,7 +161,10 @@ class Controller:
             return Report(False, WARN, "the observer has not connected yet", values)
         if scheduler is None:
             return Report(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
-        return Report(True, ERROR if state.status in (LOST, STOPPED) else OK, state.status, values)
+        if state.status in (LOST, STOPPED):
+            return Report(True, ERROR, state.status, values)
+        troubles = self.exegg.troubles()
+        return Report(True, WARN if troubles else OK, "; ".join([state.status, *troubles]), values)
 
     def run(self) -> int:
         """Run until the mission ends; return the exit status."""

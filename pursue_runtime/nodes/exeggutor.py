@@ -11,8 +11,12 @@ from typing import Dict, List, Mapping
 import rospy
 from std_msgs.msg import String
 
-from pursue_runtime.controller.navigation import Movement, Navigation, read_settings
+from pursue_runtime.controller.goal import Answer, Movement
+from pursue_runtime.controller.navigation import Navigation, View
+from pursue_runtime.controller.settings import read_settings
+from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.locations import is_action, is_movement, movement
+from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.node import Alarm, Ending, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.poses import Table
@@ -22,7 +26,7 @@ from pursue_runtime.words import EVENTS
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
 LOOKS = 0.2
-"""Seconds of real time between two looks at tf, while a robot is under way."""
+"""Seconds of real time between two looks at tf."""
 
 
 class Exeggutor:
@@ -31,6 +35,7 @@ class Exeggutor:
     def __init__(self, ending: Ending) -> None:
         self._lock = threading.RLock()
         self._poses: Mapping[str, Table] = {}
+        self._places: Dict[str, Dict[str, Place]] = {}
         self._ways: Dict[str, Dict[str, Movement]] = {}
         self._status = RUNNING
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
@@ -48,15 +53,16 @@ class Exeggutor:
                 link.keep("", False, "")
             self._robots, self._status = {}, RUNNING
             self._poses = poses
-            self._ways = {robot: _ways(places) for robot, places in poses.items()}
+            self._places = {robot: {poi: place_of(poi, pose) for poi, pose in poses[robot].items()} for robot in poses}
+            self._ways = {robot: _ways(places) for robot, places in self._places.items()}
             given = rospy.get_param("~", {})
             settings = {robot: read_settings(robot, given) for robot in poses}
             for robot in set(self._links) - set(settings):
                 self._links.pop(robot).close()
             for robot in settings:
                 if robot not in self._links:
-                    answer, place = partial(self._result, robot), partial(self._place, robot)
-                    self._links[robot] = RobotLink(robot, settings[robot], answer, place)
+                    inputs = (partial(take, robot) for take in (self._result, self._statuses, self._place))
+                    self._links[robot] = RobotLink(robot, settings[robot], *inputs)
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
 
     @staticmethod
@@ -79,12 +85,30 @@ class Exeggutor:
         with self._lock:
             before, self._status = self._status, state.status
             for name, robot in self._robots.items():
-                here = state.locations.get(name, "") if state.status in LIVE else ""
                 if state.status in ENDED and before not in ENDED:
                     self._call_back_one(name)
-                robot.on_state(self._ways[name].get(here), state.status == RUNNING, name in state.lost)
-                self._links[name].keep(here, state.status == RUNNING, robot.goal)
+                view = self._view(name, state)
+                robot.on_state(view, rospy.get_time())
+                self._links[name].keep(view.location, robot.is_open, robot.goal)
             self._act()
+
+    def _view(self, name: str, state: SystemState) -> View:
+        """What the state says about this robot."""
+        here = state.locations.get(name, "") if state.status in LIVE else ""
+        lists = (name in names for names in (state.lost, state.held, state.displaced, state.returning))
+        way, post = self._ways[name].get(here), self._places[name].get(poi_of(here))
+        return View(here, way, post, state.status == RUNNING, *lists)
+
+    def is_placed(self, name: str) -> bool:
+        """Return True if the robot is known to be where the state has it, or the state says that it is not."""
+        with self._lock:
+            robot = self._robots.get(name)
+            return robot is None or robot.is_placed(rospy.get_time())
+
+    def troubles(self) -> List[str]:
+        """Return what an operator should know about the robots."""
+        with self._lock:
+            return [f"{name} {robot.trouble}" for name, robot in self._robots.items() if robot.trouble]
 
     def exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
         """The agent begins `trigger`, from `origin` to `target`: order its robot to do so."""
@@ -98,26 +122,33 @@ class Exeggutor:
             with self._lock:
                 self._robots[agent].start(way, rospy.get_time())
                 self._act()
-        elif target == origin:
-            self._links[agent].do(trigger)
-        elif is_action(target):
-            self._links[agent].do(trigger, target)
+        elif target == origin or is_action(target):
+            with self._lock:
+                self._robots[agent].act(trigger, target if target != origin else "")
+                self._act()
 
     # From the robots --------------------------------------------------------------------------------------------------
 
-    def _result(self, robot: str, goal: str, stamp: float, status: int) -> None:
+    def _result(self, name: str, answer: Answer) -> None:
         with self._lock:
-            if robot not in self._robots:
-                return
-            self._robots[robot].on_result(goal, stamp, status, rospy.get_time())
-            self._act()
+            robot = self._robots.get(name)
+            if robot is not None:
+                robot.on_result(answer, rospy.get_time())
+                self._act()
 
-    def _place(self, robot: str, x: float, y: float) -> None:
+    def _statuses(self, name: str, answers: List[Answer]) -> None:
         with self._lock:
-            if robot not in self._robots:
-                return
-            self._robots[robot].on_position(x, y, rospy.get_time())
-            self._act()
+            robot = self._robots.get(name)
+            if robot is not None:
+                robot.on_status(answers, rospy.get_time(), time.monotonic())
+                self._act()
+
+    def _place(self, name: str, position: Position) -> None:
+        with self._lock:
+            robot = self._robots.get(name)
+            if robot is not None:
+                robot.on_position(position, rospy.get_time())
+                self._act()
 
     # What is due ------------------------------------------------------------------------------------------------------
 
@@ -126,30 +157,32 @@ class Exeggutor:
         now, real = rospy.get_time(), time.monotonic()
         moments, patience = [], []
         for name, robot in self._robots.items():
-            goal, word = robot.due(now, real)
+            goal, action, word = robot.due(now, real)
             if goal is not None:
-                self._links[name].go(goal, self._poses[name][goal.movement.poi])
+                self._links[name].go(goal, self._poses[name][goal.movement.place.poi])
+            if action is not None:
+                self._links[name].do(*action)
             if word is not None:
                 rospy.loginfo("reports %s", word)
                 self.announce(word)
             moment, repeat = robot.next_moments()
             moments += [] if moment is None else [moment]
             patience += [] if repeat is None else [repeat - real]
-            if robot.needs_position != self._links[name].watched:
+            if not self._links[name].watched:
                 patience.append(0.0)  # topics are changed by the alarm's thread: that may have to wait for the master
-            elif robot.needs_position and robot.settings.ends == "tf":
+            elif self._links[name].looks:
                 patience.append(LOOKS)
         self._alarm.set(min(moments, default=None), max(0.0, min(patience)) if patience else None)
 
     def _on_alarm(self) -> None:
         """Look where robots are, and do what is due."""
         with self._lock:
-            robots, links = dict(self._robots), dict(self._links)
-        for name, robot in robots.items():
-            links[name].watch(robot.needs_position)
-            place = links[name].look()
-            if place is not None:
-                self._place(name, *place)
+            links = {name: self._links[name] for name in self._robots}
+        for name, link in links.items():
+            link.watch()
+            position = link.look()
+            if position is not None:
+                self._place(name, position)
         with self._lock:
             self._act()
 
@@ -167,6 +200,6 @@ class Exeggutor:
             self._links[name].cancel(robot.goal)
 
 
-def _ways(places: Table) -> Dict[str, Movement]:
+def _ways(places: Mapping[str, Place]) -> Dict[str, Movement]:
     """A robot's movement for each location in which it is under way."""
-    return {movement(x, y): Movement(movement(x, y), y, *places[y][:2]) for x in places for y in places}
+    return {movement(x, y): Movement(movement(x, y), places[y]) for x in places for y in places}

@@ -268,6 +268,8 @@ class Observer:
             values.update({"plan": mission.plan, "planning": f"{self.planner.seconds:.0f} s"})
             blocked = " ".join("-".join(way) for way in sorted(mission.blocked))
             values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
+            robots = {"held": mission.robots.held, "displaced": mission.robots.displaced}
+            values.update({key: " ".join(sorted(names)) for key, names in robots.items()})
             values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")
             warns = mission.late or mission.lost or mission.blocked or mission.status == HOLDING

@@ -11,9 +11,10 @@ import rospy
 from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
-from pursue_runtime.controller.navigation import Goal, Settings
+from pursue_runtime.controller.goal import Answer, Goal
+from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
-from pursue_runtime.locations import is_under_way
 from pursue_runtime.nodes.node import publish_to_one
 
 PublishToOne = Callable[[Any], None]
@@ -48,7 +49,7 @@ def needed(package: str, module: str, why: str) -> Any:
 
 
 class RobotLink(rospy.SubscribeListener):
-    """One robot's topics. `answer` gets id, stamp and status of each result, `place` gets x and y.
+    """One robot's topics. `result` gets each result, `statuses` the goals in each status, `place` each position.
 
     A robot that connects later gets then the order that still stands: a controller that was started again learns from
     the first state what its robot should be doing, some milliseconds before the robot is connected.
@@ -58,27 +59,32 @@ class RobotLink(rospy.SubscribeListener):
         self,
         robot: str,
         settings: Settings,
-        answer: Callable[[str, float, int], None],
-        place: Callable[[float, float], None],
+        result: Callable[[Answer], None],
+        statuses: Callable[[List[Answer]], None],
+        place: Callable[[Position], None],
     ) -> None:
         super().__init__()
-        self.watched = False
-        self._robot, self._settings, self._answer, self._place = robot, settings, answer, place
+        self.watched = not settings.sources
+        self._robot, self._settings = robot, settings
+        self._on_result, self._on_statuses, self._place = result, statuses, place
         self._lock = threading.Lock()
         self._standing: Dict[str, Order] = {}
         self._open = True
         self._late: List[Tuple[str, Optional[PublishToOne]]] = []
-        self._ears: Any = None
+        self._positions: List[Any] = []
         self._cancel: Any = None
         self._results: Any = None
+        self._status: Any = None
         self._frames: Any = None
+        self._seen_by_tf = False  # then amcl_pose, which is published now and then, does not count
         self._messages: Any = None
         self._tf: Any = None
         if settings.uses_results:
             why = "goals:=action" if settings.goals == "action" else "ends:=result"
             self._messages = needed("move_base_msgs", "move_base_msgs.msg", why)
-        if settings.ends == "tf":
-            self._tf = needed("tf2_ros", "tf2_ros", "ends:=tf")
+        if "tf" in settings.sources:
+            with contextlib.suppress(*([DataError] if "pose" in settings.sources else [])):  # one of them is enough
+                self._tf = needed("tf2_ros", "tf2_ros", "a position by tf")
         self._act = rospy.Publisher(f"{robot}/pursue/actions", String, self, queue_size=10)
         if settings.goals == "action":
             topic, kind = f"{robot}/move_base/goal", self._messages.MoveBaseActionGoal
@@ -92,6 +98,11 @@ class RobotLink(rospy.SubscribeListener):
             kind = self._messages.MoveBaseActionResult
             topic = f"{robot}/move_base/result"
             self._results = rospy.Subscriber(topic, kind, self._result, queue_size=100, tcp_nodelay=True)
+        if not settings.simulated:
+            with contextlib.suppress(DataError):  # without these messages the robot has no such status either
+                kind = needed("actionlib_msgs", "actionlib_msgs.msg", "move_base/status").GoalStatusArray
+                topic = f"{robot}/move_base/status"
+                self._status = rospy.Subscriber(topic, kind, self._statuses, queue_size=10, tcp_nodelay=True)
 
     # To the robot -----------------------------------------------------------------------------------------------------
 
@@ -102,14 +113,14 @@ class RobotLink(rospy.SubscribeListener):
         stamped.header.stamp = rospy.Time.now()
         position, orientation = stamped.pose.position, stamped.pose.orientation
         position.x, position.y, position.z = pose[:3]
-        orientation.x, orientation.y, orientation.z, orientation.w = pose[3:]
+        orientation.x, orientation.y, orientation.z, orientation.w = pose[3:] if any(pose[3:]) else (0.0, 0.0, 0.0, 1.0)
         message: Any = stamped
         if self._settings.goals == "action":
             message = self._messages.MoveBaseActionGoal(header=stamped.header)
             message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
             message.goal.target_pose = stamped
         self._send(Order(goal.movement.location, self._move, message))
-        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.movement.poi, position.x, position.y)
+        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.movement.place.poi, position.x, position.y)
 
     def do(self, trigger: str, location: str = "") -> None:
         """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""
@@ -119,7 +130,7 @@ class RobotLink(rospy.SubscribeListener):
     def _send(self, order: Order) -> None:
         topic = order.publisher.resolved_name
         with self._lock:
-            if is_under_way(order.location):
+            if order.location:
                 self._standing[topic] = order
                 if not self._open:
                     self._late.append((topic, None))
@@ -158,50 +169,63 @@ class RobotLink(rospy.SubscribeListener):
 
     def close(self) -> None:
         """The robot is no more for us to command."""
-        self.watch(False)
-        for topic in (self._act, self._move, self._cancel, self._results):
+        for topic in (self._act, self._move, self._cancel, self._results, self._status, *self._positions):
             if topic is not None:
                 topic.unregister()
 
     # From the robot ---------------------------------------------------------------------------------------------------
 
     def _result(self, message: Any) -> None:
-        status = message.status
-        self._answer(status.goal_id.id, status.goal_id.stamp.to_sec(), status.status)
+        self._on_result(_answer(message.status))
 
-    def watch(self, wanted: bool) -> None:
-        """Looks where the robot is from now on, or does not any more. A robot that stands costs nothing; and what is
-        received first is recent: amcl_pose is latched."""
-        if wanted == self.watched:
+    def _statuses(self, message: Any) -> None:
+        self._on_statuses([_answer(status) for status in message.status_list])
+
+    def watch(self) -> None:
+        """Read the robot's position from now on. What is received first is recent: amcl_pose is latched."""
+        if self.watched:
             return
-        self.watched = wanted
-        if self._ears is not None:
-            self._ears.unregister()
-            self._ears = self._frames = None
-        if wanted and self._settings.ends == "tf":
+        self.watched = True
+        if self._tf is not None:
             self._frames = self._tf.Buffer(debug=False)
-            self._ears = self._tf.TransformListener(self._frames)
-        elif wanted:
-            topic = f"{self._robot}/amcl_pose"
-            self._ears = rospy.Subscriber(topic, PoseWithCovarianceStamped, self._pose, queue_size=10, tcp_nodelay=True)
+            self._positions.append(self._tf.TransformListener(self._frames))
+        if "pose" in self._settings.sources:
+            topic, kind = f"{self._robot}/amcl_pose", PoseWithCovarianceStamped
+            self._positions.append(rospy.Subscriber(topic, kind, self._pose, queue_size=10, tcp_nodelay=True))
+
+    @property
+    def looks(self) -> bool:
+        """Return True if `look` is to be called now and then."""
+        return self._frames is not None
 
     def _pose(self, message: PoseWithCovarianceStamped) -> None:
         frame, wanted = message.header.frame_id, self._settings.map_frame
         if frame.lstrip("/") != wanted.lstrip("/"):
             what = f"{self._robot}/amcl_pose is in frame {frame!r}; expected {wanted!r} (~map_frame)"
             rospy.logwarn_throttle(10.0, what)
-            return
-        position = message.pose.pose.position
-        self._place(position.x, position.y)
+        elif not self._seen_by_tf:
+            pose = message.pose.pose
+            self._place(_position(pose.position, pose.orientation))
 
-    def look(self) -> Optional[Tuple[float, float]]:
-        """Where tf has the robot now; None where it does not know."""
+    def look(self) -> Optional[Position]:
+        """Return where tf has the robot now; None where it does not know."""
         if self._frames is None:
             return None
         frames = self._settings.map_frame, self._settings.base_frame
         try:
-            found = self._frames.lookup_transform(*frames, rospy.Time(0)).transform.translation
+            found = self._frames.lookup_transform(*frames, rospy.Time(0)).transform
         except self._tf.TransformException as problem:
-            rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {problem}")
+            if self._settings.sources == ("tf",):
+                rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {problem}")
             return None
-        return found.x, found.y
+        self._seen_by_tf = True
+        return _position(found.translation, found.rotation)
+
+
+def _answer(status: Any) -> Answer:
+    """What a GoalStatus says."""
+    return Answer(status.goal_id.id, status.goal_id.stamp.to_sec(), status.status, status.text)
+
+
+def _position(at: Any, orientation: Any) -> Position:
+    return Position(at.x, at.y, yaw_of(orientation.x, orientation.y, orientation.z, orientation.w))

@@ -8,7 +8,7 @@ import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
 from pursue_msgs.msg import SystemState as Message
 
-from pursue_runtime.state import STATUSES, SystemState
+from pursue_runtime.state import AGENT_LISTS, STATUSES, SystemState
 from pursue_runtime.words import STATE
 
 
@@ -27,8 +27,7 @@ def message_of(state: SystemState) -> Message:
         automata=[AutomatonLocation(name, location) for name, location in state.locations.items()],
         variables=[Variable(name, value) for name, value in state.values.items()],
         clocks=[ClockValue(name, value) for name, value in state.clocks.items()],
-        late=list(state.late),
-        lost=list(state.lost),
+        **{key: list(getattr(state, key)) for key in AGENT_LISTS},
     )
 
 
@@ -50,9 +49,8 @@ def state_of(message: Message) -> SystemState:
         reason=message.reason,
         unit=message.time_unit,
         plan=message.plan,
-        late=tuple(message.late),
-        lost=tuple(message.lost),
         mission=message.mission,
+        **{key: tuple(getattr(message, key)) for key in AGENT_LISTS},
     )
 
 

@@ -9,9 +9,23 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
+from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_of
 from pursue_runtime.state import HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import BLOCKED, FAILED, FINISH, FREE, PING, PLANNED, START, STOP, Word, parse_word
+from pursue_runtime.words import (
+    BLOCKED,
+    FAILED,
+    FINISH,
+    FREE,
+    PING,
+    PLANNED,
+    START,
+    STOP,
+    RobotReport,
+    Word,
+    parse_report,
+    parse_word,
+)
 from pursue_runtime.zones import EPSILON, INFINITY, due
 
 Log = Callable[[str, str], None]
@@ -58,12 +72,14 @@ class Mission:
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
         self.blocked: Set[Way] = set()
+        self.robots = Robots(model)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
         self._on_uncovered, self._lost_after = on_uncovered, lost_after
         self._early: Dict[Word, float] = {}  # and their moments
         self._planning = Planning(controllers)
         self._warned = False
+        self._shown = self.robots.revision()  # in the newest state
         self._automata = Automata(model, unit)
         self._event = self._agent = ""
         self._ended: Optional[float] = None
@@ -79,7 +95,8 @@ class Mission:
         position = self.position(now)
         late, lost = tuple(sorted(self.late)), tuple(sorted(self.lost))
         what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
-        return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
+        robots = (tuple(sorted(names)) for names in (self.robots.held, self.robots.displaced, self.robots.returning))
+        return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what, *robots)
 
     @property
     def plan_request(self) -> Optional[PlanRequest]:
@@ -95,7 +112,8 @@ class Mission:
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        return (self.seq, self.status, self.reason, *people, *self.blocked, *self._early, *self._planning.revision())
+        robots = *self.robots.revision(), *self.blocked
+        return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
         """Return when to call `on_time` if no input comes before; None: never."""
@@ -118,24 +136,24 @@ class Mission:
         orders = {START: self._start, PING: self._ping, STOP: self._stop, FINISH: self._finish}
         if text.strip() in orders:
             return orders[text.strip()](now)
-        word = parse_word(text) if len(text) <= MAX_WORD_LENGTH else None
+        readable = len(text) <= MAX_WORD_LENGTH
+        report = parse_report(text) if readable else None
+        if report is not None and self.status in LIVE:
+            return self._on_robot_report(report, now)
+        word = parse_word(text) if readable else None
         if word is None:
             self._reject("unreadable", f"not a word: {text[:80]!r}")
         elif self.status not in LIVE:
             self._reject("impossible", f"{text} while the mission is {self.status}")
         elif word.event == PLANNED and word.seq is not None:
             return self._on_plan_receipt(word.agent, word.seq, now)
-        elif word.event == FAILED:
-            return self._on_failure(word.agent, now)
-        elif word.event in (BLOCKED, FREE):
-            return self._on_way(word, now)
         elif word.seq is not None and self.status == HOLDING:
             self._reject("held", f"{text} while the mission holds", level="info")
         elif word.seq is not None and word.seq != self.seq:
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         else:
             moves = self._moves_of(word, now)
-            return self._take(moves, now) if moves else []
+            return self._take_command(moves, now) if moves and word.seq is not None else self._take(moves, now)
         return []
 
     def on_time(self, now: float) -> List[SystemState]:
@@ -143,9 +161,12 @@ class Mission:
         if self.status not in LIVE:
             return []
         position = self.position(now)
-        moves = self._automata.internal_move(position) or self._due_command(position, now)
+        moves = self._automata.internal_move(position)
         if moves:
             return self._take(moves, now)
+        moves = self._due_command(position, now)
+        if moves:
+            return self._take_command(moves, now)
         for name, delay in self._automata.bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
                 continue
@@ -250,16 +271,24 @@ class Mission:
                 return self.model.joint_move(position, word.event, word.agent)
         return None
 
+    def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
+        """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
+        if self.robots.refuse(moves, self.position(now).values):
+            self._reject("held", f"{moves[0].edge.word}: {' and '.join(self.robots.reasons())}")
+            return self._status_changes(now)
+        return self._take(moves, now)
+
     def _take(self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "") -> List[SystemState]:
         """Apply the moves, and then internal edges of objectives that are enabled."""
         states: List[SystemState] = []
         while moves:
             self._automata.take(moves, now)
+            self.robots.on_moves(moves)
             for name, _ in moves:
                 self.late.discard(name)
                 self.lost.pop(name, None)
                 self._planning.excused -= {name}
-            self.seq += 1
+            self.seq, self._shown = self.seq + 1, self.robots.revision()
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
@@ -285,15 +314,15 @@ class Mission:
     # Holding and replanning ------------------------------------------------------------------------------------------
 
     def _status_changes(self, now: float) -> List[SystemState]:
-        """Return a new state if the status, its reason or the lost agents have changed without an event."""
+        """Return a new state if the status, its reason or the waiting robots have changed without an event."""
         if self.status not in LIVE:
             return []
-        before = self.status, self.reason, set(self.lost)
+        before = self.status, self.reason, self._shown
         self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
-        return [] if before == (self.status, self.reason, set(self.lost)) else self._new_state(now)
+        return [] if before == (self.status, self.reason, self.robots.revision()) else self._new_state(now)
 
     def _new_state(self, now: float) -> List[SystemState]:
-        self.seq += 1
+        self.seq, self._shown = self.seq + 1, self.robots.revision()
         self._event = self._agent = ""
         return [self.state(now)]
 
@@ -305,6 +334,8 @@ class Mission:
         trouble = self._planning.unexcused(self.lost)
         trouble = trouble or self._planning.unavoided(self.blocked)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
+        waits = self.robots.reasons()
+        trouble = "" if waits else trouble  # another plan begins when these robots can go on
         self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
         if trouble and self._on_uncovered == "stop":
             self._conclude(STOPPED, trouble, now)
@@ -313,7 +344,7 @@ class Mission:
             if not self._warned:
                 self._log("warn", trouble)
             self._warned, trouble = True, ""
-        reasons = [f"{node} is silent" for node in sorted(self.silent)]
+        reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
         if not trouble:
             self._planning.reset()
         elif self._request_plan(now):
@@ -361,40 +392,50 @@ class Mission:
         self._update_status(now, self._tolerance)
         return self._new_state(now)
 
-    def _on_failure(self, agent: str, now: float) -> List[SystemState]:
-        """Take a robot's report that it cannot finish what it is doing."""
-        if not is_under_way(self._automata.location_of(agent)):
-            self._reject("impossible", f"{agent}:{FAILED}: expected the name of an agent that is under way")
+    def _on_robot_report(self, report: RobotReport, now: float) -> List[SystemState]:
+        """Take a report about a robot: it has failed, is held or resumes, is displaced or back in its place."""
+        agent, location, wrong = report.agent, self._automata.location_of(report.agent), ""
+        if report.event in (BLOCKED, FREE):
+            return self._on_way(report, now)
+        if report.event != FAILED:
+            wrong = self.robots.on_report(report, location)
+        elif not is_under_way(location) and agent not in self.robots.displaced:
+            wrong = "expected the name of an agent that is under way"
         elif agent not in self.lost:
-            self._mark_lost(agent, "has failed")
+            self._mark_lost(agent, f"has failed {report.text}".rstrip())
+        if wrong:
+            self._reject("impossible", f"{agent}:{report.event}: {wrong}")
         return self._status_changes(now)
 
-    def _on_way(self, word: Word, now: float) -> List[SystemState]:
+    def _on_way(self, report: RobotReport, now: float) -> List[SystemState]:
         """Take a report that a way is blocked, or free again; a robot that reports it on its way cannot go on."""
-        agent = word.agent
+        agent = report.agent
         place = self._automata.location_of(agent)
         way = way_of(self.model, place or agent)
         if way is None:
             expected = "the name of a movement, such as going_a_to_b, or of an agent that moves"
-            self._reject("impossible", f"{agent}:{word.event}: expected {expected}")
+            self._reject("impossible", f"{agent}:{report.event}: expected {expected}")
             return []
-        if word.event == FREE:
+        if report.event == FREE:
             self.blocked.discard(way)
         else:
             self.blocked.add(way)
             if place and agent not in self.lost:
-                self._mark_lost(agent, f"has found that {in_words(way)} is blocked")
+                why = f": {report.text}" if report.text else ""
+                self._mark_lost(agent, f"has found that {in_words(way)} is blocked{why}")
         self._log("warn", blocked_reason(self.blocked) or "no way is blocked any more")
         return self._status_changes(now)
 
     def _mark_lost(self, agent: str, why: str) -> None:
         self.lost[agent] = why
+        self.robots.drop(agent)
         self._log("err", f"{agent} counts as lost: it {why}")
 
     def _late_agents(self, position: Position) -> List[Tuple[str, float]]:
         """Return the agents that are late but not lost, with their delays (time units; negative: overdue)."""
         acting = self._automata.bounds(position, *ACTING)
-        return [(name, delay) for name, delay in acting if name in self.late and name not in self.lost]
+        waiting = self.robots.waiting()
+        return [(name, delay) for name, delay in acting if name in self.late and name not in {*self.lost, *waiting}]
 
     # Ends -------------------------------------------------------------------------------------------------------------
 

@@ -1,10 +1,18 @@
 #!/usr/bin/env python3
-"""Robots as move_base and amcl show them: goals of both kinds, results, positions; and all that may go wrong.
+"""Robots as move_base and amcl show them: goals of both kinds, status, feedback, results, positions; and their faults.
 
-Parameter ~robots; of each of them: start ([x, y]), travel (seconds to any goal), acts (seconds that an action takes),
-plays (what becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once),
-reject (at once), never, twice (the result comes twice), stale (a result of long ago comes first).
-It says what it hears: `bot1 goal 1.00 2.00`, `bot1 cancel`, `bot1 action e`.
+Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
+action takes), boot (seconds from the start of move_base until its action server is up), recovery (seconds until a robot
+that is stuck gives up), plays (what becomes of its first goal, of its second …; the last one of all that follow):
+succeed, abort (at once), reject (at once), never, stuck (it gives up after the recovery), twice (the result comes
+twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
+
+Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed and
+started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`.
+
+Standard output has what each robot receives: `bot1 goal 1.00 2.00`, `bot1 lost 1.00 2.00` (a simple goal that came
+before the action server was up), `bot1 cancel`, `bot1 action e 1.00 2.00` (with its position then); and `bot1 stands
+1.00 2.00` on arrival, `bot1 up` when the action server is up.
 """
 
 from __future__ import annotations
@@ -16,121 +24,262 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import rospy
 import tf2_ros
-from actionlib_msgs.msg import GoalID, GoalStatus
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, TransformStamped
-from move_base_msgs.msg import MoveBaseActionGoal, MoveBaseActionResult
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped, TransformStamped
+from move_base_msgs.msg import MoveBaseActionFeedback, MoveBaseActionGoal, MoveBaseActionResult
 from std_msgs.msg import String
 
 STEP = 0.05
-"""Seconds between two positions of a robot that moves."""
+"""Seconds between two positions of a robot that moves, and between two feedback messages."""
 
-SECOND_OPINION = 0.15
-"""Metres that a robot moves before amcl tells its pose again."""
+STATUS_PERIOD, STATUS_TIMEOUT = 0.2, 5.0
+"""Seconds between two status messages, and for which a goal that is over stays in them."""
+
+AMCL_DISTANCE, AMCL_ANGLE = 0.15, 0.5
+"""Metres and radians that a robot moves or turns before amcl publishes its pose again."""
+
+ACCEPTED = "This goal has been accepted by the simple action server"
+TEXTS = {
+    "succeed": (GoalStatus.SUCCEEDED, "Goal reached."),
+    "stuck": (GoalStatus.ABORTED, "Failed to find a valid plan. Even after executing recovery behaviors."),
+    "abort": (GoalStatus.ABORTED, "Failed to find a valid control. Even after executing recovery behaviors."),
+    "reject": (GoalStatus.REJECTED, "This goal was rejected."),
+    "cancel": (GoalStatus.PREEMPTED, ""),
+    "replace": (
+        GoalStatus.PREEMPTED,
+        "This goal was canceled because another goal was received by the simple action server",
+    ),
+}
+"""What move_base says of its goals."""
 
 
-class FakeRobot:
-    """One robot; its positions go to amcl_pose (latched, only while it moves) and to tf (always)."""
+class Body:
+    """The robot itself: where it is, and on which way; its pose goes to amcl_pose (when it has moved) and tf."""
+
+    def __init__(self, name: str, start: List[float]) -> None:
+        self.name = name
+        self.at: Tuple[float, float, float] = (start[0], start[1], start[2] if len(start) > 2 else 0.0)
+        self.way: Optional[Tuple[float, float, Tuple[float, float, float], Tuple[float, float, float]]] = None
+        self._shown = (math.inf, math.inf, 0.0)
+        self._frames = tf2_ros.TransformBroadcaster()
+        self._poses = rospy.Publisher(f"{name}/amcl_pose", PoseWithCovarianceStamped, queue_size=10, latch=True)
+
+    def go(self, target: Tuple[float, float, float], travel: float) -> None:
+        """Set out."""
+        self.way = (rospy.get_time(), travel, self.at, target)
+
+    def move(self) -> bool:
+        """Move on; return True on arrival."""
+        if self.way is None:
+            return False
+        since, travel, start, target = self.way
+        share = min(1.0, (rospy.get_time() - since) / travel) if travel > 0.0 else 1.0
+        self.at = tuple(a + share * (b - a) for a, b in zip(start, target))  # type: ignore[assignment]
+        self.way = None if share == 1.0 else self.way
+        return share == 1.0
+
+    def show(self) -> None:
+        """Publish where it is."""
+        frame = TransformStamped(child_frame_id=f"{self.name}/base_link")
+        frame.header.stamp, frame.header.frame_id = rospy.Time.now(), "map"
+        pose = self.pose()
+        frame.transform.translation.x, frame.transform.translation.y = self.at[:2]
+        frame.transform.rotation = pose.orientation
+        self._frames.sendTransform(frame)
+        x, y, yaw = self._shown
+        moved = math.hypot(self.at[0] - x, self.at[1] - y)
+        if moved > AMCL_DISTANCE or abs(math.remainder(self.at[2] - yaw, math.tau)) > AMCL_ANGLE:
+            self._shown = self.at
+            message = PoseWithCovarianceStamped(header=frame.header)
+            message.pose.pose = pose
+            self._poses.publish(message)
+
+    def pose(self) -> Pose:
+        """Return its pose."""
+        pose = Pose()
+        pose.position.x, pose.position.y = self.at[:2]
+        pose.orientation.z, pose.orientation.w = math.sin(self.at[2] / 2), math.cos(self.at[2] / 2)
+        return pose
+
+
+class FakeMoveBase:
+    """A move_base, with its simple action server, and the robot that it drives."""
 
     def __init__(self, name: str, settings: Dict[str, Any]) -> None:
         self.name = name
         self.lock = threading.RLock()
-        self.x, self.y = settings.get("start", [0.0, 0.0])
-        self.travel = float(settings.get("travel", 1.0))
-        self.acts = float(settings.get("acts", 1.0))
+        self.body = Body(name, settings.get("start", [0.0, 0.0]))
+        self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
+        self.boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
         self.plays: List[str] = list(settings.get("plays", ["succeed"]))
-        self.goal: Optional[GoalID] = None
-        self.way: Optional[Tuple[float, float, float, float, float]] = None
         self.count = 0
-        self.told: Tuple[float, float] = (math.inf, math.inf)
-        self.frames = tf2_ros.TransformBroadcaster()
+        self.process: List[Any] = []  # the topics of move_base, which end with it
+        self.server = False
+        self.goals: List[Tuple[GoalStatus, float]] = []  # and when each is over, inf before that
+        self.current: Optional[GoalStatus] = None
+        self.gives_up = math.inf
         self.words = rospy.Publisher("pursue/events", String, queue_size=10)
-        self.results = rospy.Publisher(f"{name}/move_base/result", MoveBaseActionResult, queue_size=10)
-        self.poses = rospy.Publisher(f"{name}/amcl_pose", PoseWithCovarianceStamped, queue_size=10, latch=True)
-        self.show()
-        rospy.Subscriber(f"{name}/move_base_simple/goal", PoseStamped, self.on_simple)
-        rospy.Subscriber(f"{name}/move_base/goal", MoveBaseActionGoal, self.on_goal)
-        rospy.Subscriber(f"{name}/move_base/cancel", GoalID, self.on_cancel)
+        self.body.show()
         rospy.Subscriber(f"{name}/pursue/actions", String, self.on_action)
-        rospy.Timer(rospy.Duration(STEP), self.move)
+        rospy.Subscriber(f"{name}/test", String, self.on_order)
+        self.start()
+        rospy.Timer(rospy.Duration(STEP), self.step)
+        rospy.Timer(rospy.Duration(STATUS_PERIOD), lambda _: self.show_status())
 
     def say(self, what: str) -> None:
         os.write(1, f"{self.name} {what}\n".encode())  # in one piece: there are several threads
 
+    # Its life: the topic of simple goals first, the action server much later ------------------------------------------
+
+    def start(self) -> None:
+        """The process starts: simple goals are received and published again as action goals, which nobody takes yet."""
+        with self.lock:
+            self.republish = rospy.Publisher(f"{self.name}/move_base/goal", MoveBaseActionGoal, queue_size=1)
+            simple = rospy.Subscriber(f"{self.name}/move_base_simple/goal", PoseStamped, self.on_simple, queue_size=1)
+            self.process = [self.republish, simple]
+        if self.boot > 0.0:
+            rospy.Timer(rospy.Duration(self.boot), lambda _: self.start_server(), oneshot=True)
+        else:
+            self.start_server()
+
+    def start_server(self) -> None:
+        """The action server starts."""
+        with self.lock:
+            topic = f"{self.name}/move_base"
+            self.results = rospy.Publisher(f"{topic}/result", MoveBaseActionResult, queue_size=50)
+            self.feedback = rospy.Publisher(f"{topic}/feedback", MoveBaseActionFeedback, queue_size=50)
+            self.statuses = rospy.Publisher(f"{topic}/status", GoalStatusArray, queue_size=50, latch=True)
+            goals = rospy.Subscriber(f"{topic}/goal", MoveBaseActionGoal, self.on_goal, queue_size=50)
+            cancel = rospy.Subscriber(f"{topic}/cancel", GoalID, self.on_cancel, queue_size=50)
+            self.process += [self.results, self.feedback, self.statuses, goals, cancel]
+            self.server = True
+        self.show_status()
+        self.say("up")
+
+    def kill(self, down: float) -> None:
+        """The process is killed, and started again after so many seconds. The robot stands still."""
+        with self.lock:
+            self.server, self.goals, self.current, self.body.way = False, [], None, None
+            topics, self.process = self.process, []
+        for topic in topics:
+            topic.unregister()
+        rospy.Timer(rospy.Duration(down), lambda _: self.start(), oneshot=True)
+
+    # Goals ------------------------------------------------------------------------------------------------------------
+
     def on_simple(self, message: PoseStamped) -> None:
-        goal = MoveBaseActionGoal(header=message.header)
-        goal.goal.target_pose = message
-        self.on_goal(goal)
+        place = message.pose.position
+        if not self.server:
+            self.say(f"lost {place.x:.2f} {place.y:.2f}")
+        goal = MoveBaseActionGoal()
+        goal.header.stamp, goal.goal.target_pose = rospy.Time.now(), message
+        self.republish.publish(goal)
 
     def on_goal(self, message: MoveBaseActionGoal) -> None:
-        """As actionlib has it: who brings no id or stamp gets one; a new goal preempts the one before."""
-        now = rospy.Time.now()
-        place = message.goal.target_pose.pose.position
-        goal = GoalID(message.goal_id.stamp or now, message.goal_id.id)
+        """Who brings no id or stamp gets one; an id that is known is ignored; a new goal preempts the one before."""
+        now, target = rospy.Time.now(), message.goal.target_pose.pose
         with self.lock:
-            self.count += 1
-            goal.id = goal.id or f"{self.name}-{self.count}"
-            self.say(f"goal {place.x:.2f} {place.y:.2f}")
-            if self.goal is not None:
-                self.result(GoalStatus.PREEMPTED)
-            self.goal = goal
-            play = self.plays[min(self.count, len(self.plays)) - 1]
-            if play in ("abort", "reject"):
-                self.result(GoalStatus.ABORTED if play == "abort" else GoalStatus.REJECTED)
+            if not self.server or any(message.goal_id.id == status.goal_id.id for status, _ in self.goals):
                 return
-            if play == "stale":
-                old = GoalID(now - rospy.Duration(60.0), "of_long_ago")
-                self.publish(old, GoalStatus.SUCCEEDED)
-            if play != "never":
-                self.way = (now.to_sec(), self.x, self.y, place.x, place.y)
+            self.count += 1
+            known = GoalID(message.goal_id.stamp or now, message.goal_id.id or f"/{self.name}-{self.count}-{now}")
+            self.say(f"goal {target.position.x:.2f} {target.position.y:.2f}")
+            if self.current is not None:
+                self.finish("replace")
+            self.current = GoalStatus(known, GoalStatus.ACTIVE, ACCEPTED)
+            self.goals.append((self.current, math.inf))
+            self.show_status()
+            self.begin(target)
+
+    def begin(self, target: Pose) -> None:
+        """Do what the test has planned for this goal."""
+        play = self.plays[min(self.count, len(self.plays)) - 1]
+        yaw = 2.0 * math.atan2(target.orientation.z, target.orientation.w) + (math.pi if play == "turned" else 0.0)
+        if play in ("abort", "reject"):
+            self.finish(play)
+        elif play == "stuck":
+            self.gives_up = rospy.get_time() + self.recovery
+        elif play != "never":
+            self.body.go((target.position.x, target.position.y, yaw), self.travel)
+        if play == "stale":
+            old = GoalID(rospy.Time.now() - rospy.Duration(60.0), "of_long_ago")
+            self.publish_result(GoalStatus(old, GoalStatus.SUCCEEDED, "Goal reached."))
 
     def on_cancel(self, message: GoalID) -> None:
         with self.lock:
             self.say("cancel")
-            if self.goal is not None and message.id in ("", self.goal.id):
-                self.result(GoalStatus.PREEMPTED)
+            current = self.current
+            everything = not message.id and not message.stamp
+            if current is not None and (everything or message.id == current.goal_id.id):
+                self.finish("cancel")
+
+    def finish(self, how: str) -> None:
+        """The present goal is over."""
+        status, self.current, self.body.way, self.gives_up = self.current, None, None, math.inf
+        assert status is not None
+        status.status, status.text = TEXTS[how]
+        self.goals = [(known, rospy.get_time() if known is status else over) for known, over in self.goals]
+        play = self.plays[min(self.count, len(self.plays)) - 1]
+        for _ in range(2 if play == "twice" else 1):
+            self.publish_result(status)
+        self.show_status()
+
+    def publish_result(self, status: GoalStatus) -> None:
+        message = MoveBaseActionResult(status=status)
+        message.header.stamp = rospy.Time.now()
+        self.results.publish(message)
+
+    def show_status(self) -> None:
+        """Publish the goals of now, and those that are over since a short while."""
+        with self.lock:
+            if not self.server:
+                return
+            self.goals = [(status, over) for status, over in self.goals if rospy.get_time() < over + STATUS_TIMEOUT]
+            message = GoalStatusArray(status_list=[status for status, _ in self.goals])
+            message.header.stamp = rospy.Time.now()
+            self.statuses.publish(message)
+
+    # The world --------------------------------------------------------------------------------------------------------
+
+    def step(self, _: object) -> None:
+        with self.lock:
+            arrived = self.body.move()
+            if arrived:
+                self.say(f"stands {self.body.at[0]:.2f} {self.body.at[1]:.2f}")
+            if self.current is not None and arrived:
+                self.finish("succeed")
+            elif self.current is not None and rospy.get_time() >= self.gives_up:
+                self.finish("stuck")
+            elif self.current is not None:
+                message = MoveBaseActionFeedback(status=self.current)
+                message.header.stamp = rospy.Time.now()
+                message.feedback.base_position.header.frame_id = "map"
+                message.feedback.base_position.pose = self.body.pose()
+                self.feedback.publish(message)
+            self.body.show()
 
     def on_action(self, message: String) -> None:
-        self.say(f"action {message.data}")
+        x, y, _ = self.body.at
+        self.say(f"action {message.data} {x:.2f} {y:.2f}")
         done = String(f"{message.data}DONE")
         rospy.Timer(rospy.Duration(self.acts), lambda _: self.words.publish(done), oneshot=True)
 
-    def move(self, _: object) -> None:
+    def on_order(self, message: String) -> None:
+        what, *rest = message.data.split()
+        self.say(f"test {message.data}")
         with self.lock:
-            if self.way is not None:
-                since, x, y, goal_x, goal_y = self.way
-                share = min(1.0, (rospy.get_time() - since) / self.travel)
-                self.x, self.y = x + share * (goal_x - x), y + share * (goal_y - y)
-                if share == 1.0:
-                    self.result(GoalStatus.SUCCEEDED)
-            self.show()
-
-    def show(self) -> None:
-        """Tells where it is, to tf and, if it has moved, to amcl's listeners."""
-        frame = TransformStamped(child_frame_id=f"{self.name}/base_link")
-        frame.header.stamp, frame.header.frame_id = rospy.Time.now(), "map"
-        frame.transform.translation.x, frame.transform.translation.y = self.x, self.y
-        frame.transform.rotation.w = 1.0
-        self.frames.sendTransform(frame)
-        if math.hypot(self.x - self.told[0], self.y - self.told[1]) > SECOND_OPINION:
-            self.told = self.x, self.y
-            pose = PoseWithCovarianceStamped(header=frame.header)
-            pose.pose.pose.position.x, pose.pose.pose.position.y = self.x, self.y
-            self.poses.publish(pose)
-
-    def result(self, status: int) -> None:
-        """The goal of now is over."""
-        goal, self.goal, self.way = self.goal, None, None
-        play = self.plays[min(self.count, len(self.plays)) - 1]
-        for _ in range(2 if play == "twice" else 1):
-            self.publish(goal, status)
-
-    def publish(self, goal: Optional[GoalID], status: int) -> None:
-        message = MoveBaseActionResult(status=GoalStatus(goal, status, ""))
-        message.header.stamp = rospy.Time.now()
-        self.results.publish(message)
+            if what == "put":
+                x, y, yaw = map(float, rest)
+                self.body.at, self.body.way = (x, y, yaw), None
+            elif what == "play":
+                self.plays = rest
+            elif what == "travel":
+                self.travel = float(rest[0])
+        if what == "restart":
+            self.kill(float(rest[0]))
 
 
 if __name__ == "__main__":
     rospy.init_node("fake_move_base")
-    robots = [FakeRobot(robot, settings) for robot, settings in rospy.get_param("~robots").items()]
+    robots = [FakeMoveBase(robot, settings) for robot, settings in rospy.get_param("~robots").items()]
     rospy.spin()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import re
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List
+from typing import Any, Callable, Dict, Iterator, List, Tuple
 
 import pytest
 import yaml
@@ -23,6 +24,9 @@ UNIT = 0.2
 
 SLACK = 100
 """Time units by which the robots may be late in their model: they move in real time, and a machine may stand still."""
+
+TOLERANCE = 0.45
+"""Metres from a place at which a robot is there: ~end_tolerance, and what it may move before amcl publishes again."""
 
 LAUNCH = f"exec roslaunch scenario_1_bringup mission.launch simulate:=false time_unit:={UNIT} tolerance:=0.5"
 
@@ -49,15 +53,44 @@ class Robots:
             for name, settings in usual.items()
         }
         self.log = logs / "robots"
-        self.goals = {f"{x:.2f} {y:.2f}": poi for own in poses.values() for poi, (x, y, *_) in own.items()}
+        self.poses = [(poi, x, y) for own in poses.values() for poi, (x, y, *_) in own.items()]
+        self._ros, self._workspace, self._there = ros, workspace, there
+        self.goals = {f"{x:.2f} {y:.2f}": poi for poi, x, y in self.poses}
         (logs / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
         ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, **there)
         self.process = ros.start(f"exec python3 {FAKE}", workspace, self.log, **there)
 
     def heard(self, robot: str) -> List[str]:
         """What this robot has heard, goals by their names."""
-        told = re.findall(rf"^{robot} (\w+) ?(.*)$", self.log.read_text(), re.MULTILINE)
-        return [f"{what} {self.goals.get(detail, detail)}".strip() for what, detail in told]
+        told = re.findall(rf"^{robot} (goal|lost|cancel|action) ?(.*)$", self.log.read_text(), re.MULTILINE)
+        return [f"{what} {self.goals.get(detail, detail.split(' ')[0])}".strip() for what, detail in told]
+
+    def publish(self, topic: str, kind: str, message: str) -> None:
+        """Publishes it, as a person does, until a robot or a node has it."""
+        command = f"source devel/setup.bash; rostopic pub --once {topic} {kind} \"{message}\""
+        done = self._ros.run(command, self._workspace, **self._there)
+        assert done.returncode == 0, done.stdout
+
+    def order(self, robot: str, what: str) -> None:
+        """Has the robot do this, for the test."""
+        self.publish(f"{robot}/test", "std_msgs/String", f"'{what}'")
+        found = re.compile(rf"^{robot} test {re.escape(what)}$", re.MULTILINE)
+        wait_for(lambda: bool(found.search(self.log.read_text())), self.log, f"{robot} does not {what}")
+
+    def at(self, robot: str) -> Tuple[float, float]:
+        """Where it stopped last, by its own account."""
+        told = re.findall(rf"^{robot} stands (\S+) (\S+)$", self.log.read_text(), re.MULTILINE)
+        return tuple(map(float, told[-1])) if told else (math.inf, math.inf)  # type: ignore[return-value]
+
+    def actions(self, robot: str) -> List[str]:
+        """The actions that it was told, and at which place it was then (by the tolerance of a position)."""
+        told = re.findall(rf"^{robot} action (\w+) (\S+) (\S+)$", self.log.read_text(), re.MULTILINE)
+        return [f"{action} at {self.place(float(x), float(y))}" for action, x, y in told]
+
+    def place(self, x: float, y: float) -> str:
+        """The place within the tolerance of this position."""
+        near = [poi for poi, px, py in self.poses if math.hypot(px - x, py - y) <= TOLERANCE]
+        return near[0] if near else f"{x} {y}"
 
 
 @contextlib.contextmanager
@@ -171,6 +204,100 @@ def test_a_robot_that_connects_late_is_told_and_is_called_back_when_its_controll
         wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not told")
         end(controller)
         wait_for(lambda: robots.heard("bot1") == ["goal b", "cancel"], log, "bot1 was not called back")
+
+
+def test_a_simple_goal_that_a_restarted_move_base_has_lost_is_sent_again(
+    ros: Ros, workspace: Path, tmp_path: Path
+) -> None:
+    bot1 = {"travel": 6.0, "boot": 1.5}  # the goal comes as soon as move_base connects: before its action server is up
+    with playing(ros, workspace, tmp_path, "ends:=result", bot1=bot1) as (robots, log, mission):
+        wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
+        robots.order("bot1", "restart 0.3")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    heard = robots.heard("bot1")
+    assert heard[:2] == ["goal b", "lost b"] and "lost b" not in heard[3:], heard
+    assert heard[-2:] == ["goal b", "action bot1_inb"], heard
+    assert len(heard) <= 5, f"a goal that was taken is not sent again: {heard}"
+
+
+@pytest.mark.parametrize("goals", ["simple", "action"])
+def test_a_robot_that_a_person_sends_elsewhere_is_held_until_the_person_lets_it_resume(
+    ros: Ros, workspace: Path, tmp_path: Path, goals: str
+) -> None:
+    arguments = f"goals:={goals} ends:=result planner:=off"
+    with playing(ros, workspace, tmp_path, arguments, bot1={"travel": 4.0}) as (robots, log, mission):
+        wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
+        position = "{x: -7.0, y: 7.0}"
+        pose = f"{{header: {{frame_id: map}}, pose: {{position: {position}, orientation: {{w: 1.0}}}}}}"
+        robots.publish("bot1/move_base_simple/goal", "geometry_msgs/PoseStamped", pose)
+        wait_for(lambda: "the mission holds: bot1 on its way to b: preempted" in log.read_text(), log, "no hold")
+        said = log.read_text()
+        assert "because another goal was received" in said and "publish bot1:_resume_ to continue" in said
+        wait_for(lambda: robots.at("bot1") == (-7.0, 7.0), log, "it does not go where the person sends it")
+        time.sleep(3.0)
+        assert robots.heard("bot1") == ["goal b", "goal -7.00"], "it does not leave by itself"
+        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    assert robots.heard("bot1") == ["goal b", "goal -7.00", "goal b", "action bot1_inb"]
+    assert robots.actions("bot1") == ["bot1_inb at b"]
+
+
+def test_a_cancelled_goal_holds_the_robot_and_does_not_start_again(
+    ros: Ros, workspace: Path, tmp_path: Path
+) -> None:
+    arguments = "goals:=action ends:=result planner:=off"
+    with playing(ros, workspace, tmp_path, arguments, bot1={"travel": 4.0}) as (robots, log, mission):
+        wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
+        robots.publish("bot1/move_base/cancel", "actionlib_msgs/GoalID", "{}")
+        wait_for(lambda: "the mission holds: bot1 on its way to b: preempted" in log.read_text(), log, "no hold")
+        time.sleep(3.0)
+        assert robots.heard("bot1") == ["goal b", "cancel"]
+        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    assert robots.heard("bot1") == ["goal b", "cancel", "goal b", "action bot1_inb"]
+
+
+def test_what_move_base_says_is_part_of_the_reason(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+    (tmp_path / "own.yaml").write_text("retries: 0\n")
+    arguments = f"goals:=action ends:=result planner:=off robots:={tmp_path}/own.yaml"
+    _, said = played(ros, workspace, tmp_path, arguments, bot1={"plays": ["stuck"], "recovery": 1.0})
+    why = "on its way to b: aborted: Failed to find a valid plan. Even after executing recovery behaviors."
+    assert re.search(rf"The mission was stopped, .*: bot1 has found that .* is blocked: {why}", said), said[-8000:]
+
+
+@pytest.mark.parametrize("ends", ["result", "pose", "tf"])
+def test_a_robot_that_was_taken_away_returns_before_its_action(
+    ros: Ros, workspace: Path, tmp_path: Path, ends: str
+) -> None:
+    (tmp_path / "own.yaml").write_text("end_settle: 0.2\n")
+    arguments = f"goals:=action ends:={ends} on_uncovered:=warn robots:={tmp_path}/own.yaml"
+    bot1 = {"acts": 8.0}  # bot2 waits at a until bot1 has finished
+    with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
+        wait_for(lambda: "bot2_going_c_to_a2a" in log.read_text(), log, "bot2 has not arrived")
+        robots.order("bot2", "put 9.0 9.0 0.0")
+        wait_for(lambda: "bot2 is " in log.read_text() and "where the state has it" in log.read_text(), log, "not seen")
+        assert robots.heard("bot2") == ["goal a"], "it may stay there while nothing waits for it"
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    assert robots.heard("bot2") == ["goal a", "goal a", "action bot2_ina"]
+    assert robots.actions("bot2") == ["bot2_ina at a"]
+    assert "where the state has it: it is sent back" in log.read_text()
+
+
+def test_a_robot_that_looks_the_wrong_way_has_not_arrived(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+    (tmp_path / "own.yaml").write_text("end_settle: 0.2\n")
+    arguments = f"goals:=action ends:=pose planner:=off robots:={tmp_path}/own.yaml"
+    with playing(ros, workspace, tmp_path, arguments, bot1={"plays": ["turned"]}) as (robots, log, mission):
+        wait_for(lambda: "goal reached, but the position is not at b yet" in log.read_text(), log, "it is believed")
+        time.sleep(1.0)
+        assert "reports bot1_going_c_to_b2b" not in log.read_text()
+        x, y = robots.at("bot1")
+        robots.order("bot1", f"put {x} {y} 0.1")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
 
 
 @pytest.mark.parametrize(

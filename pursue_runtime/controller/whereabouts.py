@@ -1,0 +1,117 @@
+"""Where a robot is: its position, whether it stands still, and at which place it is known to be.
+
+Distances are metres, angles radians, times seconds of ROS time.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Optional, Sequence
+
+from pursue_runtime.controller.settings import Settings
+
+
+class Position(NamedTuple):
+    """A position on the map, with the robot's heading."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Place(NamedTuple):
+    """A place of the scenario on the map; `yaw` is None where no orientation is demanded."""
+
+    poi: str
+    x: float
+    y: float
+    yaw: Optional[float] = None
+
+
+def place_of(poi: str, pose: Sequence[float]) -> Place:
+    """Return the place with this pose [x, y, z, qx, qy, qz, qw]; a quaternion of zeros demands no orientation."""
+    orientation = pose[3:7]
+    return Place(poi, pose[0], pose[1], yaw_of(*orientation) if any(orientation) else None)
+
+
+def yaw_of(x: float, y: float, z: float, w: float) -> float:
+    """Return the rotation about the vertical axis of a quaternion, from -pi to pi."""
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def turned(a: float, b: float) -> float:
+    """Return the angle between two headings, from 0 to pi."""
+    return abs(math.remainder(a - b, 2.0 * math.pi))
+
+
+class Whereabouts:
+    """What is known of where a robot is.
+
+    It is known to be at a place by its last arrival there and no motion since, or by its position: within the
+    tolerances of the place, and standing. A robot stands if, for `end_settle` seconds, it was never further than
+    `still_distance` from one of its positions, nor turned by more than `still_angle` against it.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self.position: Optional[Position] = None
+        self._settings = settings
+        self._rest: Optional[Position] = None  # the position that it has kept since `_since`
+        self._since = math.inf
+        self._place = ""  # where it has arrived, and its position then
+        self._arrival: Optional[Position] = None
+
+    def on_position(self, position: Position, now: float) -> None:
+        """Take a position."""
+        self.position = position
+        limits = self._settings.still_distance, self._settings.still_angle
+        if self._rest is None or not _within(self._rest, position, *limits):
+            self._rest, self._since = position, now
+
+    def on_arrival(self, poi: str) -> None:
+        """Note that the robot has arrived at this place."""
+        self._place, self._arrival = poi, self.position
+
+    def on_departure(self) -> None:
+        """Note that the robot may be anywhere: it has a goal, of ours or of somebody else."""
+        self._place, self._arrival = "", None
+
+    def stands_at(self) -> float:
+        """Return from when on the robot stands, if it does not move until then; inf without a position."""
+        return self._since + self._settings.end_settle
+
+    def is_near(self, place: Place) -> bool:
+        """Return True if the last position is within the tolerances of the place."""
+        at = self.position
+        if at is None or math.hypot(at.x - place.x, at.y - place.y) > self._settings.end_tolerance:
+            return False
+        return place.yaw is None or turned(at.yaw, place.yaw) <= self._settings.end_yaw_tolerance
+
+    def is_known_at(self, place: Place, now: float) -> bool:
+        """Return True if the robot is known to be at the place."""
+        if self._place == place.poi and not self._has_moved():
+            return True
+        return self.is_near(place) and now >= self.stands_at()
+
+    def describe(self, place: Place) -> str:
+        """Return why the robot is not known to be at the place, in words."""
+        at = self.position
+        if at is None:
+            return f"is not known to be at {place.poi}: no position, and no arrival there"
+        distance = math.hypot(at.x - place.x, at.y - place.y)
+        if distance > self._settings.end_tolerance:
+            return f"is {distance:.1f} m from {place.poi}"
+        if place.yaw is not None and turned(at.yaw, place.yaw) > self._settings.end_yaw_tolerance:
+            return f"is at {place.poi}, but turned by {math.degrees(turned(at.yaw, place.yaw)):.0f} degrees"
+        return f"does not stand still at {place.poi}"
+
+    def _has_moved(self) -> bool:
+        """Return True if the robot has moved since its arrival, by more than an arrival may be off."""
+        before, at = self._arrival, self.position
+        if before is None or at is None:
+            return False
+        return not _within(before, at, self._settings.end_tolerance, self._settings.end_yaw_tolerance)
+
+
+def _within(before: Position, after: Position, distance: float, angle: float) -> bool:
+    """Return True if the positions differ by no more than that."""
+    return math.hypot(after.x - before.x, after.y - before.y) <= distance and turned(after.yaw, before.yaw) <= angle

@@ -1,0 +1,94 @@
+"""Robots that cannot go on as the state has it: held by a person, or not where the state has them."""
+
+from __future__ import annotations
+
+from typing import Dict, List, Mapping, Set, Tuple
+
+from pursue_runtime.locations import is_action, is_movement, is_under_way, position_variable
+from pursue_runtime.model import Edge, Model, Move
+from pursue_runtime.words import BACK, DISPLACED, HELD, RESUME, RobotReport
+
+
+class Robots:
+    """The robots that are `held` (and why), `displaced` (and why), and of these the ones that are `returning`.
+
+    A goal of a held robot was cancelled by another node: it waits for `_resume_`. A displaced robot is not known to be
+    where the state has it. No action begins with it: the command is refused, and the robot returns first.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.held: Dict[str, str] = {}
+        self.displaced: Dict[str, str] = {}
+        self.returning: Set[str] = set()
+        self._robots = {position_variable(automaton.name): automaton.name for automaton in model.of_kind("robot")}
+        self._names = frozenset(self._robots.values())
+
+    def on_report(self, report: RobotReport, location: str) -> str:
+        """Take a report about a robot at this location; return why it cannot be ("": it can)."""
+        name = report.agent
+        if name not in self._names:
+            return "expected the name of a robot"
+        if report.event == HELD:
+            if not is_under_way(location) and name not in self.displaced:
+                return f"{name} has no goal"
+            self.held.setdefault(name, report.text or "is held")
+        elif report.event == RESUME:
+            if self.held.pop(name, None) is None:
+                return f"{name} is not held"
+        elif report.event == DISPLACED:
+            if is_movement(location):
+                return f"{name} is on its way"
+            self.displaced.setdefault(name, report.text or "is not where the state has it")
+            self.returning |= {name} if is_action(location) else set()
+        elif report.event == BACK:
+            self._place(name)
+        return ""
+
+    def drop(self, name: str) -> None:
+        """Wait for this robot no more: it is lost."""
+        self.held.pop(name, None)
+        self._place(name)
+
+    def on_moves(self, moves: Tuple[Move, ...]) -> None:
+        """Take the moves of an event: who sets off need not be where it was."""
+        for name, edge in moves:
+            if is_movement(edge.target):
+                self._place(name)
+
+    def refuse(self, moves: Tuple[Move, ...], values: Mapping[str, int]) -> bool:
+        """Return True for a command that begins an action for which a robot is not in its place: it returns first."""
+        missing: Set[str] = set()
+        for name, edge in moves:
+            if not is_under_way(edge.source) and not is_movement(edge.target):
+                missing |= {name} & set(self.displaced)
+                missing |= self._missing_partners(name, edge, values)
+        self.returning |= missing
+        return bool(missing)
+
+    def reasons(self) -> List[str]:
+        """Return why the mission holds for robots."""
+        held = [f"{name} {why}; publish {name}:{RESUME} to continue" for name, why in sorted(self.held.items())]
+        away = sorted(self.returning - set(self.held))
+        return held + [f"{name} {self.displaced[name]}, where the state has it: it is sent back" for name in away]
+
+    def waiting(self) -> Set[str]:
+        """Return the robots for which the mission holds."""
+        return set(self.held) | self.returning
+
+    def revision(self) -> Tuple[object, ...]:
+        """Return a value that each change of this changes."""
+        return tuple(sorted(self.held)), tuple(sorted(self.displaced)), tuple(sorted(self.returning))
+
+    def _place(self, name: str) -> None:
+        self.displaced.pop(name, None)
+        self.returning.discard(name)
+
+    def _missing_partners(self, doer: str, edge: Edge, values: Mapping[str, int]) -> Set[str]:
+        """Return the displaced robots with which `doer` would do this, unless another partner is in its place."""
+        missing: Set[str] = set()
+        for clause in edge.tests:
+            there = {variable for variable, value in clause if values[variable] == value}
+            partners = {self._robots.get(variable, "") for variable in there} - {doer}
+            if partners and partners <= set(self.displaced):
+                missing |= partners
+        return missing

@@ -1,0 +1,200 @@
+"""Goals that are lost before they are taken, and goals that somebody else cancels."""
+
+from __future__ import annotations
+
+import pytest
+
+from pursue_runtime.controller.goal import Answer
+from tests.runtime.controller.robot_world import (
+    ABORTED,
+    ACTIVE,
+    BACK,
+    BLOCKED,
+    END,
+    HELD,
+    PENDING,
+    PREEMPTED,
+    RECALLED,
+    SUCCEEDED,
+    WAY,
+    World,
+)
+
+TAKEN_BY_OTHER = "This goal was canceled because another goal was received by the simple action server"
+
+
+@pytest.fixture(params=["simple", "action"])
+def robot(request: pytest.FixtureRequest) -> World:
+    """A robot with goals of either kind, on its way to b."""
+    world = World(goals=request.param, ends="result")
+    world.status()
+    world.go()
+    return world
+
+
+def its_id(robot: World) -> str:
+    """The id with which move_base lists the last goal."""
+    return robot.goals[-1].name if robot.robot.settings.goals == "action" else f"/move_base-{len(robot.goals)}"
+
+
+def listed(robot: World, status: int = ACTIVE) -> Answer:
+    """The last goal, as the status of move_base has it."""
+    return Answer(its_id(robot), robot.now, status)
+
+
+# Taken or not ---------------------------------------------------------------------------------------------------------
+
+
+def statuses(robot: World, seconds: float, *answers: Answer) -> None:
+    """move_base publishes this status five times a second."""
+    for _ in range(round(seconds * 5)):
+        robot.status(*answers)
+        robot.wait(0.2)
+
+
+def test_a_goal_that_the_robot_does_not_have_is_sent_again_at_growing_intervals(robot: World) -> None:
+    sent = []
+    for _ in range(200):
+        robot.status()
+        sent += [robot.now] * (len(robot.goals) > len(sent) + 1)
+        robot.wait(0.2)
+    gaps = [later - earlier for earlier, later in zip([100.0, *sent], sent)]
+    assert gaps == pytest.approx([1.0, 2.2, 4.2, *[8.2] * (len(gaps) - 3)], abs=0.3) and len(gaps) == 6
+    assert {goal.movement for goal in robot.goals} == {WAY}
+
+
+def test_a_goal_that_was_taken_is_never_sent_again(robot: World) -> None:
+    robot.wait(0.3)
+    entry = listed(robot)
+    statuses(robot, 60.0, entry)
+    assert len(robot.goals) == 1 and robot.words == []
+
+
+def test_a_robot_without_a_status_gets_its_goal_once(robot: World) -> None:
+    robot.wait(60.0)
+    assert len(robot.goals) == 1
+
+
+def test_one_status_from_before_the_goal_came_means_nothing(robot: World) -> None:
+    robot.status()
+    robot.wait(0.4)
+    entry = listed(robot)
+    statuses(robot, 3.0, entry)
+    assert len(robot.goals) == 1
+
+
+def test_a_robot_that_was_started_again_gets_the_goal_again(robot: World) -> None:
+    robot.wait(0.1)
+    statuses(robot, 3.0, listed(robot))
+    statuses(robot, 2.0)
+    assert len(robot.goals) == 2
+    robot.status(Answer(its_id(robot), robot.now, ACTIVE))
+    robot.result(SUCCEEDED, its_id(robot))
+    assert robot.words == [END]
+
+
+def test_a_goal_that_is_lost_is_not_sent_again_while_the_mission_holds_nor_once_it_is_over(robot: World) -> None:
+    robot.state(running=False)
+    statuses(robot, 20.0)
+    assert len(robot.goals) == 1
+    robot.state()
+    assert len(robot.goals) == 2
+    robot.stay()
+    statuses(robot, 20.0)
+    robot.state(None, running=False)
+    statuses(robot, 20.0)
+    assert len(robot.goals) == 2
+
+
+def test_the_same_goal_sent_twice_and_taken_twice_is_no_cancellation() -> None:
+    robot = World(ends="result")
+    robot.go()
+    statuses(robot, 1.4)
+    assert len(robot.goals) == 2, "the robot was too slow to list the first one"
+    robot.result(PREEMPTED, "/move_base-1", robot.now - 0.1, TAKEN_BY_OTHER)
+    robot.status(Answer("/move_base-1", robot.now - 0.1, PREEMPTED), Answer("/move_base-2", robot.now, ACTIVE))
+    robot.wait(5.0)
+    assert len(robot.goals) == 2 and robot.words == []
+    robot.result(SUCCEEDED, "/move_base-2")
+    assert robot.words == [END]
+
+
+def test_results_in_the_status_count_where_the_result_itself_was_missed(robot: World) -> None:
+    robot.status(listed(robot))
+    robot.wait(3.0)
+    robot.status(Answer(its_id(robot), 100.0, SUCCEEDED, "Goal reached."))
+    assert robot.words == [END]
+
+
+def test_the_status_shows_failures_of_simple_goals_too() -> None:
+    robot = World(ends="pose", retries=0)
+    robot.go()
+    robot.status(Answer("/move_base-1", robot.now, ACTIVE))
+    robot.status(Answer("/move_base-1", robot.now, ABORTED, "Robot is oscillating."))
+    assert robot.texts == [f"{BLOCKED} on its way to b: aborted: Robot is oscillating.; given up after 1 goal"]
+
+
+# Cancelled by somebody else -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("status", "text"), [(PREEMPTED, ""), (PREEMPTED, TAKEN_BY_OTHER), (RECALLED, "")])
+def test_a_robot_whose_goal_is_cancelled_waits_for_a_person(robot: World, status: int, text: str) -> None:
+    robot.result(status, its_id(robot), text=text)
+    statuses(robot, 30.0)
+    assert len(robot.goals) == 1 and set(robot.words) == {HELD} and text in robot.texts[0]
+    assert robot.robot.trouble.startswith("on its way to b: ") and robot.robot.goal == ""
+    robot.state(held=True, running=False)
+    assert robot.wait(60.0) == [] and len(robot.goals) == 1
+    robot.state()
+    assert len(robot.goals) == 2 and robot.goals[1].movement == WAY
+    robot.result(SUCCEEDED)
+    assert robot.words[-1] == END
+
+
+def test_a_cancelled_goal_waits_for_the_mission_too(robot: World) -> None:
+    robot.result(PREEMPTED, its_id(robot))
+    robot.state(held=True, running=False)
+    robot.state(running=False)
+    assert robot.wait(9.0) == [] and len(robot.goals) == 1
+    robot.state()
+    assert len(robot.goals) == 2
+
+
+def test_a_robot_that_is_held_when_its_controller_starts_gets_no_goal_before_it_resumes() -> None:
+    robot = World(goals="action", ends="result")
+    robot.state(held=True, running=False)
+    robot.robot.start(WAY, robot.now)
+    robot.wait(30.0)
+    robot.state(held=True)
+    assert robot.goals == []
+    robot.state()
+    assert len(robot.goals) == 1
+
+
+def test_a_new_movement_is_not_held_by_what_became_of_the_goal_before(robot: World) -> None:
+    robot.wait(9.0)
+    first = its_id(robot)
+    robot.stay()
+    robot.wait(1.5)
+    robot.go(BACK)
+    robot.result(PREEMPTED, first, 100.0, TAKEN_BY_OTHER)
+    robot.wait(5.0)
+    assert HELD not in robot.words and [goal.movement for goal in robot.goals] == [WAY, BACK]
+
+
+def test_who_brings_a_held_robot_to_its_place_ends_the_movement() -> None:
+    robot = World(goals="action", ends="pose")
+    robot.go()
+    robot.result(PREEMPTED)
+    robot.state(held=True, running=False)
+    robot.at(3.0, 4.0)
+    robot.wait(0.6)
+    assert robot.words[-1] == END and len(robot.goals) == 1
+
+
+def test_a_goal_that_waits_for_its_second_attempt_is_lost_with_the_movement(robot: World) -> None:
+    robot.result(ABORTED, its_id(robot))
+    robot.status(Answer("rviz-1", robot.now, PENDING))
+    robot.stay()
+    robot.wait(9.0)
+    assert len(robot.goals) == 1

@@ -1,0 +1,201 @@
+"""An action begins only where the robot is known to be in its place; a robot that is not is sent there first."""
+
+from __future__ import annotations
+
+import pytest
+
+from pursue_runtime.controller.goal import Answer, Movement
+from tests.runtime.controller.robot_world import (
+    ABORTED,
+    ACTIVE,
+    BACK_AGAIN,
+    DISPLACED,
+    END,
+    FAILED,
+    HELD,
+    PREEMPTED,
+    SUCCEEDED,
+    B,
+    World,
+)
+
+
+def arrived(**settings: object) -> World:
+    """A robot that has arrived at b, by its own settings."""
+    world = World(**settings)
+    world.at(0.0, 0.0)
+    world.go()
+    world.now += 9.0
+    if world.robot.settings.ends == "result":
+        world.at(3.2, 4.0)
+        world.result(SUCCEEDED)
+    else:
+        world.at(3.1, 4.0)
+        world.wait(0.5)
+    world.stay()
+    assert world.words[-1:] == [END]
+    world.texts.clear()
+    return world
+
+
+@pytest.fixture(params=["result", "pose", "tf"])
+def robot(request: pytest.FixtureRequest) -> World:
+    """A robot that has arrived at b, and whose position is known."""
+    return arrived(ends=request.param, goals="action")
+
+
+def test_a_robot_that_has_arrived_does_its_action_at_once(robot: World) -> None:
+    assert robot.robot.is_placed(robot.now)
+    robot.stay(doing="e")
+    robot.robot.act("e", "doing_e_in_b")
+    robot.act()
+    assert robot.actions == ["e"] and robot.words == []
+
+
+@pytest.mark.parametrize("away", [(8.0, 4.0, 0.0), (3.1, 4.0, 3.1)])
+def test_a_robot_that_was_taken_away_is_reported_and_goes_back_when_an_action_waits_for_it(
+    robot: World, away: "tuple[float, float, float]"
+) -> None:
+    robot.wait(20.0)
+    robot.at(*away)
+    assert robot.words == [DISPLACED] and not robot.robot.is_placed(robot.now)
+    robot.stay(displaced=True)
+    assert robot.wait(60.0) == [] and len(robot.goals) == 1, "it stays there while nothing waits for it"
+    assert robot.robot.is_placed(robot.now), "the observer knows, and refuses the command"
+    robot.stay(displaced=True, returning=True, running=False)
+    assert [goal.movement for goal in robot.goals[1:]] == [Movement("b", B)]
+    robot.now += 5.0
+    robot.at(3.0, 4.0)
+    robot.result(SUCCEEDED)
+    robot.wait(0.6)
+    assert robot.words[-1] == BACK_AGAIN
+    robot.stay()
+    assert robot.wait(30.0) == [] and robot.robot.is_placed(robot.now) and robot.robot.trouble == ""
+
+
+def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(doing="e")
+    robot.robot.act("e", "doing_e_in_b")
+    robot.act()
+    assert robot.actions == [] and set(robot.words) == {DISPLACED} and "is 5.0 m from b" in robot.texts[-1]
+    robot.stay(doing="e", displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    assert len(robot.goals) == 2 and robot.actions == []
+    robot.at(3.0, 4.0)
+    robot.result(SUCCEEDED)
+    robot.wait(0.6)
+    assert robot.actions == [] and robot.words[-1] == BACK_AGAIN
+    robot.stay(doing="e")
+    assert robot.actions == ["e"]
+
+
+def test_a_robot_that_is_being_moved_is_sent_back_when_it_stands(robot: World) -> None:
+    robot.at(5.0, 4.0)
+    robot.stay(doing="e", displaced=True, returning=True, running=False)
+    for step in range(10):
+        robot.at(5.0 + 0.1 * step, 4.0)
+        robot.wait(0.3)
+    assert len(robot.goals) == 1
+    robot.wait(0.5)
+    assert len(robot.goals) == 2
+
+
+def test_a_robot_that_comes_back_by_itself_is_reported(robot: World) -> None:
+    robot.at(5.0, 4.0)
+    robot.stay(displaced=True)
+    robot.at(3.0, 4.0)
+    robot.wait(1.0)
+    assert robot.words[:2] == [DISPLACED, BACK_AGAIN] and len(robot.goals) == 1
+
+
+def test_the_way_back_is_held_and_fails_as_other_ways_do(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    robot.result(PREEMPTED)
+    assert robot.words[-1] == HELD
+    robot.stay(displaced=True, returning=True, held=True, running=False)
+    robot.wait(30.0)
+    assert len(robot.goals) == 2
+    robot.stay(displaced=True, returning=True, running=False)
+    for _ in range(3):
+        robot.result(ABORTED)
+        robot.wait(2.0)
+    assert len(robot.goals) == 5 and robot.words[-1] == FAILED
+    robot.stay(lost=True, running=False)
+    robot.wait(30.0)
+    assert len(robot.goals) == 5
+
+
+def test_the_way_back_ends_with_the_need_for_it(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    robot.stay(displaced=True)
+    robot.result(ABORTED)
+    robot.wait(30.0)
+    assert len(robot.goals) == 2 and robot.robot.goal == ""
+
+
+def test_what_is_known_by_results_alone_ends_with_a_goal_of_another_node() -> None:
+    robot = World(goals="action", ends="result", position="none")
+    robot.go()
+    robot.result(SUCCEEDED)
+    robot.stay()
+    own = Answer(robot.goals[-1].name, robot.now, SUCCEEDED)
+    robot.status(own)
+    assert robot.robot.is_placed(robot.now) and robot.words == [END]
+    robot.status(own, Answer("rviz-1", robot.now, ACTIVE))
+    assert robot.words[-1] == DISPLACED and not robot.robot.is_placed(robot.now)
+
+
+def test_where_nothing_is_known_the_robot_is_sent_to_its_place_first() -> None:
+    robot = World(goals="action", ends="result", position="none")
+    robot.stay()
+    assert robot.words == [DISPLACED]
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.result(SUCCEEDED)
+    assert robot.words[-1] == BACK_AGAIN and len(robot.goals) == 1
+
+
+def test_a_position_may_take_a_while_to_come() -> None:
+    robot = World(goals="action", ends="result")
+    robot.stay()
+    robot.wait(1.0)
+    robot.at(3.0, 4.0)
+    robot.wait(30.0)
+    assert robot.words == []
+    late = World(goals="action", ends="result")
+    late.stay()
+    assert late.wait(3.0)[:1] == [2.0] and late.words[0] == DISPLACED
+
+
+def test_words_alone_are_believed() -> None:
+    robot = World()
+    robot.stay(doing="e")
+    robot.robot.act("e", "doing_e_in_b")
+    robot.act()
+    assert robot.actions == ["e"] and robot.robot.is_placed(robot.now) and robot.words == []
+
+
+def test_a_robot_that_reports_its_ends_itself_is_looked_at_where_a_position_is_given() -> None:
+    robot = World(position="pose")
+    robot.stay()
+    robot.at(9.0, 9.0)
+    assert robot.words == [DISPLACED]
+
+
+def test_what_is_done_at_once_waits_for_the_robot_too(robot: World) -> None:
+    robot.at(3.0, 4.0)
+    robot.stay(running=False)
+    robot.robot.act("beep")
+    robot.act()
+    assert robot.actions == ["beep"], "it is decided, whatever the mission waits for"
+    robot.at(8.0, 4.0)
+    robot.robot.act("beep")
+    robot.wait(5.0)
+    assert robot.actions == ["beep"]
+    robot.at(3.0, 4.0)
+    robot.wait(1.0)
+    assert robot.actions == ["beep", "beep"]
