@@ -24,7 +24,7 @@ class Source(NamedTuple):
     """Where the data of one package in one mission are: all files of a node come from one folder.
 
     `mission` is the mission's id, "" where the workspace does not say which one it was made for. `digests` are those of
-    the files by name, None where nobody has signed them (the workspace's own); with none the package has no part in it.
+    the files by name, None where they are not signed (the workspace's own); with none the package has no part in it.
     """
 
     mission: str

@@ -30,10 +30,10 @@ class TimeBudget:
         return self._end - time.monotonic()
 
     def verdict(self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
-        """What `solve` says. Raises PursueError with exit status 5 when (that share of) the time left is too short."""
+        """The verdict of `solve`. Raises PursueError (exit status 5) when that share of the time left is too short."""
         seconds = self.left() * share
         if seconds <= 0:
             raise PursueError([error("EXP001", "no verdict in the time that was left")], exit_status=5)
         listener = self._listener
-        told = listener and (lambda progress: listener(replace(progress, phase=EXPLAINING)))
-        return solve(network, objective, reaction, limits=Limits(seconds, self._limits.memory), progress=told)
+        report = listener and (lambda progress: listener(replace(progress, phase=EXPLAINING)))
+        return solve(network, objective, reaction, limits=Limits(seconds, self._limits.memory), progress=report)

@@ -1,6 +1,6 @@
 """What would change the verdict: one small change at a time, tried by solving again.
 
-A number is changed no further than it takes: the change that is told wins, and the next smaller one has been tried too
+A number is changed no further than it takes: the change that is named wins, and the next smaller one has been tried too
 and does not. (Where wins come and go along the way, a still smaller one may exist.)
 """
 
@@ -36,9 +36,9 @@ Variant = Tuple[Scenario, Rules]
 @dataclass(frozen=True)
 class Change:
     """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, distance,
-    rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` tells it; `next_lost`
-    is a smaller change, or what is now, that does not win: the next smaller one, where the change is known to be the
-    `least`.
+    rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` describes it;
+    `next_lost` is a smaller change, or what is now, that does not win: the next smaller one, where the change is known
+    to be the `least`.
     """
 
     what: str

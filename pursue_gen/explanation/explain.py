@@ -1,6 +1,6 @@
 """Why an objective cannot be met, in the scenario's own words: what would change that, and a play that shows it.
 
-Nothing is told that was not computed: each change was tried by solving again, and the next smaller one as well; every
+Everything in it was computed: each change was tried by solving again, and the next smaller one as well; every
 position of the play is one from which the solver finds the game lost. What the time was too short for is said to be so.
 """
 
@@ -21,7 +21,7 @@ from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
 DEFAULT_SECONDS = 20.0
-"""How long an explanation may take, unless somebody says otherwise."""
+"""How long an explanation may take, unless there is a limit."""
 
 _PATIENCE = Limits(DEFAULT_SECONDS)
 
@@ -49,7 +49,7 @@ def explain(
 ) -> Explanation:
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
-    Their seconds are for everything, the memory for each game that is solved, of which `progress` tells.
+    Their seconds are for everything, the memory for each game that is solved, which `progress` reports.
     """
     began = time.monotonic()
     found = findings(scenario, rules, replace(limits, seconds=limits.seconds * _FOR_CHANGES), progress)

@@ -1,7 +1,7 @@
 """A counter-play: one play in which the environment keeps the controller from its objective, whatever it tries.
 
 The controller plays as `policy` has it; the environment answers with a move, a moment, or a lateness that
-leaves a lost position behind. That each position is lost is asked of the solver, so from any of them the environment
+leaves a lost position behind. The solver decides that each position is lost, so from any of them the environment
 can go on, whatever the controller does.
 """
 

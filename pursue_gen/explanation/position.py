@@ -1,4 +1,4 @@
-"""Who wins from a position in the middle of a play: asked of the solver, by a network that begins there.
+"""Who wins from a position in the middle of a play: decided by the solver, with a network that begins there.
 
 Positions are those of the game (see `synthesis.game`) with exact clocks in time units. The network that begins at a
 position keeps all automata parked while a prologue, at fixed moments of the environment's, sets the clocks; then all
@@ -29,7 +29,7 @@ class Position:
 
 
 class PositionSolver:
-    """Tells of positions of one game whether they are lost for the controller; answers are remembered."""
+    """Decides of positions of one game whether they are lost for the controller; answers are remembered."""
 
     def __init__(self, network: Network, objective: Objective, reaction: Fraction, clock: TimeBudget) -> None:
         self._network, self._objective, self._reaction, self._clock = network, objective, reaction, clock
@@ -79,7 +79,7 @@ def scaled(network: Network, scale: int) -> Network:
 
 
 def with_horizon(network: Network, horizon: int) -> Network:
-    """The network with a last clock, never reset; at the horizon the game ends, and nobody can put that off."""
+    """The network with a last clock, never reset; at the horizon the game ends, which no move delays."""
     over = Location(_OVER)
     automata = tuple(
         replace(

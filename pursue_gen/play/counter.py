@@ -1,6 +1,6 @@
 """The person plays the robots of a game that is lost; the program answers so that it stays lost.
 
-Of each position that an answer leaves behind the solver is asked whether it is lost, so the robots never win. Where
+Of each position that an answer leaves behind the solver decides whether it is lost, so the robots never win. Where
 something has to be kept up (a safety objective) they are to lose within a horizon, so the answers make headway; where
 no near horizon is found, the others do what they can as soon as they can.
 """
@@ -85,7 +85,7 @@ class CounterPlay:
         """
         order, room = self._order(play), longest(self.setup.game, play.position)
         rest = None if until is None else until - play.now
-        # An order for later than `room` has to wait: somebody has to move before.
+        # An order for later than `room` has to wait: another agent has to move before.
         if order is not None and all(bound is None or order[1] <= bound for bound in (rest, room)):
             return self._ordered(play, *order)
         answer = self._waited(play, rest)
@@ -180,7 +180,7 @@ class CounterPlay:
         return None
 
     def _boundary(self, play: PlayState, limit: Fraction) -> Iterator[Fraction]:
-        """The moments around the first at which it would not be lost any more if nobody did anything."""
+        """The moments around the first at which it would not be lost any more if no agent did anything."""
         low, high = 0, int(limit / GRAIN)
         while high - low > 1:
             middle = (low + high) // 2
@@ -219,7 +219,7 @@ class CounterPlay:
         bounds = self.setup.game.automata[move.owner].invariants[here.state.locations[move.owner]]
         return bool(bounds) and self.setup.is_end(move)
 
-    # What the solver says ---------------------------------------------------------------------------------------------
+    # What the solver finds --------------------------------------------------------------------------------------------
 
     def _leaves_lost(self, play: PlayState, move: JointMove, delay: Fraction) -> bool:
         there = after(play.position, move, delay)

@@ -42,7 +42,7 @@ HELP = (
     "wait @ 7     until the time 7, or until something happens",
     "cancel       forget what is planned for later",
     "undo, redo   take a step back, or forward again",
-    "map          where everybody is, and the ways with their distances",
+    "map          where the agents are, and the ways with their distances",
     "why          what the strategy says here, and which of its blocks says so",
     "log          everything that has happened so far",
     "save FILE    write the game down: a trace for the node UI; with the ending .jsonl a journal for pursue-gen replay",
@@ -68,7 +68,7 @@ class Session:
 
 @dataclass(frozen=True)
 class Reply:
-    """What is told, and how the session goes on; `over`: there is nothing more to say."""
+    """The lines to print, and how the session goes on; `over`: it has ended."""
 
     session: Session
     lines: Tuple[str, ...]
@@ -76,12 +76,12 @@ class Reply:
 
 
 def opening(session: Session) -> Tuple[str, ...]:
-    """What is told first."""
+    """The first lines."""
     setup = session.setup
     wants = (f"{setup.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(setup.scenario)))
     if isinstance(session.game, StrategyPlay):
         plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
-        first = ("The robots can see to it, whatever others do.", f"You play everybody else, {plays}")
+        first = ("The robots can see to it, whatever others do.", f"You play all other agents, {plays}")
     else:
         first = (
             "The robots cannot be sure of it.",
@@ -118,7 +118,7 @@ def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
 def _intention(session: Session, world: StrategyPlay) -> str:
     play, event = session.play, world.strategy_event(session.play)
     while event is not None and session.setup.owner(event.move) not in session.setup.agents:
-        play = taken(session.setup, play, event.move, event.at, event.by)  # nobody would notice
+        play = taken(session.setup, play, event.move, event.at, event.by)  # a person sees no difference
         event = None if play.over else world.strategy_event(play)
     if event is None:
         return "The strategy waits for what others do."
@@ -127,13 +127,13 @@ def _intention(session: Session, world: StrategyPlay) -> str:
 
 
 def _planned(session: Session) -> List[str]:
-    """What the person has said for later."""
+    """What the person has typed for later."""
     known = {(offer.agent, offer.word): _offered(session, offer)[0] for offer in session.game.offers(session.play)}
     plans = [plan for plan in session.play.plans if (plan.agent, plan.word) in known]
     return [f"Planned: {known[plan.agent, plan.word]} at {time_text(plan.at)}." for plan in plans]
 
 
-# What a person says ---------------------------------------------------------------------------------------------------
+# What a person types --------------------------------------------------------------------------------------------------
 
 
 def answer(session: Session, text: str) -> Reply:
@@ -211,7 +211,7 @@ def _wait(session: Session, absolute: bool, amount: Optional[str]) -> Reply:
 
 
 def _advanced(session: Session, play: PlayState, until: Optional[Fraction] = None) -> PlayState:
-    """The play when something has happened that somebody would notice, or at the time `until`."""
+    """The play when something has happened that a person would notice, or at the time `until`."""
     while True:
         before, play = play, session.game.advance(play, until)
         silent = len(play.deeds) > len(before.deeds) and play.deeds[-1].agent not in session.setup.agents
@@ -222,7 +222,7 @@ def _advanced(session: Session, play: PlayState, until: Optional[Fraction] = Non
 def _hopeless(session: Session) -> Tuple[str, ...]:
     if isinstance(session.game, CounterPlay):
         return ("The others need not do anything: do something, or quit.",)
-    return ("The strategy has nothing to do as long as nobody else does: do something, or quit.",)
+    return ("The strategy has nothing to do as long as no other agent does: do something, or quit.",)
 
 
 def _moved(session: Session, play: PlayState) -> Reply:
@@ -317,7 +317,7 @@ def _save(session: Session, name: str) -> Reply:
 
 
 def farewell(session: Session) -> str:
-    """How it stood when somebody left."""
+    """How it stood when the person left."""
     play, setup = session.play, session.setup
     if play.status != RUNNING:
         return ending(setup, session.words, play)

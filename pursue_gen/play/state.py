@@ -1,7 +1,7 @@
 """The play at which a game is played: frozen positions with exact times, and the steps that lead from one to the next.
 
 A play remembers how its discrete state was entered: what the strategy decides, and when, follows from that, however
-often somebody looks in between.
+often it is computed in between.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ GRAIN = Fraction(1, 1000)
 """Time units after a moment that is itself just too early; moments that people name are multiples of it."""
 
 RUNNING, WON, LOST, STUCK = "running", "won", "lost", "stuck"
-"""How it stands. WON: the goal is reached; LOST: the robots have lost; STUCK: somebody whom the robots do not control
+"""How it stands. WON: the goal is reached; LOST: the robots have lost; STUCK: an uncontrollable agent
 ought to move and cannot, so that nothing goes on (a safety objective holds for ever then)."""
 
 ROBOTS, OTHERS, CHANCE = "robots", "others", "chance"
@@ -152,7 +152,7 @@ def open_moves(setup: Setup, play: PlayState, controllable: bool) -> Iterator[Tu
 def own_window(setup: Setup, play: PlayState, move: JointMove) -> Window:
     """The delays (from now) in which a move can be made as far as its own automaton goes.
 
-    Somebody else who has to move before ends the state of the game, but not what this one may do.
+    Another agent that has to move before ends the state of the game, but not what this one may do.
     """
     game, here = setup.game, play.position
     mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
@@ -166,7 +166,7 @@ def own_window(setup: Setup, play: PlayState, move: JointMove) -> Window:
 
 
 def last_moment(setup: Setup, play: PlayState) -> Optional[Fraction]:
-    """The time until which somebody has to move; None: nobody has to."""
+    """The time until which some agent has to move; None: none has to."""
     room = longest(setup.game, play.position)
     return None if room is None else play.now + room
 
@@ -210,7 +210,7 @@ def overdue(setup: Setup, play: PlayState) -> Tuple[str, ...]:
 
 
 def ended(setup: Setup, play: PlayState) -> PlayState:
-    """The play where time cannot go on and nobody can move as they must: who is to blame has lost.
+    """The play where time cannot go on and no agent can move as it must: who is to blame has lost.
 
     With a goal to reach, it is not reached: the robots have lost. Else whoever is overdue and could only be moved by
     the robots' side has lost it for them.

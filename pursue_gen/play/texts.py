@@ -49,7 +49,7 @@ def event_texts(scenario: Scenario, network: Network) -> EventTexts:
 
 
 def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
-    """Where everybody is, what lasts and until when, the states, the rules' turns, the deadline."""
+    """Where the agents are, what lasts and until when, the states, the rules' turns, the deadline."""
     where = {automaton.name: k for k, automaton in enumerate(setup.game.automata)}
     widest = max(map(len, setup.agents), default=0)
     for agent in setup.agents:

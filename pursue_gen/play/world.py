@@ -37,7 +37,7 @@ _STEPS = 100
 
 @dataclass(frozen=True)
 class Event:
-    """What happens next if nobody does anything else: at a time since the start, and by whom it is done."""
+    """What happens next if no agent does anything else: at a time since the start, and by whom it is done."""
 
     at: Fraction
     move: JointMove

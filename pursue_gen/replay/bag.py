@@ -76,10 +76,10 @@ class _Reader:
             # One that was never closed has no length, and its records follow as if there were no chunk.
             self._chunk(header.get("compression", b"none").decode("ascii", "replace"), data)
         elif kind == bytes((_CONNECTION,)):
-            told = dict(_fields(data))
-            topic = _decoded(header, "topic") or _decoded(told, "topic")
-            node = _decoded(told, "callerid").strip("/")
-            self._connections[_integer(header, "conn", 4)] = topic, _decoded(told, "type"), node
+            about = dict(_fields(data))
+            topic = _decoded(header, "topic") or _decoded(about, "topic")
+            node = _decoded(about, "callerid").strip("/")
+            self._connections[_integer(header, "conn", 4)] = topic, _decoded(about, "type"), node
         elif kind == bytes((_MESSAGE,)):
             connection = self._connections.get(_integer(header, "conn", 4))
             seconds, nanoseconds = struct.unpack("<LL", _field(header, "time", 8))

@@ -31,7 +31,7 @@ class ReplayedStep:
 
     @property
     def is_command(self) -> bool:
-        """True where a controller asked for it."""
+        """True where it followed a command."""
         return self.word is not None and self.word.seq is not None
 
 
@@ -197,15 +197,15 @@ class _Checker:
         return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}
 
     def _clocks(self, state: SystemState) -> None:
-        """The clocks that are told, against the stamps of their last resets."""
+        """The clocks of the state, against the stamps of their last resets."""
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
             for clock, value in self._clocks_at(state).items()
             if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= DRIFT
         }
         if wrong:
-            told = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
-            self._report(FAULT, "clock", state, f"clocks are not what the stamps say: {told} time units")
+            wrong_by = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
+            self._report(FAULT, "clock", state, f"clocks do not fit the stamps: {wrong_by} time units")
             self._resume(state)
 
     def _status(self, before: SystemState, state: SystemState) -> None:
@@ -227,9 +227,9 @@ class _Checker:
     def _end(self, last: SystemState) -> None:
         goal, bad = self._game.objective.goal, self._game.objective.bad
         if last.status == WON and goal is not None and last.locations[goal[0]] != goal[1]:
-            self._report(FAULT, "end", last, f"it is said to be won, but {goal[0]} is not {goal[1]}")
+            self._report(FAULT, "end", last, f"its status is won, but {goal[0]} is not {goal[1]}")
         if last.status == WON and bad is not None and last.locations[bad[0]] == bad[1]:
-            self._report(FAULT, "end", last, f"it is said to be won, but {bad[0]} is {bad[1]}")
+            self._report(FAULT, "end", last, f"its status is won, but {bad[0]} is {bad[1]}")
         if last.status not in (*ENDED, WAITING):
             overdue = self.moves.overdue(_place(last), self._clocks_at(last))
             for agent, late in overdue.items():
@@ -249,16 +249,16 @@ class _Checker:
             own = step.move[0][0] == (self._game.objective.bad or ("", ""))[0]
             if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
                 how = "late" if late else "early"
-                told = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
-                found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, told))
+                text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
+                found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING:
                 continue
             cover = orders.cover.find(_place(state))
             if not in_time((zone for zones in cover for zone in zones), state.clocks, 0.0, self._tolerance):
                 what = "at these clocks" if cover else "in this state"
-                told = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
-                found.append(Finding(WORLD, "uncovered", state.seq, told))
+                text = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
+                found.append(Finding(WORLD, "uncovered", state.seq, text))
         return found
 
     def commands(self, steps: List[ReplayedStep], said: WordMatches) -> List[Finding]:
@@ -271,14 +271,14 @@ class _Checker:
             own = agent == (self._game.objective.bad or ("", ""))[0] and edge.sync is None
             if word is None:
                 if not own:
-                    told = f"no word for {state.event} was recorded"
-                    found.append(Finding(FAULT, "unsaid", state.seq, told))
+                    text = f"no word for {state.event} was recorded"
+                    found.append(Finding(FAULT, "unsaid", state.seq, text))
                     found += self._unsaid_command(step)
                 continue
             if word.seq is None:
                 if word.node in controllers - {"UI"}:
-                    told = f"{word.node} says {word.text}, and ends are for robots to tell"
-                    found.append(Finding(FAULT, "owner", state.seq, told))
+                    text = f"{word.node} published {word.text}, and ends are reported by robots"
+                    found.append(Finding(FAULT, "owner", state.seq, text))
                 continue
             orders = self.orders.get(before.plan)
             if before.status == HOLDING:
@@ -288,12 +288,12 @@ class _Checker:
             owners = orders.owners.get(agent, frozenset())
             by_hand = bool(word.node) and word.node not in controllers
             if word.node in controllers and word.node not in owners:
-                told = f"{word.node} commands {agent}, which is for {' or '.join(sorted(owners)) or 'nobody'}"
-                found.append(Finding(FAULT, "owner", state.seq, told))
+                text = f"{word.node} commands {agent}, which is for {' or '.join(sorted(owners)) or 'no node'}"
+                found.append(Finding(FAULT, "owner", state.seq, text))
             if not self._wanted(orders, step):
-                told = f"{state.event} by {agent} is not what the strategy says in state {before.seq}"
-                told += f"; it was said by {word.node}" if by_hand else self._is_reliable()
-                found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, told))
+                text = f"{state.event} by {agent} is not what the strategy prescribes in state {before.seq}"
+                text += f"; it was published by {word.node}" if by_hand else self._is_reliable()
+                found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, text))
         return found
 
     def _unsaid_command(self, step: ReplayedStep) -> List[Finding]:

@@ -59,13 +59,13 @@ def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]
     try:
         rules = data["rules"]
         slack = {str(agent): whole(str(units)) for agent, units in dict(rules.get("slack") or {}).items()}
-        told = Rules(str(rules["ends"]), exact(rules["reaction"]), slack)
+        played_by = Rules(str(rules["ends"]), exact(rules["reaction"]), slack)
         name, text = str(data["name"]), str(data["scenario"])
         shape = str(data.get("controllers", DISTRIBUTED)), str(data.get("reach_obj", DEDICATED))
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         message = f"{file} does not describe a game: {problem!r}"
         raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
-    return Source(name, text, file, told, *shape, plan)
+    return Source(name, text, file, played_by, *shape, plan)
 
 
 def from_workspace(folder: Path) -> Source:

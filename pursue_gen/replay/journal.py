@@ -17,7 +17,7 @@ from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop")
 END = "told"
-"""Closes a journal: everybody knows how the mission ended."""
+"""Closes a journal: the end of the mission was published."""
 
 MOST = 1000
 """By so many numbers one call may move a mission on; more is damage."""
@@ -25,7 +25,7 @@ MOST = 1000
 
 @dataclass(frozen=True)
 class Entry:
-    """A call of the observer at a moment (seconds), and number and status ("": not told) of the state after it."""
+    """A call of the observer at a moment (seconds), and number and status ("": not known) of the state after it."""
 
     at: float
     call: str
@@ -120,7 +120,7 @@ class _Walk:
         self._event = self._agent = ""
 
     def follow(self, entry: Entry) -> None:
-        """What one call did: the numbers that it took say how many steps to look for."""
+        """What one call did; the number of the state after it gives the number of steps to look for."""
         word = read_word(entry.at, str(entry.args[0])) if entry.call == "hear" and entry.args else None
         if word is not None:
             self.words.append(word)

@@ -50,7 +50,7 @@ def _bag(file: Path, content: bytes) -> MissionRecord:
 
 
 def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
-    """What the messages of a bag say; those that are not ours are passed over."""
+    """What the messages of a bag hold; those that are not ours are passed over."""
     states: List[SystemState] = []
     words: List[RecordedWord] = []
     orders: List[RobotOrder] = []
@@ -80,7 +80,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
 
 
 def _order(message: Message, topic: str) -> RobotOrder:
-    """What a robot was told; the robot's name stands first in the topic's last parts."""
+    """An order to a robot; the robot's name stands first in the topic's last parts."""
     kind = next(kind for kind in _ORDERS if topic.endswith(kind))
     robot = topic[: -len(kind)].rpartition("/")[2]
     if kind == "/pursue/actions":
@@ -90,7 +90,7 @@ def _order(message: Message, topic: str) -> RobotOrder:
 
 
 def _text(data: bytes) -> str:
-    """What a std_msgs/String says, as far as it is there."""
+    """The text of a std_msgs/String, as far as it is there."""
     return data[4:].decode("utf-8", "replace")
 
 

@@ -1,4 +1,4 @@
-"""What the robots were told, against what the states say that they do."""
+"""The orders to robots, against what they do according to the states."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pursue_gen.tga.names import going, is_doing, is_going
 from pursue_runtime.state import SystemState
 
 LATE = 2.0
-"""Seconds by which an order may be heard after its activity is over: messages take time, and robots may be quick."""
+"""Seconds by which an order may be received after its activity is over: messages take time, and robots may be quick."""
 EARLY = 0.25
 """Seconds by which the recorder's clock may be behind the observer's: another machine, a step of simulated time."""
 NEAR = 0.011  # metres: computed poses are rounded to centimetres
@@ -32,24 +32,24 @@ Activity = Tuple[SystemState, float, str, str]
 def check_robots(
     record: MissionRecord, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]
 ) -> List[Finding]:
-    """Goals and actions that no state asked for, those that were never sent, goals that lead elsewhere."""
+    """Orders without a state that begins them, orders that were never sent, goals that lead elsewhere."""
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots)
     where = {robot: _places(game.scenario, robot) for robot in robots}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
     found: List[Finding] = []
-    told: Set[int] = set()
+    ordered: Set[int] = set()
     places: Dict[str, Dict[str, Point]] = {robot: {} for robot in robots}
     for order in record.orders:
         place = diary.activity(order)
         if place is None:
             what = "a goal" if order.is_goal else f"the action {order.action}"
             seq = _number_at(record, order.at)
-            text = f"{order.node or 'somebody'} gave {order.robot} {what} that no state asks for"
+            text = f"{order.node or 'an unknown node'} gave {order.robot} {what} that follows from no state"
             found.append(Finding(FAULT, "order", seq, text))
             continue
-        told.add(place)
+        ordered.add(place)
         state, _, robot, location = activities[place]
         owners = orders[state.plan].owners.get(robot) if state.plan in orders else None
         if owners and order.node and order.node not in owners:
@@ -59,10 +59,10 @@ def check_robots(
             problem = _elsewhere(order.goal, ways[location], places[robot], where[robot])
             found += [Finding(FAULT, "goal", state.seq, f"{robot} is sent {problem}")] if problem else []
     if not record.problems:
-        asked = {state.seq for _, state, _, is_command in steps if is_command}
+        commanded = {state.seq for _, state, _, is_command in steps if is_command}
         for place, (state, _, robot, location) in enumerate(activities):
-            if place not in told and state.seq in asked:
-                text = f"{robot} was not told to begin {state.event} ({location or 'an action'})"
+            if place not in ordered and state.seq in commanded:
+                text = f"{robot} got no order to begin {state.event} ({location or 'an action'})"
                 found.append(Finding(FAULT, "untold", state.seq, text))
     return found
 

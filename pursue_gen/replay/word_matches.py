@@ -14,7 +14,7 @@ from pursue_runtime.words import BLOCKED, FAILED, FINISH, FREE, PING, PLANNED, S
 
 CONTROL = (START, PING, STOP, FINISH)
 APART = 60.0
-"""Seconds by which the recorder may have heard a report earlier or later than the observer: links may be cut."""
+"""Seconds by which the recorder may have received a report earlier or later than the observer: links may be cut."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,15 @@ class WordMatches:
 
 def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState]]) -> WordMatches:
     """A command is for the number of the state before it; of several reports the one nearest to the state counts."""
-    heard: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
+    received: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
-        heard.setdefault((word.event, word.seq), []).append((word.at, place))
-    for words in heard.values():
+        received.setdefault((word.event, word.seq), []).append((word.at, place))
+    for words in received.values():
         words.sort()
     used: Set[int] = set()
     found: Dict[int, RecordedWord] = {}
     for before, state in steps:
-        for words in (heard.get((state.event, before.seq), []), heard.get((state.event, None), [])):
+        for words in (received.get((state.event, before.seq), []), received.get((state.event, None), [])):
             near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
             mine = [place for _, place in near if record.words[place].agent in ("", state.agent) and place not in used]
             if mine:
@@ -69,12 +69,12 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
 
     for word in record.words:
         if word.text == STOP:
-            found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} said {STOP}"))
+            found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} published {STOP}"))
         elif word.event in (BLOCKED, FREE):
-            text = f"{_sender(word)} said {word.text}"
+            text = f"{_sender(word)} published {word.text}"
             found.append(Finding(WORLD if word.event == BLOCKED else NOTE, "way", now(word).seq, text))
         elif word.event == FAILED:
-            found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot do what it was told"))
+            found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot carry out its order"))
     for word in said.unmatched:
         seq, why = _why(now(word), word, said, moves)
         found.append(Finding(NOTE, "dropped", seq, f"{word.text[:80]!r} of {_sender(word)} led to nothing: {why}"))
@@ -82,7 +82,7 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
 
 
 def _sender(word: RecordedWord) -> str:
-    return word.node or "somebody"
+    return word.node or "an unknown node"
 
 
 def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) -> Tuple[int, str]:
@@ -90,13 +90,13 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
     if not word.event:
         return now.seq, "it is no word"
     if word.seq is None:
-        return now.seq, _impossible(now, word, moves) or "its moment had not come, or it was not heard"
+        return now.seq, _impossible(now, word, moves) or "its moment had not come, or the observer did not receive it"
     state, following = said.states.get(word.seq), said.states.get(word.seq + 1)
     taken = said.of(word.seq + 1)
     if state is None:
         return word.seq, f"state {word.seq} is not in the recording"
     if taken is not None and (taken.agent, taken.event) == (word.agent, word.event):
-        return word.seq, "it was said again, and had been taken"
+        return word.seq, "it was published again, and had been taken"
     if following is not None:
         what = f"{following.event} by {following.agent}" if following.event else "another status"
         return word.seq, f"{what} came first"

@@ -52,22 +52,22 @@ def case_for(scenario: Scenario, won: Solution, reach_obj: str, shape: str = DIS
 
 
 def measured(
-    scenario: Scenario, won: Solution, reach_obj: str, runs: int, told: Callable[[int], None] = lambda done: None
+    scenario: Scenario, won: Solution, reach_obj: str, runs: int, progress: Callable[[int], None] = lambda done: None
 ) -> Tuple[Measured, ...]:
     """So many simulated missions each with central and with distributed controllers; the same seeds each time.
 
-    What nobody controls does in turn anything, the worst, and nothing. `told` hears how many are done.
+    The uncontrollable agents do in turn anything, the worst, and nothing. `progress` is called with how many are done.
     """
     result: List[Measured] = []
     for shape in (CENTRALIZED, DISTRIBUTED):
         before = len(result) * runs
         case = case_for(scenario, won, reach_obj, shape)
-        result.append(Measured(shape, simulate(case, range(FIRST, FIRST + runs), progress=_from(before, told))))
+        result.append(Measured(shape, simulate(case, range(FIRST, FIRST + runs), progress=_from(before, progress))))
     return tuple(result)
 
 
-def _from(before: int, told: Callable[[int], None]) -> Callable[[int], None]:
-    return lambda done: told(before + done)
+def _from(before: int, progress: Callable[[int], None]) -> Callable[[int], None]:
+    return lambda done: progress(before + done)
 
 
 def section(

@@ -72,7 +72,7 @@ def is_loopback(host: str) -> bool:
 
 
 def parse_status(text: str) -> Optional[Dict[str, Any]]:
-    """The reader's status from its topic; None for anything else that somebody publishes there."""
+    """The reader's status from its topic; None for anything else that is published there."""
     try:
         status = read_json(text, DATA._replace(size=STATUS_LENGTH))
     except BadText:

@@ -312,7 +312,7 @@ class _Request(RequestHandler):
     # Mistakes ---------------------------------------------------------------------------------------------------------
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """What tornado refuses by itself, or our own mistake: nothing about how it came is told."""
+        """What tornado refuses by itself, or our own mistake: no details are returned."""
         words = {405: "bad_method", 500: "internal"}
         message = "something went wrong here" if status_code >= 500 else "the request cannot be understood"
         self._send(HttpAnswer(status_code, words.get(status_code, "bad_request"), message), {})

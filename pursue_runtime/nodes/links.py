@@ -211,7 +211,7 @@ class Links:
 
 
 def log_without_master() -> None:
-    """rospy asks the master at each line that it logs for a parameter, as long as nobody has set that: with the master
+    """rospy requests a parameter of the master at each line that it logs, as long as that is not set: with the master
     cut off, the first log line would stop the node. Set to its default and read once, it is cached."""
     parameter = "/rosout_disable_topics_generation"
     with contextlib.suppress(OSError):  # the master has gone this moment

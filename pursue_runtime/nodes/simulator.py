@@ -1,6 +1,6 @@
 """The simulated robots, people and other agents: reports the ends of what they do.
 
-Parameters: ~reports (whose ends; default: those that ui.yaml names, or everybody's), ~delays (random, early, middle,
+Parameters: ~reports (whose ends; default: those that ui.yaml names, or all), ~delays (random, early, middle,
 late), ~seed, ~config, ~received, ~again (see membership).
 """
 

@@ -1,5 +1,5 @@
-"""The terminal: starts the mission when every node is ready, plays or asks for what the agents do that
-nobody controls, instructs people as the strategy says, shows what happens, and how the mission ends.
+"""The terminal: starts the mission when every node is ready, plays the uncontrollable agents or lets a person play
+them, instructs people as the strategy prescribes, shows what happens, and how the mission ends.
 """
 
 from __future__ import annotations
@@ -207,7 +207,7 @@ class UI:
             self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", BOLD)
 
     def start(self) -> None:
-        """Says `_start_`, again if no state answers it."""
+        """Publishes `_start_`, again if no state answers it."""
         if self.tries == TRIES:
             self.conclude(1, f"The observer does not answer {START}.")
             return
@@ -233,7 +233,7 @@ class UI:
                 self.act()
 
     def act(self) -> None:
-        """Says what is due, and sleeps until there is more."""
+        """Publishes what is due, and sleeps until there is more."""
         if self.phase != RUNNING or self.concluded:
             return
         now, real = rospy.get_time(), time.monotonic()
@@ -265,7 +265,7 @@ class UI:
                 self.terminal.line(line)
 
     def find_offers(self) -> None:
-        """What the agents that nobody controls can do now, and which ends can be reported here."""
+        """What the uncontrollable agents can do now, and which ends can be reported here."""
         state = self.mission.state
         if state is not None:
             self.given = tasks(self.model, state, self.reporting)
@@ -360,7 +360,7 @@ def on_terminal() -> bool:
 
 
 def make_player(options: Options, model: Model) -> Environment:
-    """Return the player of the agents that nobody controls. Raises TraceError."""
+    """Return the player of the uncontrollable agents. Raises TraceError."""
     if options.mode == "random":
         return RandomEnvironment(model, options.seed, options.pace)
     if options.mode == "trace":

@@ -22,7 +22,7 @@ from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, is_
 
 STATE = "state.json"
 KEEP = 5
-"""So many earlier missions are kept, unless told otherwise."""
+"""So many earlier missions are kept, unless a parameter sets another number."""
 
 _NEW = ".new-"  # what is being written; after a start it is what a dead process has left
 _FOLDER_MODE, _FILE_MODE = 0o700, 0o600
@@ -277,7 +277,7 @@ class Store:
         self._sync()
 
     def _sync(self) -> None:
-        """What was renamed stays so in a power cut. It is so already for everybody who looks."""
+        """What was renamed stays so in a power cut. Other processes see it already."""
         try:
             _sync_folder(self.folder)
         except OSError as problem:

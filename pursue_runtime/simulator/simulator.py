@@ -1,6 +1,6 @@
 """Simulated robots, people and other agents: when each of their movements and actions ends.
 
-A robot sets out when it gets its goal, everybody else when the observer has taken the start. The end comes a drawn
+A robot sets out when it gets its goal, all other agents when the observer has taken the start. The end comes a drawn
 delay later, inside the model's window, and is reported once; the state that follows is the receipt.
 """
 

@@ -29,12 +29,12 @@ def topics(model: Model, simulated_time: bool) -> List[str]:
     return [*names, "/diagnostics", *(["/clock"] if simulated_time else [])]
 
 
-def reserve_file(asked: str, folder: str) -> str:
-    """The path of a new bag: the one that was asked for, `mission.bag` in the folder for none, or where that is taken
+def reserve_file(wanted: str, folder: str) -> str:
+    """The path of a new bag: the wanted one, `mission.bag` in the folder for none, or where that is taken
     the next with a number. What is being written stands in `<path>.active`, which is made here: no two recorders get
     the same. Raises OSError.
     """
-    path = os.path.abspath(os.path.expanduser(asked)) if asked else os.path.join(folder, "mission.bag")
+    path = os.path.abspath(os.path.expanduser(wanted)) if wanted else os.path.join(folder, "mission.bag")
     os.makedirs(os.path.dirname(path), exist_ok=True)
     stem, ending = os.path.splitext(path)
     number = 1

@@ -30,7 +30,7 @@ def say(at: Session, *lines: str) -> Tuple[Session, str]:
 
 def test_it_begins_with_who_plays_whom() -> None:
     won, lost = "\n".join(opening(session(THIEF))), "\n".join(opening(session("cage")))
-    assert "You play everybody else" in won
+    assert "You play all other agents" in won
     assert "You play the robots" in lost
     assert "1  thief: set off from c to b" in won
 
