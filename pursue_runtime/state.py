@@ -79,6 +79,20 @@ def older(state: SystemState, known: SystemState) -> bool:
     return state.seq < known.seq and state.stamp <= known.stamp  # in simulated time two states may have one stamp
 
 
+def rewinds(state: SystemState, known: SystemState) -> bool:
+    """True for a state that the mission of the known one, which is under way, cannot have come to.
+
+    It counts back, or says of the same number something else: as an observer does that has lost its journal. The end
+    without the goal counts whatever its number is: a safe stop is always possible.
+    """
+    if known.status not in LIVE or state.mission != known.mission or state.status in (LOST, STOPPED):
+        return False
+    if state.seq != known.seq:
+        return state.seq < known.seq
+    same = (state.locations, state.values) == (known.locations, known.values)
+    return not same or (state.status in LIVE and (state.event, state.agent) != (known.event, known.agent))
+
+
 def format_state(state: SystemState) -> str:
     """The text on pursue/system_state: the thesis's, with a first line for us."""
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]

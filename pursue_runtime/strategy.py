@@ -65,6 +65,10 @@ class Strategy:
             self.reaction = float(exact(data["reaction"]))
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
             self._table = StateTable(entries)
+            # What it reads of a state: automata and variables, and clocks.
+            self.names = {str(name) for state, _ in entries for name in state}
+            zones = (zone for _, commands in entries for command in commands for zone in command.when)
+            self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
             self._instant = {
                 (command.agent, command.event, command.target)
                 for _, commands in entries

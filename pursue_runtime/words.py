@@ -8,6 +8,7 @@ from typing import NamedTuple, Optional
 EVENTS = "pursue/events"
 STATE, SYSTEM_STATE = "pursue/state", "pursue/system_state"
 PLAN = "pursue/plan"
+SEEN = "pursue/seen"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"

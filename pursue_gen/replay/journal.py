@@ -1,4 +1,4 @@
-"""The observer's journal: JSON lines, the first of them a head, then each call that changed something.
+"""The observer's journal: lines of JSON (format 2: with checksums), a head, then each call that changed something.
 
 A journal holds no states: `worked_out` walks the scenario's automata by its words.
 """
@@ -12,10 +12,12 @@ from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_gen.tga.network import Objective
 from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
-CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop")
+FORMATS = (1, 2)
+CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "adopted")
 END = "told"
 """Closes a journal: the end of the mission was published."""
 
@@ -52,8 +54,8 @@ def read_journal(content: bytes) -> Union[Journal, str]:
     """The journal in a file; a sentence where it is none."""
     lines = content.decode("utf-8", "replace").splitlines()
     head = _object(lines[0]) if lines else None
-    if head is None or head.get("format") != 1 or "scenario" not in head:
-        return 'expected a first line such as {"format": 1, "scenario": …}'
+    if head is None or head.get("format") not in FORMATS or "scenario" not in head:
+        return 'expected a first line such as {"format": 1, "scenario": …}, with or without checksum, number and length'
     if _unit(head) is None:
         return "its first line gives no length of a time unit in seconds"
     entries: List[Entry] = []
@@ -80,6 +82,10 @@ def _unit(head: Mapping[str, Any]) -> Optional[float]:
 
 
 def _object(line: str) -> Optional[Dict[str, Any]]:
+    """The JSON object of a line: of format 1, or of format 2 where its checksum is right."""
+    if not line.startswith("{"):
+        found = parse_record(f"{line}\n".encode())
+        return found[1] if found is not None else None
     try:
         data = read_json(line)
     except BadText:
@@ -127,6 +133,9 @@ class _Walk:
         if entry.call == "planned" and len(entry.args) > 1 and isinstance(entry.args[1], dict):
             number = entry.args[0] if isinstance(entry.args[0], int) else -1
             self.plans[number] = {**entry.args[1], "plan": number}
+        if entry.call == "adopted":
+            self._adopt(entry)
+            return
         if not self._seq <= entry.seq <= self._seq + MOST:
             self.problems.append(f"after state {self._seq} the journal goes on with state {entry.seq}")
             self._seq = entry.seq - 1
@@ -136,6 +145,24 @@ class _Walk:
             self._status = status
             self._event = self._agent = ""
             self._show(entry.at)
+
+    def _adopt(self, entry: Entry) -> None:
+        """The observer did not know the states before this one: it continued from what other nodes had seen."""
+        found = entry.args[0] if entry.args and isinstance(entry.args[0], dict) else {}
+        try:
+            state = SystemState(**found)
+            place = DiscreteState(dict(state.locations), dict(state.values))
+            zeros = {clock: float(state.stamp) - float(value) * self._unit for clock, value in state.clocks.items()}
+            known = self._moves.knows(place) and set(zeros) == set(self._moves.network.clocks)
+        except (TypeError, ValueError, AttributeError):
+            known = False
+        if not known:
+            self.problems.append(f"the state {entry.seq} from which the observer continued is none of this scenario")
+            return
+        self.problems.append(f"states {self._seq + 1} to {state.seq} are not in the journal: other nodes had seen them")
+        self._place, self._zeros, self._event, self._agent = place, zeros, state.event, state.agent
+        self._seq, self._status, self._plan = entry.seq, entry.status or state.status, state.plan
+        self._show(entry.at)
 
     def _steps(self, entry: Entry, word: Optional[RecordedWord]) -> None:
         while self._seq < entry.seq:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -15,6 +16,9 @@ from pursue_runtime.state import SystemState, parse_state
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
 
+RECORD = re.compile(rb"[0-9a-f]{8} 0 \d+ \{")
+"""How a journal of format 2 begins."""
+
 _ORDERS = ("/move_base_simple/goal", "/pursue/actions", "/move_base/goal")
 """Topics of a robot, below its name."""
 
@@ -27,7 +31,7 @@ def read_recording(file: Path) -> Union[MissionRecord, Journal]:
         raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
     if content.startswith(b"#ROSBAG"):
         return _bag(file, content)
-    if content.lstrip()[:1] == b"{":
+    if content.lstrip()[:1] == b"{" or RECORD.match(content):
         journal = read_journal(content)
         if isinstance(journal, str):
             raise _unreadable(f"{file} is no journal: {journal}", "RPL002")

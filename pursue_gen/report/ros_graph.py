@@ -14,6 +14,7 @@ from pursue_gen.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.report.html import Section, figure, table
 
 EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
+SEEN = "/pursue/seen"
 DIAGNOSTICS = "/diagnostics"
 _STATE = "pursue_msgs/SystemState"
 _STRING, _POSE, _STATUS = "std_msgs/String", "geometry_msgs/PoseStamped", "diagnostic_msgs/DiagnosticArray"
@@ -43,6 +44,7 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
         Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, f"/{UI}")),
         Topic(TEXT, _STRING, (_OBSERVER,), ()),
         Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, f"/{UI}")),
+        Topic(SEEN, _STATE, (*controllers, _SIMULATOR, f"/{UI}"), (_OBSERVER,)),
         Topic(DIAGNOSTICS, _STATUS, nodes, (_OBSERVER, _SIMULATOR, f"/{UI}")),
     ]
     for sub in subs:

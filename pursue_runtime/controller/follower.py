@@ -9,8 +9,9 @@ from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.data import DataError
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.poses import POSES, Poses, read_poses
-from pursue_runtime.state import ENDED, WAITING, SystemState
-from pursue_runtime.state_filter import OLD, OTHER, StateFilter
+from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
+from pursue_runtime.state_checks import strategy_problem
+from pursue_runtime.state_filter import OLD, OTHER, REFUSED, StateFilter
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import Word
 
@@ -66,6 +67,7 @@ class Follower:
         self.trouble = self._logged = ""
         self._missions, self._name, self._package, self._log = missions, name, package, log
         self._filter = StateFilter("", missions.own.mission, again, clock)
+        self._filter.check = self._problem
         self._source: Optional[Source] = None  # where the part was read
         self.plan: Optional[Mapping[str, Any]] = None  # the newest, of whatever mission, until it is learned
 
@@ -75,7 +77,11 @@ class Follower:
 
     def on_state(self, state: SystemState) -> str:
         """Take a state, read the part of its mission if that is another one, and return its class (see StateFilter)."""
-        verdict = self._filter.classify(state)
+        refused, verdict = self.refused, self._filter.classify(state)
+        if verdict == REFUSED:
+            if self.refused != refused:
+                self._log("err", f"refused {self.refused}")
+            return verdict
         if self._filter.clock_set_back and self.part is not None:
             self._log("warn", "the observer's clock was set back: earlier states do not count any more")
             self._use(self.part._replace())  # a new scheduler: earlier commands are over
@@ -87,6 +93,16 @@ class Follower:
         elif verdict != OLD and state.status == WAITING:
             self.plan = None  # new plans are of missions that run
         return verdict
+
+    @property
+    def refused(self) -> str:
+        """Return why the last state was refused, "" if it was not."""
+        return self._filter.refused
+
+    @property
+    def newest(self) -> Optional[SystemState]:
+        """Return the newest state of any mission."""
+        return self._filter.newest
 
     def reject(self, why: str) -> None:
         """Play nothing: the part that was read cannot be used, for the reason `why`."""
@@ -136,6 +152,11 @@ class Follower:
     def _read(self, source: Source) -> None:
         self._use(read_part(source))
         self._source = source
+
+    def _problem(self, state: SystemState) -> str:
+        """Return why the strategy cannot decide in a state of its mission, "" if it can."""
+        strategy = self.part.strategy if self.part else None
+        return strategy_problem(strategy, state) if strategy is not None and state.status in LIVE else ""
 
     def _use(self, part: Optional[Part]) -> None:
         self.part, self.trouble = part, ""

@@ -6,7 +6,7 @@ from typing import Callable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.locations import action_of, is_movement, is_under_way
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Command, Plans, Strategy
 from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
@@ -65,7 +65,7 @@ class CommandScheduler:
         """Take a state, find the next command, and return what our agents have begun."""
         before = self.state
         self.is_new = False
-        if before is not None and older(state, before):
+        if before is not None and (older(state, before) or rewinds(state, before)):
             self.counts["old"] += 1
             return []
         self.state = state

@@ -19,11 +19,12 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag, text
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
-from pursue_runtime.state_filter import OLD, OURS
+from pursue_runtime.state_filter import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
 from pursue_runtime.words import PLAN, format_word
 
@@ -50,8 +51,9 @@ class Controller:
                 raise
             self.follower.reject(str(problem))  # the next one may be better
         self.take_up()
-        states = subscribe_states(self.update_state)
-        rospy.Subscriber(PLAN, String, self.learn, queue_size=10, tcp_nodelay=True)
+        self.witness = Witness(lambda: self.follower.newest)
+        states = subscribe_states(self.update_state, self.ending)
+        subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
         Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost))
 
     def take_up(self) -> None:
@@ -67,6 +69,9 @@ class Controller:
         """Handle a state: order the robots what was taken, and plan the next command."""
         with self.lock:
             played, verdict = self.follower.part, self.follower.on_state(state)
+            if verdict == REFUSED:
+                self.witness.publish()
+                return
             if verdict != OLD:
                 self.observer = publisher
             if self.follower.part is not played:
@@ -153,6 +158,9 @@ class Controller:
             values: Dict[str, object] = {"seq": state.seq if state else "", "mission": part.mission if part else ""}
             values.update(scheduler.counts if scheduler else {})
             values["next_command"] = planned[1].event if planned else ""
+            values["refused"] = refused = self.follower.refused
+        if refused:
+            return Report(False, ERROR, f"refused {refused}", values)
         if trouble:
             return Report(False, WARN, trouble, values)
         if state is None:

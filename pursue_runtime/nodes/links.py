@@ -220,6 +220,17 @@ def log_without_master() -> None:
         rospy.get_param_cached(parameter)
 
 
+def is_gone(node: str) -> bool:
+    """Return True if this node does not live any more, though the master may still know it."""
+    try:
+        _call(_call(rosgraph.get_master_uri(), "lookupNode", node), "getPid")
+    except (ConnectionRefusedError, xmlrpc.client.Fault):
+        return True
+    except _CALL_ERRORS:
+        pass  # it may live
+    return False
+
+
 def connect(topic: str, uri: str) -> None:
     """Has rospy connect this topic to the publisher at the address, as if the master had announced it."""
     _call(rospy.get_node_uri(), "publisherUpdate", topic, [uri])

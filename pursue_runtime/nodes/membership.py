@@ -5,6 +5,7 @@ or from what this machine has received (~received); with ~again they stay for th
 from __future__ import annotations
 
 import os
+from typing import Optional
 
 import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
@@ -12,10 +13,14 @@ from pursue_msgs.msg import SystemState as SystemStateMessage
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
+from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
-from pursue_runtime.state_filter import OLD, OTHER, OURS, StateFilter
+from pursue_runtime.state_checks import model_problem
+from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
+from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import STATE
 
 PATIENCE = 1.0
@@ -23,7 +28,10 @@ PATIENCE = 1.0
 
 
 class Membership:
-    """The mission whose data the node has, and what becomes of states. `trouble`: why it cannot take part, or ""."""
+    """The mission whose data the node has, and what becomes of states. `trouble`: why it cannot take part, or "".
+
+    It is a witness of the mission: an observer that starts learns what this node has seen last.
+    """
 
     def __init__(self, package: Package, ending: Ending) -> None:
         """Raises DataError."""
@@ -35,11 +43,28 @@ class Membership:
         self._ending = ending
         self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")
         self.source = self._choose()
+        self.model = Model(self.source.read("model.yaml"))
         self._filter = StateFilter(self.source.mission, own.mission, self.again)
+        self._filter.check = lambda state: model_problem(self.model, state)
+        self._witness = Witness(lambda: self._filter.newest)
+
+    @property
+    def refused(self) -> str:
+        """Return why the last state was refused, "" if it was not."""
+        return self._filter.refused
+
+    def people(self) -> Optional[Strategy]:
+        """Return the part of the strategy that people carry out, where there are any. Raises DataError."""
+        return Strategy(self.source.read("people.yaml")) if self.source.has("people.yaml") else None
 
     def takes(self, state: SystemState) -> bool:
         """True for a state that counts here. Where it is of another mission that is here, the node begins anew."""
-        verdict = self._filter.classify(state)
+        refused, verdict = self.refused, self._filter.classify(state)
+        if verdict == REFUSED:
+            if self.refused != refused:
+                rospy.logerr("refused %s", self.refused)
+            self._witness.publish()
+            return False
         if self._filter.clock_set_back and verdict != OTHER:
             self._ending.renew()  # nothing that is known here is of the mission that comes
             return False

@@ -53,6 +53,27 @@ def start_thread(name: str, run: Callable[[], object], ending: Ending) -> None:
     threading.Thread(target=guarded, name=name, daemon=True).start()
 
 
+def subscribe(
+    topic: str, kind: type, callback: Callable[..., object], ending: Ending, *arguments: object, **options: Any
+) -> rospy.Subscriber:
+    """Subscribe to a topic (`options`: those of rospy.Subscriber): `callback` gets each message, and `arguments`.
+
+    An exception in it ends the node, with status 1 and a reason: rospy would log it and go on, and what the node knows
+    would be only a part of what has happened.
+    """
+
+    def guarded(message: Any) -> None:
+        try:
+            callback(message, *arguments)
+        except Exception as problem:
+            if not rospy.is_shutdown():
+                reason = "the node ends: what it received on %s could not be handled: %r\n%s"
+                rospy.logfatal(reason, topic, problem, traceback.format_exc())
+                ending.end(FAILED)
+
+    return rospy.Subscriber(topic, kind, guarded, **options)
+
+
 class Diagnostics:
     """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
 
@@ -104,7 +125,7 @@ class Alarm:
         self._simulated: Optional[float] = None
         if not rospy.rostime.is_wallclock():
             self._simulated = rospy.get_time()
-            rospy.Subscriber("/clock", Clock, self._tick, queue_size=10, tcp_nodelay=True)
+            subscribe("/clock", Clock, self._tick, ending, queue_size=10, tcp_nodelay=True)
         start_thread("alarm", self._run, ending)
 
     def set(self, moment: Optional[float] = None, patience: Optional[float] = None) -> None:

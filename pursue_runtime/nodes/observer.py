@@ -38,12 +38,15 @@ from pursue_runtime.nodes.node import (
     restart_process,
     run_node,
     start_thread,
+    subscribe,
 )
 from pursue_runtime.nodes.state_message import message_of
+from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, unfinished_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.settings import read_settings
+from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
@@ -72,6 +75,8 @@ class Observer:
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
+        self.witnesses = Witnesses(self.ending, self.on_seen)
+        self.witnesses.gather()
         self.source = self._source()
         self.controllers: List[str] = self.source.read("controllers.yaml")["controllers"]
         self.mission = self._mission()
@@ -86,10 +91,12 @@ class Observer:
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, self.ending)
+        self.take_up()
         self.await_clock()
         self.publish([self.mission.state(self.now())])
-        self.words = rospy.Subscriber(EVENTS, String, self.on_word, tcp_nodelay=True)
-        pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
+        self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
+        pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
+        start_thread("journal", self.journal.keep_synced, self.ending)
         start_thread("heartbeat", self.keep_publishing, self.ending)
         links = Links(pulses, ending=self.ending, lost=partial(self.call, "stop"))
         Diagnostics(self.report, self.ending, links)
@@ -98,6 +105,8 @@ class Observer:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has
         been received meanwhile; else the current one is played. Raises DataError."""
         going_on, source = unfinished_mission(self._journal_path(), self._journal_name()), None
+        if going_on is None:
+            going_on = mission_seen(self.witnesses.seen)
         if going_on is not None:
             try:
                 source = self.missions.find(going_on)
@@ -147,6 +156,19 @@ class Observer:
         """ROS time in seconds, but nothing comes before what is written down."""
         return max(float(rospy.get_time()), self.journal.last)
 
+    def take_up(self) -> None:
+        """Take up the mission where the journal and the other nodes have it; stop it where that is unclear."""
+        own, journal = self.mission.state(self.now()), self.journal
+        found = find_state(own, journal.damage, journal.after, self.witnesses.seen)
+        why = found.stop
+        if found.adopt is not None:
+            try:
+                journal.adopt(found.adopt, rospy.get_time())
+            except DataError as problem:
+                why = f"the observer was restarted, and cannot go on from state {found.adopt.seq}: {problem}"
+        if why:
+            journal.call("stop", why, now=self.now())
+
     def await_clock(self) -> None:
         """Wait for simulated time where a mission goes on: it is 0 until /clock was received."""
         deadline = time.monotonic() + CLOCK
@@ -166,6 +188,13 @@ class Observer:
             self.log_soon("warn", f"{publisher} does not receive the states; its word is dropped: {message.data[:80]}")
             return
         self.call("hear", message.data)
+
+    def on_seen(self, state: SystemState, node: str) -> None:
+        """Handle what another node has seen last: a state that is not known here stops the mission."""
+        with self.lock:
+            own = self.mission.state(self.now())
+            if contradicts(own, self.journal.after, state):
+                self.call("stop", unknown_state(own, node, state))
 
     def on_alarm(self) -> None:
         """Handle a deadline, or a step that an objective takes by itself."""
@@ -282,7 +311,7 @@ class Observer:
         rospy.loginfo("the observer of %s, mission %s: %s", self.mission.model.scenario, name, self.mission.status)
         status = self.ending.wait(linger=self.settings.linger)
         if self.mission.status in ENDED and (self.settings.again or not self.settings.launch):
-            self.journal.end()  # a roscore may see another mission; a launch has one, unless ~again is set
+            self.journal.end(self.now())  # a roscore may see another mission; a launch has one, unless ~again is set
         if self.ending.renewed:
             restart_process()
         return status

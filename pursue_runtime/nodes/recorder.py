@@ -23,7 +23,6 @@ from std_msgs.msg import String
 
 from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
-from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
@@ -36,6 +35,7 @@ from pursue_runtime.nodes.node import (
     lower_priority,
     restart_process,
     run_node,
+    subscribe,
 )
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.parameters import names
@@ -72,7 +72,7 @@ class Recorder:
     def __init__(self, package: Package) -> None:
         self.ending = Ending()
         self.membership = Membership(package, self.ending)
-        model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
+        model, settings = self.membership.model, self.membership.source.read("ui.yaml")
         given = rospy.get_param("~", {})
         self.nodes = ["UI", *expected(given, settings.get("nodes", ()))]
         file = str(rospy.get_param("~file", ""))
@@ -89,7 +89,7 @@ class Recorder:
         more = names(given, "topics")
         wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
         self.subscribers: List[rospy.Subscriber] = [
-            rospy.Subscriber(topic, rospy.AnyMsg, self.on_message, rospy.resolve_name(topic), tcp_nodelay=True)
+            subscribe(topic, rospy.AnyMsg, self.on_message, self.ending, rospy.resolve_name(topic), tcp_nodelay=True)
             for topic in dict.fromkeys(wanted)
         ]
         pulses = [each for each in self.subscribers if each.resolved_name == "/diagnostics"]

@@ -15,10 +15,10 @@ from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
 
 from pursue_runtime.data import Package
-from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
+    ERROR,
     OK,
     WARN,
     Alarm,
@@ -29,6 +29,7 @@ from pursue_runtime.nodes.node import (
     lower_priority,
     restart_process,
     run_node,
+    subscribe,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
@@ -43,7 +44,7 @@ class SimulatorNode:
     def __init__(self, package: Package) -> None:
         self.ending = Ending()
         self.membership = Membership(package, self.ending)
-        model, settings = Model(self.membership.source.read("model.yaml")), self.membership.source.read("ui.yaml")
+        model, settings = self.membership.model, self.membership.source.read("ui.yaml")
         agents = [automaton.name for automaton in model.of_kind(*ACTING)]
         given = rospy.get_param("~", {})
         reports = names(given, "reports", settings.get("reports", agents))
@@ -60,10 +61,10 @@ class SimulatorNode:
         for robot in self.robots:
             for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
                 self.subscribers.append(
-                    rospy.Subscriber(topic, kind, self.on_goal, callback_args=robot, queue_size=10, tcp_nodelay=True)
+                    subscribe(topic, kind, self.on_goal, self.ending, robot, queue_size=10, tcp_nodelay=True)
                 )
-        states = subscribe_states(self.on_state)
-        pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
+        states = subscribe_states(self.on_state, self.ending)
+        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
         links = Links(states, pulses, ending=self.ending, lost=self.master_lost)
         Diagnostics(self.report, self.ending, links)
 
@@ -107,6 +108,9 @@ class SimulatorNode:
             observer, status, reported = self.observer, self.status, self.reported
         unconnected = sorted({each.resolved_name for each in self.subscribers if each.get_num_connections() == 0})
         values = {"mission": self.membership.source.mission, "reported": reported, "uncommanded": " ".join(unconnected)}
+        values["refused"] = refused = self.membership.refused
+        if refused:
+            return Report(False, ERROR, f"refused {refused}", values)
         if self.membership.trouble:
             return Report(False, WARN, self.membership.trouble, values)
         if not observer or observer not in listeners(self.events):

@@ -8,8 +8,13 @@ import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
 from pursue_msgs.msg import SystemState as Message
 
-from pursue_runtime.state import AGENT_LISTS, STATUSES, SystemState
+from pursue_runtime.nodes.node import Ending, subscribe
+from pursue_runtime.state import AGENT_LISTS, SystemState
+from pursue_runtime.state_checks import names_problem, state_problem
 from pursue_runtime.words import STATE
+
+THROTTLE = 10.0
+"""Seconds for which the log has one line about messages that are no states."""
 
 
 def message_of(state: SystemState) -> Message:
@@ -33,11 +38,13 @@ def message_of(state: SystemState) -> Message:
 
 def state_of(message: Message) -> SystemState:
     """Return the state that a message holds. Raises ValueError for one that no observer publishes."""
-    if message.status not in STATUSES:
-        raise ValueError(f"status is {message.status!r}; expected one of {', '.join(STATUSES)}")
-    if not 0.0 < message.time_unit < float("inf"):
-        raise ValueError(f"time_unit is {message.time_unit!r}; expected a number of seconds greater than 0")
-    return SystemState(
+    lists = {"automata": message.automata, "variables": message.variables, "clocks": message.clocks}
+    agents = {f"{key} agents": getattr(message, key) for key in AGENT_LISTS}
+    named = {what: [each.name for each in entries] for what, entries in lists.items()}
+    problems = [names_problem(what, names) for what, names in {**named, **agents}.items()]
+    if any(problems):
+        raise ValueError(next(filter(None, problems)))
+    state = SystemState(
         seq=message.seq,
         stamp=message.stamp.to_sec(),
         locations={automaton.name: automaton.location for automaton in message.automata},
@@ -52,9 +59,15 @@ def state_of(message: Message) -> SystemState:
         mission=message.mission,
         **{key: tuple(getattr(message, key)) for key in AGENT_LISTS},
     )
+    problem = state_problem(state)
+    if problem:
+        raise ValueError(problem)
+    return state
 
 
-def subscribe_states(on_state: Callable[[SystemState, str], None], topic: str = STATE) -> rospy.Subscriber:
+def subscribe_states(
+    on_state: Callable[[SystemState, str], None], ending: Ending, topic: str = STATE
+) -> rospy.Subscriber:
     """Subscribe to the states of the mission: `on_state` gets each, and the name of the node that published it.
 
     A message that no observer publishes is logged and changes nothing.
@@ -65,8 +78,8 @@ def subscribe_states(on_state: Callable[[SystemState, str], None], topic: str = 
         try:
             state = state_of(message)
         except ValueError as problem:
-            rospy.logwarn("not a system state, from %s: %s", publisher, problem)
+            rospy.logwarn_throttle(THROTTLE, f"not a system state, from {publisher}: {problem}")
             return
         on_state(state, publisher)
 
-    return rospy.Subscriber(topic, Message, receive, queue_size=1000, tcp_nodelay=True)
+    return subscribe(topic, Message, receive, ending, queue_size=1000, tcp_nodelay=True)

@@ -15,7 +15,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
-from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -31,6 +30,7 @@ from pursue_runtime.nodes.node import (
     lower_priority,
     restart_process,
     start_thread,
+    subscribe,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import WAITING, SystemState
@@ -80,7 +80,7 @@ class UI:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
         self.reporting = reporting
         self.words: Set[str] = {edge.word for automaton in model.automata for edge in automaton.edges}
-        self.mission = MissionView(model, player, people(membership.source))
+        self.mission = MissionView(model, player, membership.people())
         self.readiness = Readiness(options.nodes)
         self.terminal = Terminal(sys.stdout, os.environ)
         self.lock = threading.RLock()
@@ -97,10 +97,10 @@ class UI:
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
-        self.states = subscribe_states(self.on_state)
-        rospy.Subscriber(PLAN, String, self.on_plan, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber(EVENTS, String, self.on_word, queue_size=1000, tcp_nodelay=True)
-        pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics, queue_size=100)
+        self.states = subscribe_states(self.on_state, ending)
+        subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
+        subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
+        pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
         Diagnostics(self.report, ending, Links(self.states, pulses, ending=ending, lost=self.master_lost))
 
     # Callbacks --------------------------------------------------------------------------------------------------------
@@ -207,7 +207,9 @@ class UI:
             self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", BOLD)
 
     def start(self) -> None:
-        """Publishes `_start_`, again if no state answers it."""
+        """Publish `_start_`, again if no state answers it; never for a mission that has been seen under way."""
+        if self.mission.start is not None:
+            return
         if self.tries == TRIES:
             self.conclude(1, f"The observer does not answer {START}.")
             return
@@ -316,9 +318,10 @@ class UI:
             missing = self.readiness.missing() if self.phase == GATHERING else []
             values: Dict[str, object] = {"phase": self.phase, "mode": self.options.mode, "missing": " ".join(missing)}
             verdict = self.mission.verdict()
-            trouble = self.membership.trouble
-        values["mission"] = self.membership.source.mission
-        level = ERROR if verdict and verdict[0] else WARN if missing or trouble else OK
+            refused, trouble = self.membership.refused, self.membership.trouble
+        values.update({"mission": self.membership.source.mission, "refused": refused})
+        trouble = f"refused {refused}" if refused else trouble
+        level = ERROR if refused or (verdict and verdict[0]) else WARN if missing or trouble else OK
         return Report(self.connected() and not trouble, level, verdict[1] if verdict else trouble or self.phase, values)
 
     def run(self) -> int:
@@ -373,11 +376,6 @@ def make_player(options: Options, model: Model) -> Environment:
     return IdleEnvironment()
 
 
-def people(source: Source) -> Optional[Strategy]:
-    """The part of the strategy that people carry out, where there are any. Raises DataError."""
-    return Strategy(source.read("people.yaml")) if source.has("people.yaml") else None
-
-
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     arguments = rospy.myargv(sys.argv)[1:]
@@ -388,7 +386,7 @@ def main(package: Package) -> int:
     try:
         ending = Ending()
         membership = Membership(package, ending)
-        model, settings = Model(membership.source.read("model.yaml")), membership.source.read("ui.yaml")
+        model, settings = membership.model, membership.source.read("ui.yaml")
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
         ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))

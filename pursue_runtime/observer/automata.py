@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 from transitions import Machine
 
 from pursue_runtime.model import Automaton, Edge, Model, Move, Position
+from pursue_runtime.state import SystemState
 from pursue_runtime.zones import due, holds
 
 _machines: MutableMapping[Model, Dict[str, Machine]] = WeakKeyDictionary()
@@ -61,6 +62,10 @@ class AutomatonMachine:
             raise AssertionError(f"{edge.word} does not start at {self.location}")
         self._machine.set_state(edge.target, self._model)
 
+    def set(self, location: str) -> None:
+        """Set the location. Raises ValueError if there is none of this name."""
+        self._machine.set_state(location, self._model)
+
 
 class Automata:
     """The automata, variables and clocks of a mission; `unit` is the length of a time unit in seconds."""
@@ -75,6 +80,13 @@ class Automata:
     def start(self, now: float) -> None:
         """Set every clock to zero at the time `now`."""
         self._zeros = dict.fromkeys(self.model.clocks, now)
+
+    def adopt(self, state: SystemState) -> None:
+        """Set locations, variables and clocks as they are in a state of this model."""
+        for name, location in state.locations.items():
+            self._machines[name].set(location)
+        self._values = dict(state.values)
+        self._zeros = {clock: state.stamp - value * self.unit for clock, value in state.clocks.items()}
 
     def location_of(self, name: str) -> str:
         """Return the location of an automaton, "" if there is none of this name."""

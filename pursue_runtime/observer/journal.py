@@ -1,6 +1,7 @@
-"""The journal of a mission: one line for each call that changed it, so that a restarted observer can continue.
+"""The journal of a mission: a record of each call that changed it, so that a restarted observer can continue.
 
-A line is one write to a file that is opened for appending: it outlives the process, not a power cut.
+A journal that could not be written any more is renamed (FAILED): it holds the beginning of a mission only. What other
+nodes have seen tells then where the mission is (see witnesses).
 """
 
 from __future__ import annotations
@@ -8,11 +9,19 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import threading
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.state import SystemState
+from pursue_runtime.observer.records import Record, RecordFile, RecordsRead, read_records, sync_folder
+from pursue_runtime.state import ENDED, WAITING, SystemState
+
+FORMAT = 2
+"""The format of the journals that are written here. Format 1 had no checksums."""
+
+ADOPTED = "adopted"
+"""The call with which a mission continues from a state that the journal does not lead to."""
 
 CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "hear": Mission.on_word,
@@ -23,11 +32,15 @@ CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "unplanned": Mission.on_no_plan,
     "searching": Mission.on_long_search,
     "stop": Mission.stop,
+    ADOPTED: Mission.adopt,
 }
 """Mission methods by the names that journals have for them: those of older workspaces are still read."""
 
 END = "told"
-"""The call of the last line: the end of the mission has been published."""
+"""The call of the last record: the end of the mission has been published."""
+
+FAILED = ".failed"
+"""What is added to the name of a journal that could not be written any more."""
 
 MAX_JOURNALS = 20
 """So many journals of a scenario are kept."""
@@ -36,24 +49,29 @@ Log = Callable[[str, str], None]
 
 
 class Journal:
-    """Writes the calls of a mission before their results are published."""
+    """Writes the calls of a mission before their results are published.
+
+    `damage`: why the journal that was found is not all that happened; "" where it is, or where there was none. Then
+    nothing is written unless a state is adopted. `last`: the moment of the last entry, in seconds. `after`: the moment
+    at which the mission before this one was over, by the same launch; states of before belong to that one.
+    """
 
     def __init__(self, mission: Mission, path: str, header: Mapping[str, Any], log: Log) -> None:
         """Replay the journal at `path` ("": no journal) into a fresh mission.
 
-        `header` tells missions apart: a journal of another model or another launch is set aside.
+        `header` tells missions apart: the journal of another `launch` is set aside.
         """
-        self._mission = mission
-        self._log = log
-        self._file: Optional[int] = None
-        self.last = 0.0  # the moment of the last entry, in seconds
-        if not path:
-            return
-        try:
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            self._resume(path, {"format": 1, **header})
-        except OSError as problem:
-            self._fail(problem)
+        self.last = self.after = 0.0
+        self.damage = ""
+        self._mission, self._path, self._log = mission, path, log
+        self._header = {"format": FORMAT, **header}
+        self._file: Optional[RecordFile] = None
+        self._lost = not path  # nothing is written any more
+        self._entries: List[Record] = []  # what was replayed
+        self._lock = threading.RLock()
+        self._written = threading.Event()
+        if path:
+            self._resume()
 
     @property
     def is_open(self) -> bool:
@@ -61,67 +79,168 @@ class Journal:
         return self._file is not None
 
     def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
-        """Call the mission (a name in CALLS) at the time `now` (seconds); write the call if it changed the mission."""
-        before = self._mission.revision()
+        """Call the mission (a name in CALLS) at the time `now` (seconds); write the call if it changed the mission.
+
+        The start and the end of the mission are on the disk when this returns, everything else soon after
+        (`keep_synced`).
+        """
+        before, status = self._mission.revision(), self._mission.status
         states = CALLS[name](self._mission, *args, now)
         if self._mission.revision() != before:
             self.last = now
-            self._write({"at": now, "call": name, "args": args, **_end_of(self._mission)})
+            turn = self._mission.status != status and (status == WAITING or self._mission.status in ENDED)
+            self._write({"at": now, "call": name, "args": args, **_end_of(self._mission)}, sync=turn)
         return states
 
-    def end(self) -> None:
+    def adopt(self, state: SystemState, now: float) -> List[SystemState]:
+        """Continue the mission from a state that other nodes have seen; return what is to be published.
+
+        What was found damaged or incomplete is set aside. Raises DataError if the mission cannot continue from there.
+        """
+        if self._mission.plan and not self._entries:
+            raise DataError(f"the journal that holds plan {self._mission.plan} cannot be replayed")
+        args = json.loads(json.dumps([state._asdict()]))  # as it will be read
+        self.last = max(now, state.stamp)
+        states = CALLS[ADOPTED](self._mission, *args, self.last)
+        entry = {"at": self.last, "call": ADOPTED, "args": args, **_end_of(self._mission)}
+        if self._file is not None:
+            self._write(entry, sync=True)
+        elif self._path:
+            self.damage, self._lost = "", False
+            self._begin([*self._entries, entry])
+        return states
+
+    def end(self, now: float) -> None:
         """Write that the end of the mission was published: the next mission begins a journal of its own."""
-        self._write({"call": END})
+        with self._lock:
+            if self._file is not None:
+                self._write({"at": now, "call": END}, sync=True)
+            elif self._path:
+                with contextlib.suppress(OSError):
+                    self._set_aside()
 
-    def _resume(self, path: str, header: Mapping[str, Any]) -> None:
-        if os.path.exists(path):
-            found, entries, whole = read_journal(path)
-            if found == header and not (entries and entries[-1].get("call") == END):
-                os.truncate(path, whole)
-                self._replay(entries, path)
-            elif entries:
-                _set_aside(path)
-            else:
-                os.remove(path)  # its mission has never begun
-        _delete_old(os.path.dirname(path))
-        self._file = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
-        if os.fstat(self._file).st_size == 0:
-            self._write(header)
+    def keep_synced(self) -> None:
+        """Sync what is written, for ever: for a thread of its own."""
+        while True:
+            self._written.wait()
+            self._written.clear()
+            file = self._file
+            try:
+                if file is not None:
+                    file.sync()
+            except OSError as problem:
+                self._fail(problem)
 
-    def _replay(self, entries: List[Dict[str, Any]], path: str) -> None:
+    # What was found ---------------------------------------------------------------------------------------------------
+
+    def _resume(self) -> None:
+        try:
+            os.makedirs(os.path.dirname(self._path), exist_ok=True)
+            source, found = _read(self._path)
+        except OSError as problem:
+            source, found = self._path, RecordsRead([], 0, f"it cannot be read: {problem}")
+            if not os.path.exists(self._path):
+                self._log("err", f"no journal: {problem}")
+                return
+        head = dict(found.records[0]) if found.records else {}
+        self.after, entries = _moment(head.pop("after", 0.0)), found.records[1:]
+        other = bool(head) and head.get("launch") != self._header.get("launch")
+        if not source or other or (not found.damage and (not entries or entries[-1].get("call") == END)):
+            # nothing is under way: there was no mission, or its end was published
+            if entries:
+                self.after = 0.0 if other else _moment(entries[-1].get("at"))
+            elif source:
+                os.remove(source)
+            self._begin([])
+            return
+        self.damage = found.damage
+        differs = ", ".join(key for key in self._header if head.get(key) != self._header[key])
+        if head and differs:
+            self.damage = self.damage or f"it was written by an observer with another {differs}"
+        elif head:
+            self._replay(entries)
+        if self.damage:
+            self._log("err", f"the journal {source} is not complete: {self.damage}")
+        else:
+            self._log("warn", f"continues from state {self._mission.seq}, read from {source}")
+            self._open(lambda: RecordFile.resume(self._path, found))
+
+    def _replay(self, entries: List[Record]) -> None:
         try:
             replay(self._mission, entries)
         except DataError as problem:
-            self._log("err", f"{path}: {problem}")
-            self._mission.stop(f"the observer was restarted, and its journal cannot be replayed: {problem}", 0.0)
+            self.damage = self.damage or f"it cannot be replayed: {problem}"
         else:
-            if entries:
-                self.last = float(entries[-1]["at"])
-                self._log("warn", f"continues from state {self._mission.seq}, read from {path}")
+            self._entries = entries
+            self.last = max([float(entry["at"]) for entry in entries], default=0.0)
 
-    def _write(self, entry: Mapping[str, Any]) -> None:
-        if self._file is None:
-            return
+    # Writing ----------------------------------------------------------------------------------------------------------
+
+    def _begin(self, entries: List[Record]) -> None:
+        """Create the journal with these entries, and set aside the one that was there."""
+        records = [{**self._header, "after": self.after}, *entries]
+        self._open(lambda: RecordFile.create(self._path, records, self._set_aside))
+        with contextlib.suppress(OSError):
+            _delete_old(os.path.dirname(self._path))
+
+    def _open(self, how: Callable[[], RecordFile]) -> None:
         try:
-            os.write(self._file, (json.dumps(entry) + "\n").encode())
+            self._file = how()
         except OSError as problem:
-            self._fail(problem)
+            self._log("err", f"no journal: {problem}")
+
+    def _write(self, entry: Mapping[str, Any], sync: bool = False) -> None:
+        with self._lock:
+            if self._lost or self.damage:
+                return
+            if self._file is None:
+                self._begin([])  # there was no room for it: there may be now
+            try:
+                if self._file is None:
+                    raise OSError("it could not be created")
+                self._file.append(entry)
+                if sync:
+                    self._file.sync()
+                else:
+                    self._written.set()
+            except OSError as problem:
+                self._fail(problem)
 
     def _fail(self, problem: OSError) -> None:
-        self._file = None
-        self._log("err", f"no journal: {problem}. A restarted observer cannot continue this mission.")
+        """Mark the journal: it is not the whole mission any more, and whoever reads it has to know."""
+        with self._lock:
+            file, self._file, self._lost = self._file, None, True
+            self._log("err", f"the journal {self._path} fails: {problem}; other nodes are the only witnesses now")
+            try:
+                if file is not None:
+                    with contextlib.suppress(OSError):
+                        file.cut()
+                if os.path.exists(self._path):
+                    os.rename(self._path, self._path + FAILED)
+                else:
+                    os.close(os.open(self._path + FAILED, os.O_WRONLY | os.O_CREAT, 0o644))
+                sync_folder(self._path)
+            except OSError as another:
+                self._log("err", f"{self._path} cannot be marked as failed: {another}")
+
+    def _set_aside(self) -> None:
+        """Rename what is in the place of the journal to a free name. Raises OSError."""
+        stem, ending = os.path.splitext(self._path)
+        for path in (self._path, self._path + FAILED):
+            number = 1
+            while os.path.exists(f"{stem}-{number}{ending}"):
+                number += 1
+            if os.path.exists(path):
+                os.rename(path, f"{stem}-{number}{ending}")
 
 
-def read_journal(path: str) -> Tuple[Optional[Dict[str, Any]], List[Dict[str, Any]], int]:
-    """Return the first line, the other lines, and the length in bytes of all complete lines.
-
-    A kill may leave the last line incomplete; a line that cannot be read is an entry without a call. Raises OSError.
-    """
-    with open(path, "rb") as file:
-        content = file.read()
-    whole = content.rfind(b"\n") + 1
-    lines = [_entry(line) for line in content[:whole].splitlines()]
-    return (lines[0] if lines else None), lines[1:], whole
+def _read(path: str) -> Tuple[str, RecordsRead]:
+    """Return the path of the journal ("" where there is none) and what is in it. Raises OSError."""
+    if os.path.exists(path):  # one that is there is newer than one that has failed
+        return path, read_records(path)
+    if os.path.exists(path + FAILED):
+        return path + FAILED, read_records(path + FAILED)._replace(damage="it could not be written any more")
+    return "", RecordsRead([], 0)
 
 
 def unfinished_mission(path: str, launch: str) -> Optional[str]:
@@ -130,45 +249,33 @@ def unfinished_mission(path: str, launch: str) -> Optional[str]:
     None where there was none, or the journal cannot be read.
     """
     try:
-        header, entries, _ = read_journal(path)
+        _, found = _read(path)
     except OSError:
         return None
-    if not header or header.get("launch") != launch or not entries or entries[-1].get("call") == END:
+    if not found.records or found.records[0].get("launch") != launch:
         return None
-    return str(header.get("mission", ""))
+    begun = found.damage or (len(found.records) > 1 and found.records[-1].get("call") != END)
+    return str(found.records[0].get("mission", "")) if begun else None
 
 
 def replay(mission: Mission, entries: List[Dict[str, Any]]) -> None:
     """Apply the entries to a fresh mission. Raises DataError where they do not fit it."""
-    for number, entry in enumerate(entries, start=2):
+    for number, entry in enumerate(entries, start=1):
         try:
             CALLS[entry["call"]](mission, *entry["args"], float(entry["at"]))
             fits = {key: entry[key] for key in ("seq", "status")} == _end_of(mission)
-        except (KeyError, TypeError, ValueError) as problem:
-            raise DataError(f"line {number} cannot be read: {problem!r}") from problem
+        except Exception as problem:  # whatever an entry makes of the mission
+            raise DataError(f"record {number}: {problem!r}") from problem
         if not fits:
-            raise DataError(f"line {number} leads to state {mission.seq}, and should not")
+            raise DataError(f"record {number} leads to state {mission.seq}, and should not")
+
+
+def _moment(value: object) -> float:
+    return float(value) if isinstance(value, (int, float)) else 0.0
 
 
 def _end_of(mission: Mission) -> Dict[str, Any]:
     return {"seq": mission.seq, "status": mission.status}
-
-
-def _entry(line: bytes) -> Dict[str, Any]:
-    try:
-        entry = json.loads(line)
-    except ValueError:
-        entry = None
-    return entry if isinstance(entry, dict) else {}
-
-
-def _set_aside(path: str) -> None:
-    """Rename the file to the next free name."""
-    stem, ending = os.path.splitext(path)
-    number = 1
-    while os.path.exists(f"{stem}-{number}{ending}"):
-        number += 1
-    os.rename(path, f"{stem}-{number}{ending}")
 
 
 def _delete_old(folder: str) -> None:

@@ -11,7 +11,8 @@ from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_of
-from pursue_runtime.state import HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,
@@ -30,7 +31,6 @@ from pursue_runtime.zones import EPSILON, INFINITY, due
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
-
 
 COVER_GRACE = 2.0
 """Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
@@ -214,6 +214,19 @@ class Mission:
     def stop(self, why: str, now: float) -> List[SystemState]:
         """Stop the mission safely: no further commands are taken."""
         return self._end(STOPPED, why, now) if self.status in (WAITING, *LIVE) else []
+
+    def adopt(self, found: Mapping[str, Any], now: float) -> List[SystemState]:
+        """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
+        state = adoptable(found, self.model, self._unit, self.plan)
+        self._automata.adopt(state)
+        self.seq, self.status, self.reason = state.seq, state.status, state.reason
+        self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
+        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
+        self._early, self._warned = {}, False
+        self._planning.adopt(self.late.union(self.lost))
+        self.robots.adopt(state)
+        self._shown = self.robots.revision()
+        return [self.state(now), *self._status_changes(now)]
 
     def _start(self, now: float) -> List[SystemState]:
         if self.status != WAITING:

@@ -104,6 +104,11 @@ class Planning:
         what = position.locations, position.values, position.clocks
         self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)), tuple(sorted(blocked)))
 
+    def adopt(self, absent: AbstractSet[str]) -> None:
+        """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
+        self.reset()
+        self.excused &= absent
+
     def reset(self) -> None:
         """Drop the request and the proposal: no other plan is needed."""
         self.request = self.proposal = self._place = None

@@ -6,6 +6,7 @@ from typing import Dict, List, Mapping, Set, Tuple
 
 from pursue_runtime.locations import is_action, is_movement, is_under_way, position_variable
 from pursue_runtime.model import Edge, Model, Move
+from pursue_runtime.state import SystemState
 from pursue_runtime.words import BACK, DISPLACED, HELD, RESUME, RobotReport
 
 
@@ -22,6 +23,12 @@ class Robots:
         self.returning: Set[str] = set()
         self._robots = {position_variable(automaton.name): automaton.name for automaton in model.of_kind("robot")}
         self._names = frozenset(self._robots.values())
+
+    def adopt(self, state: SystemState) -> None:
+        """Take the robots as they are in a state."""
+        self.held = dict.fromkeys(state.held, "is held")
+        self.displaced = dict.fromkeys({*state.displaced, *state.returning}, "is not where the state has it")
+        self.returning = set(state.returning)
 
     def on_report(self, report: RobotReport, location: str) -> str:
         """Take a report about a robot at this location; return why it cannot be ("": it can)."""

@@ -13,7 +13,7 @@ from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.state import LIVE, SystemState, older
+from pursue_runtime.state import LIVE, SystemState, older, rewinds
 from pursue_runtime.words import Word, format_word
 
 ACTING = ("robot", "human", "agent")
@@ -112,7 +112,7 @@ class Simulator:
     def on_state(self, state: SystemState, real: float) -> None:
         """Take a state, received at the time `real` of the monotonic clock."""
         before = self._state
-        if before is not None and older(state, before):
+        if before is not None and (older(state, before) or rewinds(state, before)):
             return
         self._state = state
         if before is None or before.seq != state.seq:

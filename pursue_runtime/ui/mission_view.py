@@ -10,7 +10,7 @@ from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, P
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
 from pursue_runtime.simulator.simulator import ACTING, report_word
-from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Plans, Strategy
 from pursue_runtime.words import START, Word, format_word
 from pursue_runtime.zones import due
@@ -140,7 +140,7 @@ class MissionView:
 
     def on_state(self, state: SystemState, now: float) -> List[str]:
         """A state came; the lines to print."""
-        if self.state is not None and older(state, self.state):
+        if self.state is not None and (older(state, self.state) or rewinds(state, self.state)):
             return []
         news = self.state is None or self.state.seq != state.seq or self.state.status != state.status
         self.state = state

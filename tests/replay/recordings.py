@@ -16,6 +16,7 @@ from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.moves import Moves, after
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import translate
+from pursue_runtime.observer.records import format_record
 from pursue_runtime.state import SystemState
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
@@ -148,7 +149,7 @@ def _pose(at: float, pose: Any) -> bytes:
 
 def write_journal(play: Play, path: Path, unit: float = 1.0) -> Path:
     """Writes the mission as the observer's journal."""
-    head = {"format": 1, "scenario": "scenario_1", "model": "0", "settings": {"time_unit": unit}}
+    head = {"format": 2, "scenario": "scenario_1", "model": "0", "settings": {"time_unit": unit}}
     lines: List[Dict[str, Any]] = [head]
     lines.append({"at": START, "call": "hear", "args": ["_start_"], "seq": 1, "status": "running"})
     for seq, (units, word, _) in enumerate(play, start=2):
@@ -156,5 +157,5 @@ def write_journal(play: Play, path: Path, unit: float = 1.0) -> Path:
         status = "won" if word == "bot2_inaDONE" else "running"
         lines.append({"at": START + units * unit, "call": "hear", "args": [said], "seq": seq, "status": status})
     lines.append({"call": "told"})
-    path.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    path.write_bytes(b"".join(format_record(number, line) for number, line in enumerate(lines)))
     return path

@@ -12,13 +12,20 @@ import pytest
 from pursue_gen.language import load
 from pursue_gen.partition import partition
 from pursue_gen.report import graphviz
-from pursue_gen.report.ros_graph import DIAGNOSTICS, EVENTS, PLAN, STATE, TEXT, Topic, graph, topics
+from pursue_gen.report.ros_graph import DIAGNOSTICS, EVENTS, PLAN, SEEN, STATE, TEXT, Topic, graph, topics
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.workspace import Options, generate
 
 SCENARIO = load(Path(__file__).resolve().parent.parent.parent / "scenarios" / "thesis" / "catch_the_thief.pur")
-NAMES = {"EVENTS": EVENTS, "STATE": STATE, "SYSTEM_STATE": TEXT, "PLAN": PLAN, '"/diagnostics"': DIAGNOSTICS}
+NAMES = {
+    "EVENTS": EVENTS, "STATE": STATE, "SYSTEM_STATE": TEXT, "PLAN": PLAN, "SEEN": SEEN, '"/diagnostics"': DIAGNOSTICS,
+}  # fmt: skip
+SHARED = {
+    "subscribe_states(": "Subscriber(STATE, ", "subscribe(": "Subscriber(", "Witnesses(": "Subscriber(SEEN, ",
+    "Witness(": "Publisher(SEEN, ", "Membership(": "Publisher(SEEN, ",
+}  # fmt: skip
+"""What nodes call in other modules, and what that does there."""
 
 
 @pytest.fixture(scope="module")
@@ -59,11 +66,10 @@ def calls(files: Dict[str, bytes], package: str, script: str, call: str) -> Set[
     modules = [found.group(1), "node", *(["exeggutor"] if found.group(1) == "controller" else [])]
     paths = [f"src/pursue_runtime/src/pursue_runtime/nodes/{module}.py" for module in modules]
     code = "\n".join(files[path].decode() for path in paths)
-    if call == "Subscriber":
-        code = code.replace("subscribe_states(", "rospy.Subscriber(STATE, ")
-    return {
-        NAMES[name] for name in re.findall(rf"rospy\.{call}\(\s*([A-Z_]+|\"/diagnostics\"),", code) if name in NAMES
-    }
+    for name, what in SHARED.items():
+        code = code.replace(name, what)
+    found_names = re.findall(rf"{call}\(\s*([A-Z_]+|\"/diagnostics\"),", code)
+    return {NAMES[name] for name in found_names if name in NAMES}
 
 
 @pytest.mark.parametrize(

@@ -241,6 +241,16 @@ class LaunchedMission:
         finally:
             end(process)
 
+    @contextlib.contextmanager
+    def script(self, path: Path) -> Iterator[Node]:
+        """A Python program with ROS and the workspace's messages."""
+        log = self.folder / f"{path.stem}-{len(list(self.folder.iterdir()))}.log"
+        process = self._start(f"source devel/setup.bash; exec python3 {path}", log)
+        try:
+            yield Node(process, log)
+        finally:
+            end(process)
+
     def until_back(self, node: str, old: int) -> None:
         """Waits until another process has the node's name, and says that it is ready."""
         process = self.until(lambda: self.pid(node) not in (0, old) and self.pid(node))

@@ -14,6 +14,8 @@ import pytest
 from launched_mission import EVENTS, LaunchedMission, launched
 from ros_world import Ros, generated, make
 
+from pursue_runtime.observer.records import read_records
+
 Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
@@ -24,7 +26,7 @@ STEPS = [
 ]
 """Scenario 1 from start to goal, where every movement takes the middle of its window, and commands no time."""
 
-ORDERS = {"bot1": ["[0.0, 3.1]", "bot1_inb"], "bot2": ["[5.13, 0.0]", "bot2_ina"]}
+ORDERS = {"bot1": ["[0.0, 3.1]", "bot1_inb"], "bot2": ["[5.13, 0.8]", "bot2_ina"]}
 """The orders that each robot gets in it."""
 
 FAKE_PLANNER = Path(__file__).resolve().parent / "fake_planner.py"
@@ -288,7 +290,7 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
         assert before.status == "holding" and running.seq == before.seq + 1
         assert (running["plan"], running["lost"], running["reason"]) == ("1", "bot2", "")
         (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*")
-        calls = [json.loads(line) for line in journal.read_text().rpartition("\n")[0].splitlines()[1:]]
+        calls = read_records(str(journal)).records[1:]
         swap = next(number for number, call in enumerate(calls) if call["seq"] == running.seq)
         has = {word for call in calls[:swap + 1] for word in call["args"] if str(word).endswith(":_plan_@1")}
         assert has == {f"{node}:_plan_@1" for node in ("controller_bot1", "controller_bot2", "controllerObj")}

@@ -133,6 +133,7 @@ def test_where_the_own_mission_is_sent_as_well_it_is_read_anew_before_it_begins_
     assert bot.follower.part is before, "nothing has changed"
     shelf.here[A] = Source(A, strategy=strategy("sent"), poses={"poses": POSES})
     assert bot.see(1, 12.0, A) == "ours" and bot.says(12.0) == "bot:a@1", "a mission that runs is left alone"
+    assert bot.see(1, 13.0, A, "stopped") == "ours"
     assert bot.see(0, 20.0, A, "waiting") == "ours"
     assert bot.see(1, 21.0, A) == "ours" and bot.says(21.0) == "bot:sent@1"
 
@@ -256,6 +257,7 @@ def test_plans_do_not_outlive_their_mission() -> None:
     bot = begun()
     bot.see(3, 10.0, A)
     learn(bot, plan("old", A), 10.0)
+    bot.see(4, 19.0, A, "stopped")
     bot.see(0, 20.0, A, "waiting")
     bot.see(5, 21.0, A, "holding")
     assert bot.follower.scheduler.repeated_receipt() is None, "it does not have the plan that this mission may make"

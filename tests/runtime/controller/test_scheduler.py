@@ -192,9 +192,19 @@ def test_a_burst_of_late_states_changes_nothing() -> None:
     assert bot.counts["old"] == 4
 
 
-def test_an_observer_that_starts_anew_is_believed_and_so_is_one_whose_clock_was_set_back() -> None:
+def test_an_observer_that_counts_back_is_not_followed_and_no_robot_moves() -> None:
     bot = player()
     bot.on_state(state(7, 100.0, "b"), 100.0)
+    wake = bot.next_wakeup()
+    begun = state(2, 201.0, "going_c_to_b", event="bot_c2b")
+    for strange in (state(0, 200.0, status="waiting"), state(1, 200.0), begun, begun._replace(seq=7)):
+        assert bot.on_state(strange, 201.0) == []
+        assert bot.state.seq == 7 and bot.next_wakeup() == wake
+
+
+def test_after_an_end_an_observer_that_starts_anew_is_followed_and_so_is_one_whose_clock_was_set_back() -> None:
+    bot = player()
+    bot.on_state(state(7, 100.0, "b", status="stopped"), 100.0)
     bot.on_state(state(1, 200.0), 200.0)
     assert bot.state.seq == 1
     bot.on_state(state(2, 150.0, "going_c_to_b", event="bot_c2b"), 150.0)

@@ -68,6 +68,25 @@ print("status", ending.wait())
     assert lines[-1] == "status 1"
 
 
+def test_a_message_that_cannot_be_handled_ends_the_node_with_status_1_and_the_reason() -> None:
+    program = """
+from pursue_runtime.nodes.node import subscribe
+rospy.logfatal = lambda text, *words: print((text % words).splitlines()[0])
+rospy.Subscriber = lambda topic, kind, callback, **options: callback
+handle = lambda message, robot: print(robot, 1 / len(message))
+receive = subscribe("pursue/state", str, handle, ending, "bot1", queue_size=1)
+receive("a")
+assert not ending.called
+receive("")
+print("status", ending.wait())
+"""
+    assert run(program) == [
+        "bot1 1.0",
+        "the node ends: what it received on pursue/state could not be handled: ZeroDivisionError('division by zero')",
+        "status 1",
+    ]
+
+
 def test_a_node_that_begins_anew_is_the_same_process_with_its_signals_as_they_were() -> None:
     program = """
 from pursue_runtime.nodes import node

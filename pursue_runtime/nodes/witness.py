@@ -1,0 +1,91 @@
+"""The second witness of a mission on ROS: a node that follows the mission publishes on `pursue/seen` which state it has
+seen last, for an observer that was restarted.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Callable, Dict, List, Optional
+
+import rosgraph
+import rospy
+from pursue_msgs.msg import SystemState as Message
+
+from pursue_runtime.nodes.links import is_gone
+from pursue_runtime.nodes.node import Ending, publish_to_one
+from pursue_runtime.nodes.state_message import message_of, subscribe_states
+from pursue_runtime.state import WAITING, SystemState
+from pursue_runtime.words import SEEN
+
+PATIENCE = 5.0
+"""Seconds of real time for which an observer that starts waits for the nodes that publish there."""
+
+AGAIN = 0.5
+"""Seconds of real time between two looks at which of them are still there."""
+
+NOTHING = SystemState(0, 0.0, {}, {}, {}, status=WAITING)
+"""What a node publishes that has seen no state."""
+
+
+class Witness(rospy.SubscribeListener):
+    """Publishes the newest state that the node has seen to whoever subscribes, once; and to all with `publish`."""
+
+    def __init__(self, newest: Callable[[], Optional[SystemState]]) -> None:
+        """`newest` is called in any thread."""
+        super().__init__()
+        self._newest = newest
+        self._publisher: Optional[rospy.Publisher] = None
+        self._publisher = rospy.Publisher(SEEN, Message, subscriber_listener=self, queue_size=10, tcp_nodelay=True)
+        self.publish()  # for those that subscribed before we listened
+
+    def peer_subscribe(self, _: str, __: object, peer_publish: Callable[[Message], None]) -> None:
+        """Publish the newest state to a new subscriber."""
+        if self._publisher is not None:
+            publish_to_one(self._publisher, peer_publish, self._message())
+
+    def publish(self) -> None:
+        """Publish the newest state to all subscribers."""
+        if self._publisher is not None:
+            self._publisher.publish(self._message())
+
+    def _message(self) -> Message:
+        return message_of(self._newest() or NOTHING)
+
+
+class Witnesses:
+    """The observer's side: `seen` has the last answer of each node. `on_state` gets those that come after `gather`."""
+
+    def __init__(self, ending: Ending, on_state: Callable[[SystemState, str], None]) -> None:
+        self.seen: Dict[str, SystemState] = {}
+        self._ending, self._on_state = ending, on_state
+        self._gathered = False
+        subscribe_states(self._receive, ending, topic=SEEN)
+
+    def gather(self) -> None:
+        """Return when every node that publishes there has answered, or does not live any more; at the latest after
+        PATIENCE."""
+        deadline = time.monotonic() + PATIENCE
+        missing = self._missing()
+        while missing and time.monotonic() < deadline and not self._ending.called:
+            again = time.monotonic() + AGAIN
+            while any(node not in self.seen for node in missing) and time.monotonic() < again:
+                time.sleep(0.01)
+            missing = [node for node in missing if node not in self.seen and not is_gone(node)]
+        if missing:
+            rospy.logwarn("no answer on %s from %s", SEEN, ", ".join(missing))
+        self._gathered = True
+
+    def _missing(self) -> List[str]:
+        """The nodes that publish there, as far as the master knows, and have not answered."""
+        try:
+            publishers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
+        except (OSError, rosgraph.MasterException) as problem:
+            rospy.logwarn("the master does not say who publishes on %s: %s", SEEN, problem)
+            return []
+        nodes = publishers.get(rospy.resolve_name(SEEN), [])
+        return [node for node in nodes if node not in self.seen and node != rospy.get_name()]
+
+    def _receive(self, state: SystemState, publisher: str) -> None:
+        self.seen[publisher] = state
+        if self._gathered:
+            self._on_state(state, publisher)

@@ -1,0 +1,154 @@
+"""A file of records that only grows: one line for each, `<checksum> <number> <length> <JSON object>`.
+
+The number counts the records of the file from 0; the length is that of the JSON text in bytes; the checksum (CRC-32,
+eight hexadecimal digits) is that of everything behind it in the line. So a record that is damaged, missing or in the
+wrong place is found, and never taken for another one.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import zlib
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+MAX_RECORD = 64 * 1024 * 1024
+"""The most bytes of a line. A new plan is the largest record."""
+
+Record = Dict[str, Any]
+
+
+class RecordsRead(NamedTuple):
+    """What is in a file: the records up to the first one that is damaged, and the bytes that they take.
+
+    `damage`: why these are not all that was written; "" where at most a last record is incomplete, as a kill or a
+    power cut leaves it.
+    """
+
+    records: List[Record]
+    size: int
+    damage: str = ""
+
+
+def format_record(number: int, record: Mapping[str, Any]) -> bytes:
+    """Return the line of a record. Raises OSError if it is longer than MAX_RECORD."""
+    text = json.dumps(record).encode()
+    covered = b"%d %d %s" % (number, len(text), text)
+    line = b"%08x %s\n" % (zlib.crc32(covered), covered)
+    if len(line) > MAX_RECORD:
+        raise OSError(errno.EFBIG, f"a record of {len(line)} bytes is longer than {MAX_RECORD}")
+    return line
+
+
+def parse_record(line: bytes) -> Optional[Tuple[int, Record]]:
+    """Return number and content of a line (with its line feed); None for a line that format_record has not written."""
+    checksum, _, covered = line[:-1].partition(b" ")
+    if not line.endswith(b"\n") or checksum != b"%08x" % zlib.crc32(covered):
+        return None
+    number, _, text = covered.partition(b" ")
+    length, _, text = text.partition(b" ")
+    try:
+        whole, record = int(length) == len(text), json.loads(text)
+        return (int(number), record) if whole and isinstance(record, dict) else None
+    except (ValueError, RecursionError):
+        return None
+
+
+def read_records(path: str) -> RecordsRead:
+    """Read a file of records, line by line. Raises OSError."""
+    records: List[Record] = []
+    size, bad = 0, False
+    with open(path, "rb") as file:
+        for line in iter(lambda: file.readline(MAX_RECORD), b""):
+            found = parse_record(line)
+            if found is None:
+                bad = True
+            elif bad or found[0] != len(records):
+                what = "is damaged" if bad else "is missing"
+                return RecordsRead(records, size, f"record {len(records)} {what}, and later ones are there")
+            else:
+                records.append(found[1])
+                size += len(line)
+    if not records:
+        return RecordsRead([], 0, "its first line cannot be read" if bad else "it is empty")
+    return RecordsRead(records, size)
+
+
+class RecordFile:
+    """Appends records to a file. Each is one write: it outlives the process at once, and a power cut once it is synced.
+
+    `synced`: the bytes that a power cut does not take.
+    """
+
+    def __init__(self, descriptor: int, count: int, size: int) -> None:
+        """Use `create` or `resume`."""
+        self.synced = size
+        self._descriptor, self._count, self._size = descriptor, count, size
+
+    @classmethod
+    def create(
+        cls, path: str, records: Sequence[Mapping[str, Any]], make_room: Callable[[], object] = lambda: None
+    ) -> RecordFile:
+        """Create the file with these records, completely or not at all, and synced. Raises OSError.
+
+        `make_room` is called when it is certain that the records can be written: for what has the name until then.
+        """
+        new = path + ".new"
+        content = b"".join(format_record(number, record) for number, record in enumerate(records))
+        descriptor = os.open(new, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_TRUNC, 0o644)
+        try:
+            write_all(descriptor, content)
+            os.fsync(descriptor)
+            make_room()
+            os.rename(new, path)
+            sync_folder(path)
+        except OSError:
+            os.close(descriptor)
+            raise
+        return cls(descriptor, len(records), len(content))
+
+    @classmethod
+    def resume(cls, path: str, found: RecordsRead) -> RecordFile:
+        """Open the file to append to the records that were found; an incomplete one is cut off. Raises OSError."""
+        descriptor = os.open(path, os.O_WRONLY | os.O_APPEND)
+        try:
+            os.ftruncate(descriptor, found.size)
+            os.fsync(descriptor)
+        except OSError:
+            os.close(descriptor)
+            raise
+        return cls(descriptor, len(found.records), found.size)
+
+    def append(self, record: Mapping[str, Any]) -> None:
+        """Write a record. Raises OSError, also where only a part of it was written."""
+        line = format_record(self._count, record)
+        write_all(self._descriptor, line)
+        self._count += 1
+        self._size += len(line)
+
+    def sync(self) -> None:
+        """Return when everything that was written is on the disk. Raises OSError."""
+        size = self._size
+        os.fdatasync(self._descriptor)
+        self.synced = size
+
+    def cut(self) -> None:
+        """Cut off what was written of a record that could not be written completely. Raises OSError."""
+        os.ftruncate(self._descriptor, self._size)
+
+
+def write_all(descriptor: int, content: bytes) -> None:
+    """Write in one call. Raises OSError, also where only a part was written."""
+    written = os.write(descriptor, content)
+    if written != len(content):
+        raise OSError(errno.ENOSPC, f"only {written} of {len(content)} bytes could be written")
+
+
+def sync_folder(path: str) -> None:
+    """Make the names in the folder of this file survive a power cut. Raises OSError."""
+    folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
