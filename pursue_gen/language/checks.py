@@ -11,6 +11,7 @@ from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
+from pursue_gen.language.pose_checks import check_poses
 from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 
@@ -57,6 +58,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
         if "PML110" not in codes:
             findings += check_rules(scenario)
+            findings += check_poses(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     return _presentable(in_order(findings))

@@ -70,10 +70,10 @@ def read_poses(comment: str, span: Span) -> PoseComment:
     return PoseComment(pose, tuple(spots.values()), findings)
 
 
-def robots_in(comment: str) -> List[Tuple[str, int]]:
-    """The robots that have a pose in such a comment, each with the offset of its name."""
+def robots_in(comment: str) -> List[Tuple[str, int, int]]:
+    """The robots that have a pose in such a comment, with the offsets of the name and of what follows the pose."""
     place, *others = list(_items(comment))
-    return [] if place.name else [(item.name, item.start) for item in others]
+    return [] if place.name else [(item.name, item.start, item.end) for item in others]
 
 
 def _items(comment: str) -> Iterator[_Item]:

@@ -139,7 +139,8 @@ def _robots(document: Document, offset: int) -> Iterator[Completion]:
                 after = _WORD_AFTER.match(document.text, offset)
                 if before is None or after is None:
                     return
-                pose, used = str(token).partition("[")[2].partition("]")[0], dict(robots_in(str(token)))
+                pose = str(token).partition("[")[2].partition("]")[0]
+                used = [name for name, *_ in robots_in(str(token))]
                 for agent in document.scenario.agents:
                     if agent.is_robot and agent.name not in used:
                         insert, span = f"{agent.name} [{pose}]", (before.start(1), after.end())

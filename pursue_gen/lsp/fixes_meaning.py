@@ -10,6 +10,7 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import component
+from pursue_gen.language.poses import robots_in
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.navigation import rename
 from pursue_gen.lsp.statements import deleted, inserted, ordered
@@ -198,6 +199,16 @@ def delete_listed(document: Document, finding: Diagnostic, part: Optional[Statem
         edit = _cut(document, before, token)
     if edit is not None:
         yield f"Take {token} out of this list", (edit,)
+
+
+def delete_spot(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+    """Deletes the pose of one agent behind that of the place, with its name and what separates it."""
+    for token in part.tokens if part is not None else ():
+        start = token.start_pos or 0
+        for name, begin, end in robots_in(str(token)) if token.type == "POSE" else ():
+            if start + begin == at:
+                before = document.text[:at].rstrip(", \t")
+                yield f"Delete this pose of {name}", (Edit(len(before), start + end, ""),)
 
 
 def human_ally(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:

@@ -148,6 +148,6 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
         elif kind is not None and token.type in ("WORD", "HUMAN") and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
         elif token.type == "POSE":
-            places = [(name, start + offset) for name, offset in robots_in(str(token))]
+            places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]
             found += [Occurrence(name, "agent", at, at + len(name), False, number) for name, at in places]
     return found

@@ -28,6 +28,8 @@ def changed(old: str, new: str) -> str:
     return SMALL.replace(old, new, 1)
 
 
+POSE = "[0, 0, 0, 0, 0, 0, 1]"
+PLACED_B = 'poi "b" //[3, 0, 0, 0, 0, 0, 1]'
 MISTAKES = {
     "PML010 quotes": changed('event "rest"', "event rest"),
     "PML010 curly quotes": changed('event "rest"', "event “rest”"),
@@ -47,6 +49,9 @@ MISTAKES = {
     "PML013": SMALL + "/* the end",
     "PML015": changed('poi "a"', 'poi\u200b "a"'),
     "PML017": changed('poi "b"', 'poi "b"\ncontrol: A<> x'),
+    "PML022": changed('poi "a"', f'poi "a" //{POSE} bot {POSE}, bot {POSE} by the door').replace('poi "b"', PLACED_B),
+    "PML122": changed('poi "a"', f'poi "a" //{POSE} man {POSE} bot [0, 1, 0, 0, 0, 0, 1]').replace('poi "b"', PLACED_B),
+    "PML110 in a pose": changed('poi "a"', f'poi "a" //{POSE} bto {POSE}').replace('poi "b"', PLACED_B),
     "PML101": changed('poi "b"', 'poi "my b"').replace("location b", "location b"),
     "PML102": re.sub(r"\btired\b", "exit", SMALL),
     "PML103": SMALL + 'poi "a"\n',
