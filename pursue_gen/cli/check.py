@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 from pathlib import Path
-from typing import List
+from typing import List, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.diagnostics import Severity, as_json, counted
+from pursue_gen.cli.options import SPOT_DISTANCE
+from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
 
 
 @guarded
 def check(
     files: List[Path] = typer.Argument(..., metavar="FILE...", help="Scenarios."),
+    floor: Optional[Path] = typer.Option(
+        None, "--map", metavar="YAML", help="Look where places and robots stand on this map of map_server, too."
+    ),
+    spot_distance: float = SPOT_DISTANCE,
     as_json_: bool = typer.Option(False, "--json", help="Print the findings as a JSON list."),
 ) -> None:
     """Tell everything that is wrong with scenarios, with line and column.
@@ -26,6 +32,8 @@ def check(
     from pursue_gen.solving.inputs import findings_in
 
     findings = [finding for file in files for finding in findings_in(file)]
+    if floor is not None:
+        findings += _on_map(files, floor, spot_distance)
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
     else:
@@ -36,3 +44,17 @@ def check(
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(3)
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
+
+
+def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:
+    """The findings on the map, for scenarios without errors. Raises PursueError for a map that cannot be used."""
+    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.language import load
+    from pursue_gen.workspace.map_check import check_spots
+
+    plan = read_floor(floor)
+    found: List[Diagnostic] = []
+    for file in files:
+        with contextlib.suppress(PursueError):  # its errors are reported
+            found += check_spots(load(file), plan, spot_distance)
+    return found

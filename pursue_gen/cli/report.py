@@ -11,7 +11,7 @@ import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
+from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import PursueError, counted, error, usage_error
 from pursue_gen.files import shell_quoted
 
@@ -57,6 +57,7 @@ def report(
     """
     from pursue_gen.drawing.floor import read_floor
     from pursue_gen.report.make import ReportOptions
+    from pursue_gen.workspace.map_check import check_spots
 
     seen = html or pictures is not None
     _check_options(seen, html, file, floor, as_json_)
@@ -68,7 +69,10 @@ def report(
         _check_target(target)
     under = None if floor is None else read_floor(floor)
     options = ReportOptions(reach_obj, runs if html else 0, under)
-    made = _made(scenario_from(scenario), options, request.options)
+    read = scenario_from(scenario)
+    if under is not None:
+        show(check_spots(read, under, DEFAULT_DISTANCE))
+    made = _made(read, options, request.options)
     if pictures is not None:
         _write_pictures(made, pictures)
     if html:

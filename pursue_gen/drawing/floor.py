@@ -9,7 +9,7 @@ import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import read_text
@@ -28,6 +28,7 @@ class Floor:
     """A floor plan. `uri`: the picture as data; `width`, `height` in pixels; `resolution` in metres per pixel.
 
     `x`, `y` (metres) and `yaw` (radians) say where its lower left corner is on the map, and how it is turned.
+    `negate`: bright pixels are occupied; a darkness above `occupied` (0 to 1) is an obstacle, one below `free` is free.
     """
 
     uri: str
@@ -37,6 +38,9 @@ class Floor:
     x: float
     y: float
     yaw: float
+    negate: bool = False
+    occupied: float = 0.65
+    free: float = 0.196
 
     def corners(self) -> Tuple[Tuple[float, float], ...]:
         """The four corners in metres."""
@@ -64,7 +68,9 @@ def read_floor(file: Path) -> Floor:
         raise _bad(file, message, f"an image below {_MOST / 1e6:g} MB: cut it, or make it smaller")
     uri = "data:image/png;base64," + base64.b64encode(content).decode("ascii")
     x, y, yaw = (float(one) for one in origin)
-    return Floor(uri, width, height, resolution, x, y, yaw)
+    negate = _number(file, data, "negate", 0) != 0
+    occupied, free = _number(file, data, "occupied_thresh", 0.65), _number(file, data, "free_thresh", 0.196)
+    return Floor(uri, width, height, resolution, x, y, yaw, negate, occupied, free)
 
 
 def _yaml(file: Path) -> Dict[str, Any]:
@@ -137,8 +143,8 @@ def _png(greys: bytes, width: int, height: int) -> bytes:
     return _PNG + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
 
 
-def _number(file: Path, data: Dict[str, Any], key: str) -> float:
-    value = data.get(key)
+def _number(file: Path, data: Dict[str, Any], key: str, default: Optional[float] = None) -> float:
+    value = data.get(key, default)
     if not _is_number(value):
         raise _bad(file, f"{key} is {'missing' if value is None else 'not a number'}", f"{key}: and a number")
     assert isinstance(value, (int, float))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import NamedTuple, Tuple
@@ -15,6 +16,7 @@ from pursue_gen.report.png import available
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 FIRST, CELL = SCENARIOS / "thesis" / "scenario_1.pur", SCENARIOS / "work_cell" / "work_cell.pur"
+THIEF = SCENARIOS / "thesis" / "catch_the_thief.pur"
 LOST = """
 poi "a" poi "b"
 connect a and b distance 3
@@ -104,6 +106,15 @@ def test_without_graphviz_the_rest_is_written_and_the_status_is_6(
     assert {file.name for file in (tmp_path / "pictures").iterdir()} == {
         f"{name}.{end}" for name in ("map", "timeline") for end in ("svg", "png")
     }
+
+
+def test_places_that_are_not_on_the_floor_plan_are_reported(tmp_path: Path) -> None:
+    (tmp_path / "map.pgm").write_bytes(b"P5 40 40 255 " + b"\xfe" * 1600)
+    (tmp_path / "map.yaml").write_text("image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n")
+    result = pursue("report", THIEF, "--pictures", "pictures", "--map", "map.yaml")
+    assert (tmp_path / "pictures" / "map.svg").is_file()
+    places = re.findall(r"WSP008: the pose of (\w) \S+ \S+ is outside the map", result.err)
+    assert places == ["b", "d"]
 
 
 @pytest.mark.parametrize(

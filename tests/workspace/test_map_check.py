@@ -1,0 +1,168 @@
+"""Places and spots against a map of map_server: outside, in an obstacle, unknown, free."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import struct
+import zlib
+from pathlib import Path
+from typing import Callable, List, Tuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.drawing.png_greys import greys
+from pursue_gen.language import parse
+from pursue_gen.workspace.map_check import check_spots
+from tests.authoring.commands import pursue
+
+WALL, UNKNOWN, FREE = 0, 205, 254
+ROWS = [
+    [WALL, WALL, WALL, WALL],
+    [WALL, FREE, FREE, UNKNOWN],
+    [WALL, FREE, FREE, UNKNOWN],
+]
+YAML = "image: floor.pgm\nresolution: 1.0\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+
+
+def floor_of(folder: Path, yaml: str = YAML, rows: List[List[int]] = ROWS) -> Floor:
+    pixels = bytes(grey for row in rows for grey in row)
+    (folder / "floor.pgm").write_bytes(b"P5 %d %d 255\n" % (len(rows[0]), len(rows)) + pixels)
+    (folder / "map.yaml").write_text(yaml)
+    return read_floor(folder / "map.yaml")
+
+
+def told(floor: Floor, behind: str, robots: int = 1, distance: float = 1.0) -> List[str]:
+    text = f'poi "a" {behind}\nevent "work"\n'
+    text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
+    found = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, distance)
+    assert all(finding.code == "WSP008" and finding.span is not None and finding.hint for finding in found)
+    return [finding.message for finding in found]
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "what"),
+    [
+        (11.5, 20.5, ""),
+        (12.9, 21.9, ""),
+        (11.5, 22.1, "is in an obstacle of the map"),
+        (10.5, 20.5, "is in an obstacle of the map"),
+        (13.5, 21.5, "is unknown to the map"),
+        (9.9, 20.5, "is outside the map"),
+        (14.1, 20.5, "is outside the map"),
+        (11.5, 23.1, "is outside the map"),
+        (11.5, 19.9, "is outside the map"),
+    ],
+)
+def test_a_pose_is_looked_up_where_map_server_has_it(tmp_path: Path, x: float, y: float, what: str) -> None:
+    expected = [f"the pose of a ({x:g}, {y:g}) {what}"] if what else []
+    assert told(floor_of(tmp_path), f"//[{x}, {y}, 0, 0, 0, 0, 1]") == expected
+
+
+def test_the_settings_of_the_map_count(tmp_path: Path) -> None:
+    pose = "//[11.5, 20.5, 0, 0, 0, 0, 1]"
+    assert "obstacle" in told(floor_of(tmp_path, YAML.replace("negate: 0", "negate: 1")), pose)[0]
+    grey = [[100, 100], [100, 100]]  # darkness 0.61
+    assert "unknown" in told(floor_of(tmp_path, rows=grey), "//[10.5, 20.5, 0, 0, 0, 0, 1]")[0]
+    lower = YAML.replace("0.65", "0.5")
+    assert "obstacle" in told(floor_of(tmp_path, lower, grey), "//[10.5, 20.5, 0, 0, 0, 0, 1]")[0]
+    turned = floor_of(tmp_path, YAML.replace("20, 0]", f"20, {math.pi / 2!r}]"))
+    assert told(turned, "//[9.5, 21.5, 0, 0, 0, 0, 1]") == [] and "outside" in told(turned, pose)[0]
+
+
+def test_the_spots_of_robots_are_checked_too(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path)
+    pose = "//[11.5, 21.5, 0, 0, 0, 0, 1]"  # beside it on the left is the wall, on the right there is room
+    (left,) = told(floor, pose, robots=3)
+    assert left == "the spot of bot2 at a (11.5, 22.5) is in an obstacle of the map"
+    assert told(floor, pose, robots=2, distance=0.4) == []
+    (own,) = told(floor, f"{pose} bot2 [9, 9, 0, 0, 0, 0, 1]", robots=2)
+    assert own == "the spot of bot2 at a (9, 9) is outside the map"
+
+
+def test_the_pose_of_a_place_to_which_no_robot_is_sent_does_not_count(tmp_path: Path) -> None:
+    free = "[11.5, 21.5, 0, 0, 0, 0, 1]"
+    assert told(floor_of(tmp_path), f"//[0, 0, 0, 0, 0, 0, 1] bot1 {free}") == []
+    assert told(floor_of(tmp_path), "//[0, 0, 0, 0, 0, 0, 1]", robots=0) != []
+
+
+def test_a_place_without_a_pose_is_left_out(tmp_path: Path) -> None:
+    assert told(floor_of(tmp_path), "", robots=2) == []
+
+
+def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    floor_of(tmp_path)
+    text = 'poi "a" //[11.5, 21.5, 0, 0, 0, 0, 2]\nevent "work"\n'
+    text += "".join(f'agent "{bot}" controllable mobile 1 location a can_do work\n' for bot in ("bot1", "bot2"))
+    Path("two.pur").write_text(text + "reach_objective: do work\n")
+    Path("bad.pur").write_text("poi\n")
+    done = pursue("check", "two.pur", "--map", "map.yaml")
+    assert (done.status, re.findall("warning ([A-Z0-9]+)", done.out)) == (0, ["PML120", "WSP008"])
+    assert "two.pur:1:5: warning WSP008: the spot of bot2 at a (11.5, 22.3)" in done.out
+    assert "write a pose for it behind that of a: bot2 [x, y" in done.out and "0 errors, 2 warnings" in done.err
+    assert "WSP008" not in pursue("check", "two.pur", "--map", "map.yaml", "--spot-distance", "0.4").out
+    both = pursue("check", "bad.pur", "two.pur", "--map", "map.yaml", "--json")
+    assert both.status == 3 and [f["code"] for f in json.loads(both.out)][-2:] == ["PML120", "WSP008"]
+    missing = pursue("check", "two.pur", "--map", "none.yaml")
+    assert missing.status == 2 and "none.yaml" in missing.err
+
+
+# The greys of a PNG ---------------------------------------------------------------------------------------------------
+
+
+def png(rows: List[bytes], width: int, kind: int, depth: int = 8) -> bytes:
+    """A PNG of rows that begin with their filter."""
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", width, len(rows), depth, kind, 0, 0, 0)
+    packed = zlib.compress(b"".join(rows))
+    middle = len(packed) // 2
+    parts = chunk(b"IDAT", packed[:middle]) + chunk(b"IDAT", packed[middle:])
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + parts + chunk(b"IEND", b"")
+
+
+def predicted(kind: int) -> Callable[[int, int, int], int]:
+    """What each filter subtracts from a byte, as the specification has it."""
+
+    def paeth(a: int, b: int, c: int) -> int:
+        p = a + b - c
+        pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+        return a if pa <= pb and pa <= pc else b if pb <= pc else c
+
+    plain = {0: lambda a, b, c: 0, 1: lambda a, b, c: a, 2: lambda a, b, c: b, 3: lambda a, b, c: (a + b) // 2}
+    return plain.get(kind, paeth)
+
+
+def filtered(kind: int, row: bytes, above: bytes, step: int) -> bytes:
+    guess = predicted(kind)
+    left = bytes(step) + row[:-step]
+    corner = bytes(step) + above[:-step]
+    return bytes([kind]) + bytes((x - guess(a, b, c)) % 256 for x, a, b, c in zip(row, left, above, corner))
+
+
+@given(st.data(), st.integers(1, 5), st.integers(1, 5), st.sampled_from([(0, 1), (2, 3), (4, 2), (6, 4)]))
+def test_every_filter_gives_back_the_greys(data: st.DataObject, width: int, height: int, form: Tuple[int, int]) -> None:
+    kind, channels = form
+    rows = [data.draw(st.binary(min_size=width * channels, max_size=width * channels)) for _ in range(height)]
+    filters = [data.draw(st.integers(0, 4)) for _ in rows]
+    above = [bytes(width * channels), *rows]
+    coded = [filtered(f, row, up, channels) for f, row, up in zip(filters, rows, above)]
+    colours = 1 if channels < 3 else 3
+    pixels = [row[k : k + colours] for row in rows for k in range(0, len(row), channels)]
+    assert greys(png(coded, width, kind)) == bytes(sum(pixel) // colours for pixel in pixels)
+
+
+def test_other_kinds_and_damaged_ones_have_no_greys() -> None:
+    row = b"\x00\x07\x07"
+    assert greys(png([row], 2, 0)) == b"\x07\x07"
+    assert greys(png([row], 2, 3)) is None and greys(png([row], 2, 0, depth=4)) is None
+    assert greys(png([b"\x00\x07"], 2, 0)) is None and greys(png([b"\x05\x07\x07"], 2, 0)) is None
+    assert greys(png([row], 2, 0).replace(b"IDAT", b"none")) is None
+    assert greys(png([row], 2, 0)[:45]) is None
