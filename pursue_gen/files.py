@@ -31,7 +31,7 @@ def read_text(file: Path, what: str) -> str:
 def write_texts(texts: Mapping[Path, str]) -> None:
     """Write all the files as UTF-8, and make their folders; none is replaced before all are on the disk.
 
-    Raises PursueError (exit status 2) where a file cannot be written.
+    Raises PursueError (exit status 2) where a file cannot be written, or is a link to one.
     """
     write_bytes({file: text.encode("utf-8") for file, text in texts.items()})
 
@@ -46,14 +46,17 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
             if file.exists() and not file.is_file():  # a pipe or /dev/stdout: nothing to replace
                 file.write_bytes(content)
                 continue
+            if file.is_symlink():
+                raise OSError(None, "it is a link: name the file that it leads to, or remove it")
             file.parent.mkdir(parents=True, exist_ok=True)
             handle, name = tempfile.mkstemp(prefix=f".{file.name}.", dir=str(file.parent))
-            staged.append((name, file.resolve()))
+            staged.append((name, file))
             with open(handle, "wb") as stream:
                 stream.write(content)
             os.chmod(name, 0o666 & ~_umask())
         while staged:
-            os.replace(*staged[0])
+            name, file = staged[0]
+            os.replace(name, file)  # of a link the link itself, if one has come meanwhile
             staged.pop(0)
     except OSError as problem:
         message = f"cannot write {file}: {_reason(problem)}"
