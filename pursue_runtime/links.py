@@ -17,11 +17,15 @@ FIRST_WAIT, LAST_WAIT = 4.0, 60.0
 PATIENCE = 10.0
 """Seconds after which a master that does not know this node, or refuses connections, counts as lost."""
 
-REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
+REGISTERED, NOT_REGISTERED, REFUSED, FOREIGN, UNREACHABLE = "known", "stranger", "refused", "foreign", "unreachable"
+LOST = (NOT_REGISTERED, REFUSED, FOREIGN)
+"""The results of a call after which the registrations of this node do not come back."""
+
 MASTER_PROBLEMS = {
     REGISTERED: "",
     NOT_REGISTERED: "the ROS master was started anew and does not know this node: start the nodes again",
     REFUSED: "the ROS master is gone",
+    FOREIGN: "the ROS master is gone, and another program answers at its address",
     UNREACHABLE: "the ROS master cannot be reached",
 }
 """A message for each result of a call to the master."""
@@ -85,8 +89,8 @@ class Peers:
 class MasterWatch:
     """Decides from the results of calls whether the master is lost.
 
-    A master that cannot be reached may come back with its registrations. One that refuses connections, or does not
-    know this node, has lost them.
+    A master that cannot be reached may come back with its registrations. One that refuses connections, does not know
+    this node, or is another program, has lost them.
     """
 
     def __init__(self, patience: float = PATIENCE) -> None:
@@ -97,11 +101,11 @@ class MasterWatch:
     def update(self, found: str, now: float) -> bool:
         """Take the result of a call; return True if it differs from the one before."""
         changed = found != self.found
-        if changed and not {found, self.found} <= {NOT_REGISTERED, REFUSED}:
+        if changed and not {found, self.found} <= set(LOST):
             self._since = now
         self.found = found
         return changed
 
     def lost(self, now: float) -> bool:
         """Return True when the registrations have been lost for longer than the patience."""
-        return self.found in (NOT_REGISTERED, REFUSED) and now - self._since >= self._patience
+        return self.found in LOST and now - self._since >= self._patience

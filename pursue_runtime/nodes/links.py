@@ -17,12 +17,22 @@ import threading
 import time
 import xmlrpc.client
 from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
+from xml.parsers.expat import ExpatError
 
 import rosgraph
 import rospy
 from rospy.impl.registration import get_topic_manager
 
-from pursue_runtime.links import MASTER_PROBLEMS, NOT_REGISTERED, REFUSED, REGISTERED, UNREACHABLE, MasterWatch, Peers
+from pursue_runtime.links import (
+    FOREIGN,
+    MASTER_PROBLEMS,
+    NOT_REGISTERED,
+    REFUSED,
+    REGISTERED,
+    UNREACHABLE,
+    MasterWatch,
+    Peers,
+)
 from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, Report, start_thread, worse
 
 PERIOD = 1.0
@@ -38,6 +48,7 @@ MASTER_PERIOD = 5.0
 """Seconds between two calls to a master that answers."""
 
 _OLD = "#old"  # mark of a connection that only listens for what is late
+_NO_ANSWER_OF_A_MASTER = (xmlrpc.client.Error, http.client.HTTPException, ExpatError, ValueError, TypeError)
 _CALL_ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
 
 
@@ -71,6 +82,7 @@ class Links:
     ) -> None:
         self._pulses = pulses
         self._lost = lost
+        self._ending = ending
         self._lock = threading.Lock()
         self._peers = Peers()
         self._master = MasterWatch()
@@ -169,10 +181,12 @@ class Links:
         reported = False
         while not rospy.is_shutdown():
             found, publishers = self._ask_master()
+            if self._ending.called:
+                return  # a node that ends is not registered any more
             with self._lock:
                 news = self._master.update(found, time.monotonic())
                 lost = self._master.lost(time.monotonic())
-            if news and not rospy.is_shutdown():
+            if news:
                 problem = MASTER_PROBLEMS[found]
                 (rospy.logerr if problem else rospy.logwarn)("%s", problem or "the ROS master is back")
             if lost and not reported and self._lost is not None:
@@ -190,14 +204,14 @@ class Links:
         """Is it there, does it know us? And who publishes what."""
         try:
             publishers, subscribers, _ = _call(rosgraph.get_master_uri(), "getSystemState")
+            known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
+            return (REGISTERED if known else NOT_REGISTERED), dict(publishers)
         except ConnectionRefusedError:
             return REFUSED, {}
+        except (*_NO_ANSWER_OF_A_MASTER, ConnectionResetError, BrokenPipeError):
+            return FOREIGN, {}
         except OSError:
             return UNREACHABLE, {}
-        except (xmlrpc.client.Error, http.client.HTTPException, ValueError):
-            return NOT_REGISTERED, {}  # something else answers there
-        known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
-        return (REGISTERED if known else NOT_REGISTERED), dict(publishers)
 
     @staticmethod
     def _complete(topic: str, name: str) -> None:

@@ -6,17 +6,21 @@ import contextlib
 import os
 import queue
 import signal
+import socket
 import sys
 import threading
 import time
 import traceback
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
 
 from pursue_runtime.data import DataError
+from pursue_runtime.links import MASTER_PROBLEMS
+from pursue_runtime.links import REFUSED as MASTER_REFUSED
 
 if TYPE_CHECKING:
     from pursue_runtime.nodes.links import Links
@@ -207,7 +211,9 @@ class Ending:
         check_launch()
         # A simple queue may be filled from a signal handler, an event or a condition may not.
         self._ends: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self._over = False
         self.renewed = False
+        self.reason = ""  # why the node cannot go on, where a signal has ended it
         rospy.on_shutdown(lambda: self._ends.put(0))
         # rospy ends a node in the handler itself, which may wait for ever for a lock of what it has interrupted.
         for sign in (signal.SIGINT, signal.SIGTERM):
@@ -216,7 +222,7 @@ class Ending:
     @property
     def called(self) -> bool:
         """True as soon as the node is to end."""
-        return not self._ends.empty()
+        return self._over or not self._ends.empty()
 
     def end(self, status: int) -> None:
         """Ends the node with this exit status; the first call counts."""
@@ -227,16 +233,35 @@ class Ending:
         self._ends.put(RENEWED)
 
     def wait(self, linger: float = 0.0) -> int:
-        """The exit status, once there is one; what was published has `linger` seconds more to go out."""
+        """The exit status, once there is one; what was published has `linger` seconds more to go out.
+
+        A signal ends the node with status 0, unless the master is gone: roslaunch interrupts its nodes when its own
+        master has ended.
+        """
         status = self._ends.get()
+        self._over = True
         self.renewed = status == RENEWED
+        if status == INTERRUPTED and master_is_gone():
+            self.reason = MASTER_PROBLEMS[MASTER_REFUSED]
+            rospy.logerr("ends here: %s", self.reason)
         for sign in (signal.SIGINT, signal.SIGTERM):
             signal.signal(sign, signal.SIG_IGN)  # it ends already
         if not rospy.is_shutdown():
             time.sleep(linger if status >= 0 else 0.0)
             why = {INTERRUPTED: "interrupted", RENEWED: "there is another mission"}
             rospy.signal_shutdown(why.get(status, "the mission has ended"))
-        return max(0, status)
+        return FAILED if self.reason else max(0, status)
+
+
+def master_is_gone() -> bool:
+    """True where connections to the master are refused."""
+    try:
+        socket.create_connection(rosgraph.network.parse_http_host_and_port(rosgraph.get_master_uri()), 1.0).close()
+    except ConnectionRefusedError:
+        return True
+    except (OSError, ValueError):
+        return False
+    return False
 
 
 ANEW = "PURSUE_ANEW"

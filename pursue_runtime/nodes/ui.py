@@ -333,6 +333,8 @@ class UI:
         if self.reads():
             start_thread("typed", self.read, self.ending)
         status = self.ending.wait(linger=0.3)
+        if self.ending.reason:
+            self.master_lost(self.ending.reason)
         if self.board is not None:
             self.board.web.close()
         if self.ending.renewed:

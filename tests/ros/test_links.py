@@ -6,11 +6,14 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
+import socket
 import subprocess
 import time
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Optional
+from typing import Callable, Dict, Iterator, List, Optional, Set
+from xmlrpc.client import ServerProxy
 
 import pytest
 from ros_world import Ros, end, free_port
@@ -197,24 +200,85 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
         assert ("controller_bot1 is silent" in made.log("observer")) is (seconds > silence)
 
 
-@pytest.mark.parametrize("anew", [False, True])
-def test_nodes_say_that_the_master_is_lost_and_stop(ros: Ros, built: Build, tmp_path: Path, anew: bool) -> None:
+OTHERS = {"recorder": "UI recorder", "sim_clock": "UI sim_clock", "reader": "pursue_reader pursue_reader",
+          "manager": "communication_manager communication_manager _port:=0"}
+
+
+@pytest.mark.parametrize("way, reason", [
+    ("it is interrupted", "the ROS master is gone"),
+    ("it is killed", "the ROS master is gone"),
+    ("it is started again", "was started anew"),
+    ("another program gets its port", "the ROS master is gone, and another program answers at its address"),
+])  # fmt: skip
+def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
+    ros: Ros, built: Build, tmp_path: Path, way: str, reason: str
+) -> None:
     with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
         play(made, 3.0)
+        home = f"export ROS_HOME={tmp_path}/home; source devel/setup.bash; exec rosrun"
+        for name, command in OTHERS.items():
+            made.start(name, f"{home} {command}")
+        names = (*MACHINES, *OTHERS)
         until(lambda: "bot1_c2b by bot1" in made.log("observer"), made.logs)
-        held = MACHINES if anew else ()  # however long another one takes: nobody sees that there is none meanwhile
-        for node in held:
+        until(lambda: set(names) - {"reader", "manager"} <= registered(made), made.logs)
+        held = names if way.startswith(("it is started", "another")) else ()
+        for node in held:  # however long the other one takes: no node sees that there is none meanwhile
             made.kill(node, signal.SIGSTOP)
-        end(made.running["roscore"])
-        if anew:
+        if way == "it is killed":
+            os.kill(ServerProxy(f"http://127.0.0.1:{made.port}").getPid("/test")[2], signal.SIGKILL)  # type: ignore[index]
+        else:
+            end(made.running["roscore"])
+        if way == "it is started again":
             made.core("another")
+        elif held:
+            made.start("server", f"exec python3 -m http.server {made.port} --bind 127.0.0.1")
+            until(lambda: is_served(made.port), made.logs)
         for node in held:
             made.kill(node, signal.SIGCONT)
-        statuses = made.statuses(*MACHINES)
-        assert all(statuses.values()), made.logs()
-        said = "was started anew" if anew else "the ROS master is gone"
-        assert all(said in made.log(node) for node in MACHINES), made.logs()
-        assert "Traceback" not in made.logs()
+        assert made.statuses(*names) == dict.fromkeys(names, 1), made.logs()
+        assert [node for node in names if reason not in made.log(node)] == [], made.logs()
+        assert "Traceback" not in "".join(made.log(node) for node in names), made.logs()
+
+
+def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build, tmp_path: Path) -> None:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+        for node in ("observer", "UI"):
+            made.start(node, f"source devel/setup.bash; exec rosrun {node} {node} {'--wait 600' * (node == 'UI')}")
+        until(lambda: {"observer", "UI"} <= registered(made), made.logs)
+        end(made.running["roscore"])
+        assert made.statuses("observer", "UI") == {"observer": 1, "UI": 1}, made.logs()
+        assert all("the ROS master is gone" in made.log(node) for node in ("observer", "UI")), made.logs()
+
+
+def test_where_roslaunch_loses_its_own_master_ui_and_observer_say_so(ros: Ros, built: Build, tmp_path: Path) -> None:
+    port, log = free_port(), tmp_path / "launch"
+    there = {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOME": str(tmp_path)}
+    line = f"roslaunch --skip-log-check -p {port} scenario_1_bringup mission.launch time_unit:=3 wait:={PATIENCE:g}"
+    launch = ros.start(f"source devel/setup.bash; exec {line}", built("thesis/scenario_1"), log, **there)
+    try:
+        until(lambda: "bot1_c2b" in log.read_text(errors="replace"), log.read_text)
+        os.kill(ServerProxy(there["ROS_MASTER_URI"]).getPid("/test")[2], signal.SIGKILL)  # type: ignore[index]
+        launch.wait(PATIENCE)
+    finally:
+        end(launch)
+    said = log.read_text(errors="replace")
+    assert "The mission cannot go on: the ROS master is gone." in said, said[-6000:]
+    nodes_lines = re.findall(r"^\[ERROR\].*ends here: the ROS master is gone", said, re.MULTILINE)
+    assert len(nodes_lines) >= len(MACHINES), f"each node logs it: {nodes_lines}"
+
+
+def registered(made: Nodes) -> Set[str]:
+    """The names of the nodes that publish and are subscribed."""
+    _, _, (publishers, subscribers, _) = ServerProxy(f"http://127.0.0.1:{made.port}").getSystemState("/test")  # type: ignore[misc]
+    both = [{name.strip("/") for _, names in found for name in names} for found in (publishers, subscribers)]
+    return both[0] & both[1]
+
+
+def is_served(port: int) -> bool:
+    """True as soon as somebody takes connections there."""
+    with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+        return True
+    return False
 
 
 def test_simulated_time_goes_on_where_a_killed_clock_was(ros: Ros, built: Build, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, MASTER_PROBLEMS, MasterWatch, Peers
 
-REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE = "known", "stranger", "refused", "unreachable"
+REGISTERED, NOT_REGISTERED, REFUSED, FOREIGN, UNREACHABLE = "known", "stranger", "refused", "foreign", "unreachable"
 
 
 def spoken(peers: Any, until: float, since: float = 0.0, name: str = "/bot", first: int = 1) -> int:
@@ -100,7 +100,8 @@ def verdicts(*answers: str) -> Dict[int, bool]:
     return found
 
 
-@pytest.mark.parametrize("gone", [[REFUSED] * 20, [NOT_REGISTERED] * 20, [REFUSED] * 5 + [NOT_REGISTERED] * 15])
+@pytest.mark.parametrize("gone", [[REFUSED] * 20, [NOT_REGISTERED] * 20, [REFUSED] * 5 + [NOT_REGISTERED] * 15,
+                                  [FOREIGN] * 20, [REFUSED] * 5 + [FOREIGN] * 15])
 def test_a_master_that_is_gone_or_another_one_is_given_up_after_a_while(gone: List[str]) -> None:
     found = verdicts(REGISTERED, *gone)
     assert not any(found[second] for second in range(11)) and found[11]
@@ -121,5 +122,5 @@ def test_what_the_master_is_like_is_news_once() -> None:
     answers = REGISTERED, REFUSED, REFUSED, REGISTERED, UNREACHABLE, UNREACHABLE
     news = [watch.update(answer, 0.0) for answer in answers]
     assert news == [False, True, False, True, True, False]
-    assert set(MASTER_PROBLEMS) == {REGISTERED, NOT_REGISTERED, REFUSED, UNREACHABLE}
+    assert set(MASTER_PROBLEMS) == {REGISTERED, NOT_REGISTERED, REFUSED, FOREIGN, UNREACHABLE}
     assert MASTER_PROBLEMS[REGISTERED] == ""

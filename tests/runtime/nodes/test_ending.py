@@ -17,8 +17,10 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 PROGRAM = """
 import os, signal, sys, time
 import rospy
+from pursue_runtime.nodes import node
 from pursue_runtime.nodes.node import Ending
 
+node.master_is_gone = lambda: False
 shutdowns, deep = [], []
 
 def interrupt():
@@ -50,6 +52,25 @@ def test_a_signal_ends_the_node_when_it_waits_and_at_once() -> None:
     assert run("interrupt(); assert ending.called and not deep; print(ending.wait(linger=1000)); print(deep)") == [
         "0", "[0]"
     ]
+
+
+def test_a_signal_ends_the_node_with_status_1_and_the_reason_where_its_master_is_gone() -> None:
+    program = """
+rospy.logerr = lambda text, *words: print(text % words)
+node.master_is_gone = lambda: True
+interrupt()
+print(ending.wait(linger=1000), ending.reason)
+"""
+    reason = "the ROS master is gone"
+    assert run(program) == [f"ends here: {reason}", f"1 {reason}"]
+
+
+def test_a_node_that_ends_by_itself_does_not_look_for_its_master() -> None:
+    assert run("node.master_is_gone = lambda: True; ending.end(0); print(ending.wait())") == ["0"]
+
+
+def test_a_node_is_called_to_end_for_as_long_as_it_ends() -> None:
+    assert run("ending.end(3); print(ending.called, ending.wait(), ending.called)") == ["True 3 True"]
 
 
 def test_signals_that_come_while_it_ends_change_nothing() -> None:
@@ -106,7 +127,7 @@ else:
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "node.py")
         with open(file, "w", encoding="utf-8") as out:
-            out.write(PROGRAM.split("shutdowns, deep")[0])
+            out.write(PROGRAM.split("node.master_is_gone")[0])
             out.write("rospy.is_shutdown, rospy.signal_shutdown = lambda: False, lambda _: None\n" + program)
         environment = {name: value for name, value in os.environ.items() if name != "PURSUE_ANEW"}
         command = [sys.executable, file, file]
