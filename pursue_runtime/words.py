@@ -27,7 +27,7 @@ class Word(NamedTuple):
     seq: Optional[int] = None
 
 
-_WORD = re.compile(r"\s*(?:(\w+):)?(\w+)[!?]?(?:@(\d{1,18}))?\s*", re.ASCII)
+_WORD = re.compile(r"\s*(?:(\w+):)?(\w+)[!?]?(?:@(\d{1,1000}))?\s*", re.ASCII)
 
 
 def parse_word(text: str) -> Optional[Word]:

@@ -144,6 +144,7 @@ def test_words_come_back(agent: str, event: str, seq: object) -> None:
         ("catch@7", "", "catch", 7),
         ("polBot2:catch@7", "polBot2", "catch", 7),
         (" bot1_c2b! ", "", "bot1_c2b", None),
+        ("catch@99999999999999999999", "", "catch", 10**20 - 1),
     ],
 )
 def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: object) -> None:
