@@ -171,6 +171,26 @@ class Alarm:
         return min(waits) if waits else None
 
 
+class Later:
+    """Does things in their order, in a thread of its own, but only after a reaction has had the time that it takes."""
+
+    def __init__(self, name: str, ending: Ending) -> None:
+        self._actions: queue.SimpleQueue[Callable[[], object]] = queue.SimpleQueue()
+        start_thread(name, self._run, ending)
+
+    def do(self, action: Callable[[], object]) -> None:
+        """Do this after all that was passed before. An exception that it raises ends the node."""
+        self._actions.put(action)
+
+    def _run(self) -> None:
+        while True:
+            action = self._actions.get()
+            time.sleep(0.01)
+            action()
+            while not self._actions.empty():
+                self._actions.get()()
+
+
 FAILED = 1
 """The exit status of a node that cannot go on."""
 

@@ -10,11 +10,10 @@ import contextlib
 import hashlib
 import json
 import os
-import queue
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -33,6 +32,7 @@ from pursue_runtime.nodes.node import (
     Alarm,
     Diagnostics,
     Ending,
+    Later,
     Report,
     listeners,
     restart_process,
@@ -70,8 +70,7 @@ class Observer:
         self.settings = read_settings(rospy.get_param("~", {}))
         self.lock = threading.RLock()
         self.ending = Ending()
-        self.log_lines: queue.SimpleQueue[Tuple[str, str]] = queue.SimpleQueue()
-        start_thread("log", self.write_log, self.ending)
+        self.log_lines, self.after_reaction = Later("log", self.ending), Later("texts", self.ending)
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
@@ -257,7 +256,7 @@ class Observer:
         """Publishes the states, looks ahead, and ends the node after the last one."""
         for state in states:
             self.send(self.states, message_of(state))
-            self.send(self.texts, format_state(state))
+            self.after_reaction.do(partial(self.send_text, state))
             self.published_at = time.monotonic()
         proposal = self.mission.proposal or self.mission.in_force  # who comes later needs it as well
         if proposal is not None and proposal["plan"] != self.proposed:
@@ -269,18 +268,16 @@ class Observer:
             self.over = True
             if self.mission.status == WON:
                 self.send(self.events, FINISH)
-            self.ending.end(0 if self.mission.status == WON else 1)
+            # After the last text: what was published then has ~linger to go out.
+            self.after_reaction.do(partial(self.ending.end, 0 if self.mission.status == WON else 1))
+
+    def send_text(self, state: SystemState) -> None:
+        """Publishes the state as the thesis's text. Controllers react to the message that was published before it."""
+        self.send(self.texts, format_state(state))
 
     def log_soon(self, level: str, text: str) -> None:
-        """Log a sentence soon, in a thread of its own."""
-        self.log_lines.put((level, text))
-
-    def write_log(self) -> None:
-        """Log lines a little later: a line takes as long as a reaction, and the next word may be near."""
-        while True:
-            line = self.log_lines.get()
-            time.sleep(0.01)
-            log(*line)
+        """Log a sentence a little later: a line takes as long as a reaction."""
+        self.log_lines.do(partial(log, level, text))
 
     @staticmethod
     def send(publisher: rospy.Publisher, what: object) -> None:

@@ -1,0 +1,48 @@
+"""What does not belong to a reaction is done after it, in order, and nothing of it is lost."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, List
+
+import pytest
+
+from tests.waiting import PATIENCE
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+import rospy
+
+from pursue_runtime.nodes.node import FAILED, Later
+
+
+class Ending:
+    """Takes the place of a node's end: `statuses` are those that it was ended with."""
+
+    def __init__(self) -> None:
+        self.statuses: List[int] = []
+        self.ended = threading.Event()
+
+    def end(self, status: int) -> None:
+        """Ends the node."""
+        self.statuses.append(status)
+        self.ended.set()
+
+
+def test_the_end_of_the_node_comes_after_all_that_was_passed_before() -> None:
+    ending: Any = Ending()
+    later, done = Later("texts", ending), []  # type: ignore[var-annotated]
+    for number in range(1000):
+        later.do(lambda number=number: done.append(number))  # type: ignore[misc]
+    later.do(lambda: ending.end(0))
+    assert ending.ended.wait(PATIENCE)
+    assert (done, ending.statuses) == (list(range(1000)), [0])
+
+
+def test_what_fails_ends_the_node(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: False)
+    monkeypatch.setattr(rospy, "logfatal", lambda *text: None)
+    ending: Any = Ending()
+    Later("texts", ending).do(lambda: 1 // 0)
+    assert ending.ended.wait(PATIENCE)
+    assert ending.statuses == [FAILED]
