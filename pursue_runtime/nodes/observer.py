@@ -74,7 +74,7 @@ class Observer:
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
-        self.witnesses = Witnesses(self.ending, self.on_seen)
+        self.witnesses = Witnesses(self.ending)
         self.witnesses.gather()
         self.source = self._source()
         self.controllers: List[str] = self.source.read("controllers.yaml")["controllers"]
@@ -93,6 +93,7 @@ class Observer:
         self.take_up()
         self.await_clock()
         self.publish([self.mission.state(self.now())])
+        self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
         start_thread("journal", self.journal.keep_synced, self.ending)

@@ -53,12 +53,12 @@ class Witness(rospy.SubscribeListener):
 
 
 class Witnesses:
-    """The observer's side: `seen` has the last answer of each node. `on_state` gets those that come after `gather`."""
+    """The observer's side: `seen` has the last answer of each node."""
 
-    def __init__(self, ending: Ending, on_state: Callable[[SystemState, str], None]) -> None:
+    def __init__(self, ending: Ending) -> None:
         self.seen: Dict[str, SystemState] = {}
-        self._ending, self._on_state = ending, on_state
-        self._gathered = False
+        self._ending = ending
+        self._on_state: Optional[Callable[[SystemState, str], None]] = None
         subscribe_states(self._receive, ending, topic=SEEN)
 
     def gather(self) -> None:
@@ -73,7 +73,12 @@ class Witnesses:
             missing = [node for node in missing if node not in self.seen and not is_gone(node)]
         if missing:
             rospy.logwarn("no answer on %s from %s", SEEN, ", ".join(missing))
-        self._gathered = True
+
+    def follow(self, on_state: Callable[[SystemState, str], None]) -> None:
+        """Pass every answer to `on_state` from now on, with the node's name, and first the last one of each node."""
+        self._on_state = on_state
+        for node, state in list(self.seen.items()):
+            on_state(state, node)
 
     def _missing(self) -> List[str]:
         """The nodes that publish there, as far as the master knows, and have not answered."""
@@ -87,5 +92,5 @@ class Witnesses:
 
     def _receive(self, state: SystemState, publisher: str) -> None:
         self.seen[publisher] = state
-        if self._gathered:
+        if self._on_state is not None:
             self._on_state(state, publisher)

@@ -38,8 +38,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
     (folder / "config" / "model.yaml").write_text(yaml.safe_dump(model))
     (folder / "config" / "ui.yaml").write_text("format: 1\nnodes: [observer, controller_bot]\n")
-    poses = "{a: [0, 0, 0, 0, 0, 0, 1], b: [9, 0, 0, 0, 0, 0, 1]}"
-    (folder / "config" / "poses.yaml").write_text(f"format: 1\nposes: {poses}\n")
+    poses = "a: [0, 0, 0, 0, 0, 0, 1], b: [9, 0, 0, 0, 0, 0, 1]"
     (folder / "config" / "poses.yaml").write_text(f"format: 1\nposes: {{{poses}}}\n")
     return folder
 
