@@ -3,7 +3,7 @@
 Size, depth and the number of values are bounded before anything is built of the text. Refused are keys that stand
 twice, numbers that are not finite, and whole numbers that do not fit 64 bits. YAML is read as the data that JSON has:
 anchors, aliases and tags are refused, and what only YAML takes for a number or a date (`1:30`, `010`, `0x1f`, `.nan`,
-`2026-01-01`) is text.
+`1999-12-31`) is text.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
     "a variable that is not set": (
         Automata, "take", "self._values.update(edge.assign)", "self._values.update({})", "is no step of the network"
     ),
-    "a number that is skipped": (Mission, "_take", "self.seq += 1", "self.seq += 2", "state 3 follows state 1"),
+    "a number that is skipped": (Mission, "_take", "self.seq + 1", "self.seq + 2", "state 3 follows state 1"),
     "an order for another place": (
         CommandScheduler,
         "_begun",
