@@ -42,7 +42,7 @@ from pursue_runtime.nodes.node import (
 )
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.nodes.witness import Witnesses
-from pursue_runtime.observer.journal import Journal, unfinished_mission
+from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.settings import read_settings
@@ -104,9 +104,10 @@ class Observer:
     def _source(self) -> Source:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has
         been received meanwhile; else the current one is played. Raises DataError."""
-        going_on, source = unfinished_mission(self._journal_path(), self._journal_name()), None
+        source, last = None, last_mission(self._journal_path(), self._journal_name())
+        going_on = last.unfinished
         if going_on is None:
-            going_on = mission_seen(self.witnesses.seen)
+            going_on = mission_seen(self.witnesses.seen, last.after)
         if going_on is not None:
             try:
                 source = self.missions.find(going_on)

@@ -10,7 +10,7 @@ import contextlib
 import json
 import os
 import threading
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.observer.mission import Mission
@@ -243,19 +243,30 @@ def _read(path: str) -> Tuple[str, RecordsRead]:
     return "", RecordsRead([], 0)
 
 
-def unfinished_mission(path: str, launch: str) -> Optional[str]:
-    """Return the id of the mission that the observer of this launch had not finished ("": the workspace's own).
+class LastMission(NamedTuple):
+    """What a journal says of the last mission of a launch.
 
-    None where there was none, or the journal cannot be read.
+    `unfinished`: the mission's id ("": the workspace's own) where its end was not recorded, else None; `after`: the
+    moment (seconds) at which the last mission whose end was recorded was over.
     """
+
+    unfinished: Optional[str] = None
+    after: float = 0.0
+
+
+def last_mission(path: str, launch: str) -> LastMission:
+    """Return what is known of the last mission of this launch; nothing where the journal cannot be read."""
     try:
         _, found = _read(path)
     except OSError:
-        return None
+        return LastMission()
     if not found.records or found.records[0].get("launch") != launch:
-        return None
-    begun = found.damage or (len(found.records) > 1 and found.records[-1].get("call") != END)
-    return str(found.records[0].get("mission", "")) if begun else None
+        return LastMission()
+    head, last = found.records[0], found.records[-1]
+    if last.get("call") == END and not found.damage:
+        return LastMission(after=_moment(last.get("at")))
+    begun = found.damage or len(found.records) > 1
+    return LastMission(str(head.get("mission", "")) if begun else None, _moment(head.get("after")))
 
 
 def replay(mission: Mission, entries: List[Dict[str, Any]]) -> None:

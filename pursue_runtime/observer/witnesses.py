@@ -43,9 +43,9 @@ def find_state(own: SystemState, damage: str, after: float, seen: Mapping[str, S
     return Finding(adopt=state)
 
 
-def mission_seen(seen: Mapping[str, SystemState]) -> Optional[str]:
-    """Return the id of the mission whose states were seen last; None where there is none."""
-    states = [state for state in seen.values() if state.status in LIVE]
+def mission_seen(seen: Mapping[str, SystemState], after: float) -> Optional[str]:
+    """Return the id of the mission under way that was seen last; None where there was none after that moment."""
+    states = [state for state in seen.values() if state.status in LIVE and state.stamp > after]
     return max(states, key=lambda state: state.stamp).mission if states else None
 
 

@@ -17,7 +17,7 @@ from pursue_runtime.data import DataError
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
 from pursue_runtime.observer import records
-from pursue_runtime.observer.journal import Journal, unfinished_mission
+from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.records import format_record, read_records
 from pursue_runtime.state import SystemState, format_state
@@ -323,7 +323,7 @@ def test_a_journal_that_cannot_be_written_is_marked_before_the_next_word(
     again = Life(path)
     assert "could not be written" in again.journal.damage and again.mission.seq == 2
     assert read_records(f"{path}.failed").damage == "", "what was written of the last record is cut off"
-    assert unfinished_mission(str(path), "x") == ""
+    assert last_mission(str(path), "x").unfinished == ""
 
 
 def test_a_journal_that_cannot_even_be_marked_is_what_it_was(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -489,28 +489,30 @@ MISSION = {**HEADER, "mission": "0123456789ab"}
 
 
 def test_a_new_observer_learns_whose_mission_was_under_way(path: Path) -> None:
-    assert unfinished_mission(str(path), "x") is None
+    assert last_mission(str(path), "x").unfinished is None
     life = Life(path, MISSION)
-    assert unfinished_mission(str(path), "x") is None, "it has not begun"
+    assert last_mission(str(path), "x").unfinished is None, "it has not begun"
     life.play(("hear", "_start_"))
-    assert unfinished_mission(str(path), "x") == "0123456789ab"
-    assert unfinished_mission(str(path), "y") is None, "that was in another launch"
+    assert last_mission(str(path), "x").unfinished == "0123456789ab"
+    assert last_mission(str(path), "y").unfinished is None, "that was in another launch"
     life.play(("hear", "_stop_"), first=1)
-    assert unfinished_mission(str(path), "x") == "0123456789ab", "nobody may have heard of its end"
+    assert last_mission(str(path), "x").unfinished == "0123456789ab", "nobody may have heard of its end"
     life.journal.end(1003.0)
-    assert unfinished_mission(str(path), "x") is None
+    assert last_mission(str(path), "x") == (None, 1003.0)
+    Life(path, MISSION)
+    assert last_mission(str(path), "x") == (None, 1003.0), "also when the next journal has begun"
 
 
 def test_the_workspaces_own_mission_may_have_no_name(path: Path) -> None:
     Life(path).play(("hear", "_start_"))
-    assert unfinished_mission(str(path), "x") == ""
+    assert last_mission(str(path), "x").unfinished == ""
 
 
 @pytest.mark.parametrize("text", ["", "rubbish\nrubbish\n", "[]\n{}\n", '{"format": 1}\n{"call": "hear"}\n'])
 def test_what_is_no_journal_says_of_no_mission_that_it_is_under_way(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True)
     path.write_text(text)
-    assert unfinished_mission(str(path), "x") is None
+    assert last_mission(str(path), "x").unfinished is None
 
 
 def test_a_journal_of_a_mission_that_never_began_leaves_nothing_behind(path: Path) -> None:

@@ -85,8 +85,9 @@ def test_the_end_of_the_mission_before_is_no_obstacle() -> None:
 def test_the_mission_is_that_of_the_newest_states() -> None:
     a, b = "a" * 12, "b" * 12
     seen = {"one": state(9, stamp=100.0, mission=a), "two": state(3, stamp=200.0, mission=b), "three": NOTHING}
-    assert mission_seen(seen) == b
-    assert mission_seen({"three": NOTHING, "UI": state(9, status="won")}) is None
+    assert mission_seen(seen, 0.0) == b
+    assert mission_seen(seen, 200.0) is None, "a node that stood still since the end of that mission"
+    assert mission_seen({"three": NOTHING, "UI": state(9, status="won")}, 0.0) is None
 
 
 def test_a_state_that_the_observer_cannot_have_published_is_found() -> None:
