@@ -58,7 +58,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     except PursueError as problem:
         if problem.exit_status != _AT_A_LIMIT:
             return _lost(f"the plan that was found is not proven: {problem}")
-        return _lost(f"no plan was found {_at_limit(limits.since(start))}")
+        return _lost(f"no plan was found{_at_limit(limits.since(start)) or f': {problem.diagnostics[0].message}'}")
     return _won(strategy, network, request)
 
 
@@ -66,16 +66,15 @@ def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, An
     subs = partition(strategy, network, request.scenario.agents, request.controllers, request.reach_obj)
     data = {sub.controller: strategy_data(sub, request.rules.reaction) for sub in subs}
     people = data.pop(UI, None)
-    return {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+    answer = {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+    return {**answer, "turning": sorted(request.turning)} if request.turning else answer
 
 
 def _at_limit(limits: Limits) -> str:
-    """Which limit has ended the search."""
+    """Which limit of the request has ended the search; "" for others."""
     if limits.states:
-        return f"within {limits.states} states"
-    if 0 < limits.seconds <= limits.spent:
-        return f"within {limits.seconds:g} s"
-    return f"with {limits.memory} MiB of memory, which is what the planner may use on this machine"
+        return f" within {limits.states} states"
+    return f" within {limits.seconds:g} s" if 0 < limits.seconds <= limits.spent else ""
 
 
 def _lost(why: str) -> Dict[str, Any]:

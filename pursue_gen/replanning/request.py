@@ -23,7 +23,8 @@ class Request:
     """A plan is wanted for this scenario, from this place, by controllers of that shape (see `partition`).
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
-    `excused`, and nobody is sent along the ways in `blocked`. It may take so many `seconds`, 0: any number.
+    `excused`, nobody is sent along the ways in `blocked`, and who is `turning` may be back at any time. It may take so
+    many `seconds`, 0: any number.
     """
 
     scenario: Scenario
@@ -36,6 +37,7 @@ class Request:
     ahead: Fraction
     excused: FrozenSet[str]
     blocked: FrozenSet[Tuple[str, str]]
+    turning: FrozenSet[str]
     seconds: float
 
 
@@ -46,9 +48,6 @@ def read_request(data: object) -> Request:
     game = _object(_of(request, "game", "the request"), "game")
     _format(game, "game")
     name, text = _text(game, "name", "game"), _text(game, "scenario", "game")
-    excused = _of(request, "excused", "the request")
-    if not isinstance(excused, (list, tuple)) or not all(isinstance(agent, str) for agent in excused):
-        raise wrong(f"excused is {_shown(excused)}", "a list of names of agents, [] for none")
     seconds = request.get("limit", 0.0)
     if "limit" in request and not (_is_number(seconds) and 0 < seconds < _LONGEST):
         raise wrong(f"limit is {_shown(seconds)}", "a number of seconds above 0, or none for a search without a limit")
@@ -68,8 +67,9 @@ def read_request(data: object) -> Request:
         values=values,
         clocks={key: _time(value, key) for key, value in clocks.items()},
         ahead=_time(_of(request, "ahead", "the request"), "ahead"),
-        excused=frozenset(excused),
+        excused=_agents(_of(request, "excused", "the request"), "excused", scenario),
         blocked=_ways(request.get("blocked", ()), scenario),
+        turning=_agents(request.get("turning", ()), "turning", scenario),
         seconds=float(seconds),
     )
 
@@ -89,6 +89,15 @@ def _scenario(name: str, text: str) -> Scenario:
             raise PursueError(problem.diagnostics, 2) from None
     assert reading.scenario is not None
     return reading.scenario
+
+
+def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:
+    if not isinstance(data, (list, tuple)) or not all(isinstance(agent, str) for agent in data):
+        raise wrong(f"{name} is {_shown(data)}", "a list of names of agents, [] for none")
+    agents = [agent.name for agent in scenario.agents]
+    for agent in sorted(set(data) - set(agents)):
+        raise wrong(f"{agent} is {name}", f"agents: {', '.join(agents)}")
+    return frozenset(data)
 
 
 def _ways(data: object, scenario: Scenario) -> FrozenSet[Tuple[str, str]]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 from math import ceil
-from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple, TypeVar
+from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
 from pursue_gen.tga.names import going
@@ -23,8 +23,8 @@ def network_from(network: Network, request: Request) -> Network:
     """The network in the state of the request, `ahead` time units later, without the moves that cannot be relied on.
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
-    than the model allows may stay; nobody is sent along a blocked way. Raises PursueError (exit status 2) for a place
-    that the network does not have.
+    than the model allows may stay; who is turning may be back too early; nobody is sent along a blocked way. Raises
+    PursueError (exit status 2) for a place that the network does not have.
     """
     locations, values, clocks = _place(network, request)
     agents = {agent.name for agent in request.scenario.agents}
@@ -37,6 +37,8 @@ def network_from(network: Network, request: Request) -> Network:
             moved = _idle(_unbounded(moved, here), here, clocks)
         elif automaton.name in agents and passed_bounds(automaton, here, clocks):
             moved = _unbounded(moved, here)
+        if automaton.name in request.turning:
+            moved = _idle(moved, here, clocks)
         automata.append(_without_ways(moved, blocked) if automaton.name in agents else moved)
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
@@ -82,7 +84,6 @@ def _place(network: Network, request: Request) -> Tuple[Dict[str, str], Dict[str
     locations = {automaton.name: request.locations[automaton.name] for automaton in network.automata}
     values = {name: _known(request.values, name, "value") for name, _ in network.variables}
     clocks = {name: _known(request.clocks, name, "clock") + request.ahead for name in network.clocks}
-    _check_names(request.excused, [agent.name for agent in request.scenario.agents])
     return locations, values, clocks
 
 
@@ -90,11 +91,6 @@ def _known(table: Mapping[str, T], name: str, what: str) -> T:
     if name not in table:
         raise wrong(f"there is no {what} of {name}", "every automaton, variable and clock of model.yaml")
     return table[name]
-
-
-def _check_names(excused: AbstractSet[str], agents: Iterable[str]) -> None:
-    for name in sorted(excused - set(agents)):
-        raise wrong(f"{name} is excused", f"agents: {', '.join(agents)}")
 
 
 def _unbounded(automaton: Automaton, here: str) -> Automaton:

@@ -10,7 +10,7 @@ from pursue_gen.replay.game import Game
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
-from pursue_gen.replay.robots import check_robots
+from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 from pursue_runtime.locations import is_end
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
@@ -68,8 +68,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     findings = [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
-        ordered = [(s.before, s.state, s.move[0][0], s.is_command) for s in steps]
-        findings += check_robots(record, game, ordered, checker.orders)
+        done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
+        findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders)
     findings += [Finding(FAULT, "recording", 0, f"the recording is not whole: {what}") for what in record.problems]
     last = max(record.states, key=lambda state: state.seq)
     last = [state for state in record.states if state.seq == last.seq][-1]
@@ -93,6 +93,7 @@ class _Checker:
         self.moves = Moves(game.network)
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
+        self.turns: List[Done] = []
         self.orders: Dict[int, Orders] = {}
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
@@ -176,6 +177,8 @@ class _Checker:
         if move is not None:
             self.steps.append(ReplayedStep(before, state, move))
             self._zeros.update(dict.fromkeys(after(move, _place(before))[1], state.stamp))
+        elif self._turned(before, state):
+            self.turns.append((before, state, "", False))
         elif state.discrete() != before.discrete():
             could = ", ".join(self.moves.possible(_place(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
@@ -192,6 +195,19 @@ class _Checker:
         place, clocks = _place(before), self._clocks_at(state)
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == _place(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
+
+    def _turned(self, before: SystemState, state: SystemState) -> bool:
+        """True where robots whose way was blocked turn round with a new plan, as the only change."""
+        changed = [name for name, here in state.locations.items() if here != before.locations[name]]
+        parts = [self.moves.way_back(_place(before), name) for name in changed]
+        move = tuple(part for part in parts if part is not None)
+        place, resets = after(move, _place(before))
+        if not changed or len(move) < len(changed) or state.plan == before.plan or place != _place(state):
+            return False
+        self._zeros.update(dict.fromkeys(resets, state.stamp))
+        for name in changed:
+            self._report(WORLD, "turned", state, f"{name} turned round on its way, which was blocked")
+        return True
 
     def _clocks_at(self, state: SystemState) -> Dict[str, float]:
         return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}

@@ -177,7 +177,7 @@ class _Walk:
                 if move is None:
                     self._event = self._agent = ""
                     if word is not None and word.event == PLANNED and word.seq is not None:
-                        self._plan = word.seq
+                        self._put_in_force(word.seq, entry.at)
                 else:
                     self._take(move, entry.at)
             if self._seq == entry.seq and entry.status:
@@ -192,6 +192,15 @@ class _Walk:
             if found:
                 return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
         return next(self._moves.internal(self._place, self._objective), None)
+
+    def _put_in_force(self, number: int, at: float) -> None:
+        """The plan is in force, and the robots that it sends back turn round."""
+        self._plan = number
+        named = self.plans.get(number, {}).get("turning")
+        robots = named if isinstance(named, list) else []
+        parts = [self._moves.way_back(self._place, str(robot)) for robot in robots]
+        self._place, resets = after(tuple(part for part in parts if part is not None), self._place)
+        self._zeros.update(dict.fromkeys(resets, at))
 
     def _take(self, move: Move, at: float) -> None:
         self._place, resets = after(move, self._place)

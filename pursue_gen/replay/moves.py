@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
 
@@ -77,6 +78,19 @@ class Moves:
         for edge in self._enabled(name, place):
             if edge.sync is None:
                 yield ((name, edge),)
+
+    def way_back(self, place: DiscreteState, robot: str) -> Optional[Part]:
+        """How a robot that moves there would set out on the same way in the other direction; None if it cannot."""
+        here = place.locations.get(robot, "")
+        origins = {source for (name, source) in self._edges if name == robot and here in self._targets(robot, source)}
+        for end in self._targets(robot, here):
+            for edge in self._edges.get((robot, end), ()):
+                if is_going(edge.target) and origins & set(self._targets(robot, edge.target)):
+                    return robot, edge
+        return None
+
+    def _targets(self, name: str, source: str) -> List[str]:
+        return [edge.target for edge in self._edges.get((name, source), ())]
 
     def possible(self, place: DiscreteState) -> List[str]:
         """The words that can happen there, whatever the clocks."""

@@ -109,6 +109,13 @@ class Automata:
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
+    def turn(self, moves: Iterable[Move], now: float) -> None:
+        """Apply moves of robots that turn round on their way: their edges start at the other end of it."""
+        for name, edge in moves:
+            self._machines[name].set(edge.target)
+            self._values.update(edge.assign)
+            self._zeros.update(dict.fromkeys(edge.resets, now))
+
     def bounds(self, position: Position, *kinds: str) -> List[Tuple[str, float]]:
         """Return the automata whose invariant bounds their stay, and the time units until then (negative: overdue).
 

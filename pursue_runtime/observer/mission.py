@@ -10,7 +10,7 @@ from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
-from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_of
+from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_back, way_of
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
@@ -72,6 +72,7 @@ class Mission:
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
         self.blocked: Set[Way] = set()
+        self._turns: Dict[str, Move] = {}  # how robots that found their way blocked would set out for its other end
         self.robots = Robots(model)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
@@ -112,7 +113,7 @@ class Mission:
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        robots = *self.robots.revision(), *self.blocked
+        robots = *self.robots.revision(), *self.blocked, *self._turns
         return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
@@ -203,7 +204,8 @@ class Mission:
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
-        self._planning.on_no_plan(number, why)
+        if self._planning.on_no_plan(number, why):
+            self._turns.clear()  # a plan without these robots is the next to look for
         return self._status_changes(now)
 
     def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
@@ -222,7 +224,7 @@ class Mission:
         self.seq, self.status, self.reason = state.seq, state.status, state.reason
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
-        self._early, self._warned = {}, False
+        self._early, self._turns, self._warned = {}, {}, False
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
         self._shown = self.robots.revision()
@@ -300,6 +302,7 @@ class Mission:
             for name, _ in moves:
                 self.late.discard(name)
                 self.lost.pop(name, None)
+                self._turns.pop(name, None)
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
             self.counts["taken"] += 1
@@ -380,11 +383,11 @@ class Mission:
 
     def _request_plan(self, now: float) -> bool:
         """Request another plan from here; return False if there is none."""
-        position = self.position(now)
-        excused = frozenset(self.late | set(self.lost))
+        position = Model.after(tuple(self._turns.values()), self.position(now))
+        excused = frozenset(self.late | set(self.lost)) - set(self._turns)
         ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.blocked)
+        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.blocked, self._turns)
         return not self._planning.no_plan_reason
 
     def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
@@ -396,12 +399,18 @@ class Mission:
         proposal = self._planning.acknowledged()
         if proposal is None:
             return []
-        if not covers(proposal.cover, self.position(now), self._tolerance):
+        turns = tuple(self._turns[name] for name in proposal.request.turning)
+        if not covers(proposal.cover, Model.after(turns, self.position(now)), self._tolerance):
             self._planning.expire(proposal, now)
             return self._status_changes(now)
         self.in_force = proposal.data
         self.plan, self._cover = proposal.data["plan"], proposal.cover
         self._planning.put_in_force(proposal)
+        self._automata.turn(turns, now)
+        for name, _ in turns:
+            self.late.discard(name)
+            self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
+        self._turns.clear()
         self._update_status(now, self._tolerance)
         return self._new_state(now)
 
@@ -414,7 +423,7 @@ class Mission:
             wrong = self.robots.on_report(report, location)
         elif not is_under_way(location) and agent not in self.robots.displaced:
             wrong = "expected the name of an agent that is under way"
-        elif agent not in self.lost:
+        elif agent not in self.lost or self._turns.pop(agent, None) is not None:
             self._mark_lost(agent, f"has failed {report.text}".rstrip())
         if wrong:
             self._reject("impossible", f"{agent}:{report.event}: {wrong}")
@@ -432,10 +441,12 @@ class Mission:
         if report.event == FREE:
             self.blocked.discard(way)
         else:
-            self.blocked.add(way)
             if place and agent not in self.lost:
+                turn = way_back(self.model, agent, place) if way not in self.blocked else None
+                self._turns.update({agent: turn} if turn and self.model.automaton(agent).kind == "robot" else {})
                 why = f": {report.text}" if report.text else ""
                 self._mark_lost(agent, f"has found that {in_words(way)} is blocked{why}")
+            self.blocked.add(way)
         self._log("warn", blocked_reason(self.blocked) or "no way is blocked any more")
         return self._status_changes(now)
 

@@ -23,7 +23,8 @@ Cover = StateTable[Tuple[Zone, ...]]
 class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
-    The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`.
+    The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`. The robots in
+    `turning` turn round when it begins, and may be back at any time.
     """
 
     number: int
@@ -34,6 +35,7 @@ class PlanRequest(NamedTuple):
     ahead: float
     excused: Tuple[str, ...]
     blocked: Tuple[Way, ...] = ()
+    turning: Tuple[str, ...] = ()
 
 
 class Proposal(NamedTuple):
@@ -87,6 +89,7 @@ class Planning:
         ahead: float,
         excused: FrozenSet[str],
         blocked: AbstractSet[Way],
+        turning: Iterable[str] = (),
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
         place = place, excused, frozenset(blocked)
@@ -101,8 +104,9 @@ class Planning:
         self._attempts += 1
         self._number += 1
         self.searched = 0.0
-        what = position.locations, position.values, position.clocks
-        self.request = PlanRequest(self._number, *what, stamp, ahead, tuple(sorted(excused)), tuple(sorted(blocked)))
+        what = position.locations, position.values, position.clocks, stamp, ahead
+        names, ways = tuple(sorted(excused)), tuple(sorted(blocked))
+        self.request = PlanRequest(self._number, *what, names, ways, tuple(sorted(turning)))
 
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
@@ -136,10 +140,14 @@ class Planning:
         self._unacknowledged = set(self._controllers)
         return True
 
-    def on_no_plan(self, number: int, why: str) -> None:
-        """Note that there is no plan for the request of this number."""
-        if self.request is not None and number == self.request.number:
-            self.request, self.no_plan_reason = None, why
+    def on_no_plan(self, number: int, why: str) -> bool:
+        """Note that there is no plan for the request of this number; return True if it was one with robots that turn
+        round."""
+        if self.request is None or number != self.request.number:
+            return False
+        turning = bool(self.request.turning)
+        self.request, self.no_plan_reason = None, why
+        return turning
 
     def on_receipt(self, node: str, number: int) -> None:
         """Note that a controller has acknowledged a plan."""

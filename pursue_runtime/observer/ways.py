@@ -6,7 +6,7 @@ from typing import Any, Collection, Mapping, Optional, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_movement, movement
-from pursue_runtime.model import Model
+from pursue_runtime.model import Model, Move
 
 Way = Tuple[str, str]
 """The two places that a way connects, in alphabetical order."""
@@ -21,6 +21,23 @@ def way_of(model: Model, location: str) -> Optional[Way]:
             if len(ends) == 2:
                 return min(ends), max(ends)
     return None
+
+
+def way_back(model: Model, robot: str, location: str) -> Optional[Move]:
+    """Return the move with which this robot, which moves at this location, would set out from there to where it comes
+    from; None if the model has none, or other automata take part in it."""
+    edges = model.automaton(robot).edges
+    origins = {edge.source for edge in edges if edge.target == location}
+    for end in edges:
+        for edge in model.automaton(robot).edges_from(end.target) if end.source == location else ():
+            leads_back = any(other.source == edge.target and other.target in origins for other in edges)
+            if is_movement(edge.target) and leads_back and not _has_receivers(model, edge.word):
+                return Move(robot, edge)
+    return None
+
+
+def _has_receivers(model: Model, word: str) -> bool:
+    return any(edge.word == word and edge.sync == "receive" for automaton in model.automata for edge in automaton.edges)
 
 
 def in_words(way: Way) -> str:

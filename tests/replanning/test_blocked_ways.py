@@ -106,6 +106,23 @@ def test_another_robot_goes_round_where_one_has_failed() -> None:
     assert not {to for _, to in sent} & {"going_b_to_c", "going_c_to_b"}
 
 
+def test_a_robot_that_turns_round_takes_the_other_way() -> None:
+    """bot1 could not go on from b to c, and begins to go back to b."""
+    request = under_way("bot1", "c", "b", 0.0, excused=["bot2"], blocked=[["b", "c"]], turning=["bot1"])
+    answer = replan(request)
+    assert answer["turning"] == ["bot1"]
+    assert {("bot1", f"going_{way}") for way in ("b_to_a", "a_to_d", "d_to_c")} <= set(commanded(answer))
+
+
+def test_who_returns_may_be_back_at_once_but_not_too_late() -> None:
+    request = under_way("bot1", "c", "b", 0.0, ahead=0.5, turning=["bot1"])
+    bot1 = network_from(played(translate(ring()), Rules()), read_request(request)).automaton("bot1")
+    (place,) = (location for location in bot1.locations if location.name == "going_c_to_b")
+    (end,) = (edge for edge in bot1.edges if edge.source == "going_c_to_b")
+    assert place.invariant and not [bound for bound in end.guard.clocks if bound.op in (">", ">=")]
+    assert not end.controllable
+
+
 def test_who_is_on_a_way_when_it_is_blocked_may_still_arrive() -> None:
     assert replan(under_way("bot1", "b", "c", 5.0, excused=["bot2"], blocked=[["b", "c"]]))["won"]
 
@@ -121,11 +138,14 @@ def test_who_is_not_commanded_moves_as_it_likes() -> None:
         assert bool(targets & set(movements([(way.a, way.b)]))) is (agent.name == thief)
 
 
-@given(st.lists(st.sampled_from(WAYS), unique=True, max_size=3), st.sampled_from(["bot1", "bot2", ""]), st.booleans())
+@given(
+    st.lists(st.sampled_from(WAYS), unique=True, max_size=3), st.sampled_from(["bot1", "bot2", ""]),
+    st.sampled_from(["excused", "turning", ""]),
+)
 def test_no_plan_uses_a_blocked_way_and_both_engines_agree(
-    blocked: List[Tuple[str, str]], mover: str, excused: bool
+    blocked: List[Tuple[str, str]], mover: str, how: str
 ) -> None:
-    request = start() if not mover else under_way(mover, "b", "c", 5.0, excused=[mover] if excused else [])
+    request = start() if not mover else under_way(mover, "b", "c", 5.0, **({how: [mover]} if how else {}))
     request["blocked"] = [list(way) for way in blocked]
     answer = replan(request)
     if answer["won"]:

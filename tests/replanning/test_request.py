@@ -61,6 +61,8 @@ BAD = {
     "ahead of nothing": ({**GOOD, "ahead": True}, "ahead is True"),
     "excused strangers": ({**GOOD, "excused": ["bot9"]}, "bot9 is excused"),
     "excused text": ({**GOOD, "excused": "bot1"}, "excused is 'bot1'"),
+    "turning strangers": ({**GOOD, "turning": ["bot9"]}, "bot9 is turning"),
+    "turning text": ({**GOOD, "turning": "bot1"}, "turning is 'bot1'"),
     "blocked text": ({**GOOD, "blocked": "c"}, "blocked is 'c'"),
     "blocked places": ({**GOOD, "blocked": ["c", "b"]}, "blocked is ['c', 'b']"),
     "a blocked way of three places": ({**GOOD, "blocked": [["a", "c", "b"]]}, "blocked is [['a', 'c', 'b']]"),

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+import yaml
 from launched_mission import ENDED, LaunchedMission, State, launched
 from ros_world import Ros, generated, make
 
@@ -46,11 +47,21 @@ LATE = 1000
 """Time units by which robots may be late in their model: the test plays them, and a machine may stand still."""
 
 
+def workspace(ros: Ros, folder: Path, *robots: str) -> Path:
+    """A workspace of the ring with these robots."""
+    lines = [line for line in RING.splitlines() if "agent" not in line or any(robot in line for robot in robots)]
+    (folder / "ring.pur").write_text("\n".join(lines))
+    return make(ros, generated(str(folder / "ring"), folder / "ws", slack=dict.fromkeys(robots, LATE)))
+
+
 @pytest.fixture(scope="module")
 def ring(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("ring")
-    (folder / "ring.pur").write_text(RING)
-    return make(ros, generated(str(folder / "ring"), folder / "ws", slack={"bot1": LATE, "bot2": LATE}))
+    return workspace(ros, tmp_path_factory.mktemp("ring"), "bot1", "bot2")
+
+
+@pytest.fixture(scope="module")
+def alone(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return workspace(ros, tmp_path_factory.mktemp("alone"), "bot1")
 
 
 def drive(run: LaunchedMission, until_location: str = "") -> State:
@@ -84,3 +95,26 @@ def test_a_blocked_way_is_avoided_by_the_new_plan(ros: Ros, ring: Path, tmp_path
         assert run.until_over() == "won", run.output()
     places = {place for state in run.states() for place in state["places"].values()}
     assert "going_d_to_c" in places and not places & set(BLOCKED)
+
+
+def test_a_robot_that_finds_its_way_blocked_turns_round_and_takes_the_other_way(
+    ros: Ros, alone: Path, tmp_path: Path
+) -> None:
+    with launched(
+        ros, alone, tmp_path, ["bot1"], simulate=False, goals="simple", ends="words", time_unit=0.5, lost_after=LATE,
+        planner=PLANNER,
+    ) as run:
+        drive(run, "going_b_to_c")
+        run.until(lambda: len(run.orders()) == 2)
+        run.publish("bot1:_blocked_")
+        hold = run.until(lambda: next((state for state in run.states() if state.status == "holding"), None))
+        found = "bot1 has found that the way between b and c is blocked; looking for another plan"
+        assert (hold["lost"], hold["reason"], len(run.orders())) == ("bot1", found, 2)
+        back = run.until(lambda: next((state for state in run.states() if "plan" in state), None))
+        assert (back.status, back["places"]["bot1"], "lost" in back) == ("running", "going_c_to_b", False)
+        run.until(lambda: len(run.orders()) == 3)
+        drive(run)
+        assert run.until_over() == "won", run.output()
+    poses = yaml.safe_load((alone / "src/controller_bot1/config/poses.yaml").read_text())["poses"]
+    names = {str([round(x, 2), round(y, 2)]): place for place, (x, y, *_) in poses.items()}
+    assert [names.get(order, order) for _, order in run.orders()] == ["b", "c", "b", "a", "d", "c", "fetch"]

@@ -21,7 +21,7 @@ FOUND = {"format": 1, "won": True, "strategies": {}, "people": None, "cover": {}
 
 
 def request(number: int = 1) -> Any:
-    return PlanRequest(number, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 2.5}, 100.0, 1.5, ("dog",), (("a", "b"),))
+    return PlanRequest(number, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 2.5}, 100.0, 1.5, ("dog",), (("a", "b"),), ("cat",))
 
 
 class Office:
@@ -54,7 +54,7 @@ def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Pa
     assert Office(program).ask(7) == (7, FOUND, "")
     assert json.loads(copy.read_text()) == {
         "format": 1, "game": {"name": "chase"}, "locations": {"bot": "a"}, "values": {"Pbot": 1},
-        "clocks": {"Cbot": 2.5}, "ahead": 1.5, "excused": ["dog"], "blocked": [["a", "b"]],
+        "clocks": {"Cbot": 2.5}, "ahead": 1.5, "excused": ["dog"], "blocked": [["a", "b"]], "turning": ["cat"],
     }
 
 

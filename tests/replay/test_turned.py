@@ -1,0 +1,82 @@
+"""A robot that turned round on a blocked way: a recording shows it, and nothing of it is a fault."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Dict, List, Tuple
+
+import pytest
+import yaml
+
+from pursue_gen.replay.check import check
+from pursue_gen.replay.finding import FAULT, WORLD
+from pursue_gen.replay.journal import Journal as JournalFile
+from pursue_gen.replay.journal import read_journal, reconstruct
+from pursue_gen.replay.moves import Moves
+from pursue_gen.replay.record import MissionRecord, RobotOrder, read_word
+from pursue_runtime.model import Model
+from pursue_runtime.observer.journal import Journal
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.state import SystemState
+from tests.replay.recordings import game
+from tests.replay.test_check import plan_data
+from tests.workspace.worlds import files
+
+PLAN = {**plan_data(), "cover": {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}}
+for part in PLAN["strategies"].values():
+    part["strategy"] = []  # the workspace's own would take the blocked way
+
+CALLS: Tuple[Tuple[float, str, Tuple[Any, ...]], ...] = (
+    (0.0, "hear", ("_start_",)),
+    (0.2, "hear", ("reachObj:reachObj_going_initial_location2unlocked@1",)),
+    (1.2, "hear", ("bot1:bot1_c2b@2",)),
+    (9.0, "hear", ("bot1:_blocked_",)),
+    (9.5, "planned", (1, {**PLAN, "turning": ["bot1"]})),
+    (9.6, "hear", ("controller_bot1:_plan_@1",)),
+    (12.0, "hear", ("bot1_going_b_to_c2c",)),
+)
+"""bot1 cannot go from c to b, and goes back to c."""
+
+
+@pytest.fixture
+def played(tmp_path: Path) -> Tuple[List[SystemState], bytes]:
+    """The states of the mission, and its journal."""
+    model = Model(yaml.safe_load(files("thesis/scenario_1")["src/observer/config/model.yaml"]))
+    log = lambda level, text: None
+    mission = Mission(model, None, log, on_uncovered="plan", controllers=["controller_bot1"])
+    header: Dict[str, Any] = {"scenario": "scenario_1", "settings": {"time_unit": 1.0}}
+    journal = Journal(mission, str(tmp_path / "journal.jsonl"), header, log)
+    states = [state for at, name, args in CALLS for state in journal.call(name, *args, now=100.0 + at)]
+    return states, (tmp_path / "journal.jsonl").read_bytes()
+
+
+def test_the_turn_is_shown_and_is_no_fault(played: Tuple[List[SystemState], bytes]) -> None:
+    states, _ = played
+    assert [state.locations["bot1"] for state in states][-3:] == ["going_c_to_b", "going_b_to_c", "c"]
+    words = tuple(
+        read_word(100.0 + at, args[0], "controller_bot1" if at == 1.2 else "controllerObj" if "@" in args[0] else "")
+        for at, name, args in CALLS if name == "hear"
+    )
+    goals = ((1.3, 1.0), (9.7, 2.0))
+    orders = tuple(RobotOrder(100.0 + at, "bot1", "controller_bot1", (x, 0.0, 0.0)) for at, x in goals)
+    findings = check(MissionRecord(tuple(states), words, orders, {1: PLAN}), game()).findings
+    assert [f.kind for f in findings if f.level == FAULT] == []
+    assert [(f.kind, f.text) for f in findings if f.kind == "turned" and f.level == WORLD] == [
+        ("turned", "bot1 turned round on its way, which was blocked")
+    ]
+
+
+def test_a_goal_back_without_a_turn_is_a_fault(played: Tuple[List[SystemState], bytes]) -> None:
+    states, _ = played
+    there = [state._replace(plan=0) for state in states]
+    kinds = {f.kind for f in check(MissionRecord(tuple(there), (), ()), game()).findings if f.level == FAULT}
+    assert "step" in kinds
+
+
+def test_the_journal_leads_to_the_same_states(played: Tuple[List[SystemState], bytes]) -> None:
+    states, content = played
+    journal = read_journal(content)
+    assert isinstance(journal, JournalFile) and not journal.problems
+    record = reconstruct(journal, Moves(game().network), game().objective)
+    seen = {state.seq: (state.discrete(), state.plan, state.clocks) for state in record.states}
+    assert seen == {state.seq: (state.discrete(), state.plan, state.clocks) for state in states}

@@ -1,0 +1,138 @@
+"""A robot that finds its way blocked goes back to where it came from, as part of the new plan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pursue_runtime.model import Model
+from pursue_runtime.observer.journal import Journal
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.ways import way_back, way_of
+from pursue_runtime.strategy import read_cover
+from tests.runtime.observer.test_holding import COVER, EVERYWHERE, NOWHERE, answer, planned
+from tests.runtime.observer.test_mission import CHASE, Journey
+from tests.runtime.texts import read
+
+BACK = """\
+  - {from: b, to: going_b_to_a, word: bot_b2a, sync: send, when: [Cbot > 1], if: [[Prule=7]], set: {Pbot: -21}, reset: [Cbot], controllable: true}
+  - {from: going_b_to_a, to: a, word: bot_going_b_to_a2a, sync: own, when: [Cbot > 3], set: {Pbot: 1}, reset: [Cbot], controllable: false}
+"""  # noqa: E501 (an edge per line)
+CATCH = "  - {from: b, to: b, word: catch, sync: send, when: [Cbot"
+RETURN = CHASE.replace(CATCH, BACK + CATCH)
+"""The chase, where the bot may also go back."""
+
+
+def journey(text: str = RETURN, **options: Any) -> Journey:
+    """A mission whose robot is on its way from a to b since moment 2."""
+    made = Journey(text, COVER, **{"on_uncovered": "plan", "controllers": ("one", "two"), "lost_after": 8.0, **options})
+    made.hear("_start_", 0.0)
+    made.hear("bot_a2b", 2.0)
+    return made
+
+
+def test_the_way_of_a_movement_and_the_way_back() -> None:
+    model = Model(read(RETURN))
+    assert way_of(model, "going_a_to_b") == way_of(model, "going_b_to_a") == ("a", "b")
+    assert way_of(model, "a") is None and way_of(model, "going_a_to_c") is None
+    move = way_back(model, "bot", "going_a_to_b")
+    assert move is not None and (move.automaton, move.edge.word) == ("bot", "bot_b2a")
+    assert way_back(model, "bot", "b") is None and way_back(Model(read(CHASE)), "bot", "going_a_to_b") is None
+    heard = RETURN.replace("to: b, word: catch, sync: receive", "to: b, word: bot_b2a, sync: receive")
+    assert way_back(Model(read(heard)), "bot", "going_a_to_b") is None
+
+
+def test_the_plan_is_to_begin_with_the_robot_on_its_way_back() -> None:
+    made = journey()
+    state = made.hear("bot:_blocked_", 5.0)
+    assert (state.status, state.lost, state.locations["bot"]) == ("holding", ("bot",), "going_a_to_b")
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.blocked, wanted.turning) == ((), (("a", "b"),), ("bot",))
+    assert (wanted.locations["bot"], wanted.values["Pbot"]) == ("going_b_to_a", -21)
+    assert (wanted.clocks["Cbot"], wanted.clocks["Creach"], wanted.ahead) == (0.0, 5.0, 1.0)
+
+
+def test_the_robot_goes_back_when_the_plan_is_in_force_and_not_before() -> None:
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    (state,) = planned(made, EVERYWHERE, 30.0)
+    assert (state.status, state.plan, state.lost, state.event, state.agent) == ("running", 1, (), "", "")
+    assert (state.locations["bot"], state.values["Pbot"]) == ("going_b_to_a", -21)
+    assert (state.clocks["Cbot"], state.clocks["Creach"]) == (0.0, 30.0)
+    state = made.hear("bot_going_b_to_a2a", 31.0)
+    assert (state.status, state.locations["bot"]) == ("running", "a"), "it was not far"
+
+
+def test_a_plan_that_does_not_cover_the_way_back_is_not_put_in_force() -> None:
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    assert planned(made, NOWHERE, 3.5) == []
+    assert made.mission.plan_request.turning == ("bot",)
+    assert made.mission.state(3.5).locations["bot"] == "going_a_to_b"
+
+
+def test_where_there_is_no_plan_with_its_return_one_without_the_robot_is_looked_for() -> None:
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    assert made.mission.on_no_plan(made.mission.plan_request.number, "the dog bites it at a", 3.5) == []
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.turning, wanted.locations["bot"]) == (("bot",), (), "going_a_to_b")
+    (state,) = made.mission.on_no_plan(wanted.number, "nobody else can", 4.0)
+    assert state.status == "stopped" and "nobody else can" in state.reason
+
+
+@pytest.mark.parametrize("text", [CHASE, RETURN.replace("kind: robot\n  initial: a", "kind: human\n  initial: a")])
+def test_who_cannot_be_sent_back_is_lost(text: str) -> None:
+    made = journey(text)
+    made.hear("bot:_blocked_", 3.0)
+    assert (made.mission.plan_request.excused, made.mission.plan_request.turning) == (("bot",), ())
+
+
+def test_who_finds_a_way_blocked_that_was_blocked_before_is_lost() -> None:
+    """As on its way back: it does not go to and fro."""
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    planned(made, EVERYWHERE, 4.0)
+    state = made.hear("bot:_blocked_", 5.0)
+    assert (state.status, state.lost, state.locations["bot"]) == ("holding", ("bot",), "going_b_to_a")
+    assert (made.mission.plan_request.excused, made.mission.plan_request.turning) == (("bot",), ())
+
+
+def test_who_fails_before_it_could_go_back_is_lost() -> None:
+    made = journey()
+    first = made.hear("bot:_blocked_", 3.0) and made.mission.plan_request.number
+    state = made.hear("bot:_failed_", 3.5)
+    assert state.reason == "bot has failed; looking for another plan"
+    assert made.mission.plan_request.number > first and made.mission.plan_request.excused == ("bot",)
+    assert made.hear("bot:_failed_", 3.6) is None
+
+
+def test_who_arrives_before_it_could_go_back_has_arrived() -> None:
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    number = made.mission.plan_request.number
+    state = made.hear("bot_going_a_to_b2b", 5.5)
+    assert (state.lost, state.locations["bot"]) == ((), "b")
+    assert made.mission.plan_request.turning == () and made.mission.plan_request.number > number
+    made.mission.on_plan(number, answer(EVERYWHERE), 6.0)
+    assert made.mission.proposal is None
+
+
+def test_a_new_observer_has_the_robot_on_its_way_back(tmp_path: Path) -> None:
+    def life() -> Journal:
+        log = lambda level, text: None
+        options = {"on_uncovered": "plan", "controllers": ["one"]}
+        mission = Mission(Model(read(RETURN)), read_cover(read(COVER)), log, **options)
+        mission.journal = Journal(mission, str(tmp_path / "journal-x.jsonl"), {"launch": "x"}, log)
+        return mission
+
+    before = life()
+    calls = [("hear", "_start_"), ("hear", "bot_a2b"), ("hear", "bot:_blocked_"), ("planned", 1, answer(EVERYWHERE))]
+    for moment, call in enumerate([*calls, ("hear", "one:_plan_@1"), ("hear", "going_a_to_b:_free_")]):
+        before.journal.call(*call, now=1000.0 + 2 * moment)
+        after = life()
+        assert after.state(2000.0) == before.state(2000.0) and after.plan_request == before.plan_request
+        assert after.blocked == before.blocked
+    assert before.state(2000.0).locations["bot"] == "going_b_to_a"
