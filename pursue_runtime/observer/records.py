@@ -13,6 +13,8 @@ import os
 import zlib
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.bounded import read_json, whole
+
 MAX_RECORD = 64 * 1024 * 1024
 """The most bytes of a line. A new plan is the largest record."""
 
@@ -49,9 +51,9 @@ def parse_record(line: bytes) -> Optional[Tuple[int, Record]]:
     number, _, text = covered.partition(b" ")
     length, _, text = text.partition(b" ")
     try:
-        whole, record = int(length) == len(text), json.loads(text)
-        return (int(number), record) if whole and isinstance(record, dict) else None
-    except (ValueError, RecursionError):
+        complete, record = whole(length.decode()) == len(text), read_json(text)
+        return (whole(number.decode()), record) if complete and isinstance(record, dict) else None
+    except ValueError:
         return None
 
 
