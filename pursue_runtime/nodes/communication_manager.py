@@ -25,7 +25,7 @@ from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, is_loopback, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node, subscribe
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.trusted_keys import KeyFolder
 
@@ -50,11 +50,15 @@ class CommunicationManager:
         self.background = Background(services, self.record.count)
         self.ending = Ending()
         self.orders = rospy.Publisher(str(rospy.get_param("~topicName", LOCAL_MISSION)), String, queue_size=2)
-        self.statuses = rospy.Subscriber(MISSION_STATUS, String, self.on_status, queue_size=100, tcp_nodelay=True)
-        self.forwarded = [rospy.Subscriber(topic, String, self.on_message, topic, queue_size=1000) for topic in topics]
+        self.statuses = subscribe(
+            MISSION_STATUS, String, self.on_status, self.ending, queue_size=100, tcp_nodelay=True
+        )
+        self.forwarded = [
+            subscribe(topic, String, self.on_message, self.ending, topic, queue_size=1000) for topic in topics
+        ]
         self.background.start()
         self.log_address(host, exposed, context is not None)
-        pulses = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda _: None, queue_size=100)
+        pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
         Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost))
 
     def make_forwarder(self, host: str) -> Tuple[Optional[Forwarder], List[str]]:

@@ -24,7 +24,7 @@ from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node
+from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, text, whole
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
@@ -61,9 +61,9 @@ class Node:
         self.statuses = rospy.Publisher("mission_status", String, queue_size=10, latch=True)
         self.alarm = Alarm(self.on_alarm, ending)
         self.publish()
-        self.orders = rospy.Subscriber("local_mission", String, self.on_order, queue_size=1, buff_size=1 << 20)
+        self.orders = subscribe("local_mission", String, self.on_order, ending, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
-        states = subscribe_states(self.on_state, "/" + topic.lstrip("/"))
+        states = subscribe_states(self.on_state, ending, "/" + topic.lstrip("/"))
         Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost))
         trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")

@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread, subscribe
 from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock, read_pace
 from pursue_runtime.words import EVENTS, STATE
 
@@ -41,8 +41,8 @@ def run(pace: Pace, scenario: str) -> int:
     clock = SimClock(pace, START if last is None else last)
     publisher = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
     _, states = [
-        rospy.Subscriber(
-            topic, rospy.AnyMsg, lambda _: clock.on_message(time.monotonic()), queue_size=1000, tcp_nodelay=True
+        subscribe(
+            topic, rospy.AnyMsg, lambda _: clock.on_message(time.monotonic()), ending, queue_size=1000, tcp_nodelay=True
         )
         for topic in (EVENTS, STATE)
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import socket
@@ -11,7 +12,6 @@ from pathlib import Path
 from typing import Callable, Dict, Iterator
 
 import pytest
-import yaml
 from ros_world import Ros, end
 
 from tests.runtime.models import model_data, mover
@@ -36,7 +36,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "scripts" / "UI").write_text(SCRIPT)
     (folder / "config").mkdir()
     model = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
-    (folder / "config" / "model.yaml").write_text(yaml.safe_dump(model))
+    (folder / "config" / "model.yaml").write_text(json.dumps(model))  # YAML without aliases
     (folder / "config" / "ui.yaml").write_text("format: 1\nnodes: [observer, controller_bot]\n")
     poses = "a: [0, 0, 0, 0, 0, 0, 1], b: [9, 0, 0, 0, 0, 0, 1]"
     (folder / "config" / "poses.yaml").write_text(f"format: 1\nposes: {{{poses}}}\n")
