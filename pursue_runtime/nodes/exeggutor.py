@@ -41,6 +41,7 @@ class Exeggutor:
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
+        self._ending = ending
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
@@ -62,7 +63,7 @@ class Exeggutor:
             for robot in settings:
                 if robot not in self._links:
                     inputs = (partial(take, robot) for take in (self._result, self._statuses, self._place))
-                    self._links[robot] = RobotLink(robot, settings[robot], *inputs)
+                    self._links[robot] = RobotLink(robot, settings[robot], self._ending, *inputs)
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
 
     @staticmethod

@@ -15,7 +15,7 @@ from pursue_runtime.controller.goal import Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
-from pursue_runtime.nodes.node import publish_to_one
+from pursue_runtime.nodes.node import Ending, publish_to_one, subscribe
 
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
@@ -59,13 +59,14 @@ class RobotLink(rospy.SubscribeListener):
         self,
         robot: str,
         settings: Settings,
+        ending: Ending,
         result: Callable[[Answer], None],
         statuses: Callable[[List[Answer]], None],
         place: Callable[[Position], None],
     ) -> None:
         super().__init__()
         self.watched = not settings.sources
-        self._robot, self._settings = robot, settings
+        self._robot, self._settings, self._ending = robot, settings, ending
         self._on_result, self._on_statuses, self._place = result, statuses, place
         self._lock = threading.Lock()
         self._standing: Dict[str, Order] = {}
@@ -97,12 +98,12 @@ class RobotLink(rospy.SubscribeListener):
         if settings.uses_results:
             kind = self._messages.MoveBaseActionResult
             topic = f"{robot}/move_base/result"
-            self._results = rospy.Subscriber(topic, kind, self._result, queue_size=100, tcp_nodelay=True)
+            self._results = subscribe(topic, kind, self._result, ending, queue_size=100, tcp_nodelay=True)
         if not settings.simulated:
             with contextlib.suppress(DataError):  # without these messages the robot has no such status either
                 kind = needed("actionlib_msgs", "actionlib_msgs.msg", "move_base/status").GoalStatusArray
                 topic = f"{robot}/move_base/status"
-                self._status = rospy.Subscriber(topic, kind, self._statuses, queue_size=10, tcp_nodelay=True)
+                self._status = subscribe(topic, kind, self._statuses, ending, queue_size=10, tcp_nodelay=True)
 
     # To the robot -----------------------------------------------------------------------------------------------------
 
@@ -191,7 +192,7 @@ class RobotLink(rospy.SubscribeListener):
             self._positions.append(self._tf.TransformListener(self._frames))
         if "pose" in self._settings.sources:
             topic, kind = f"{self._robot}/amcl_pose", PoseWithCovarianceStamped
-            self._positions.append(rospy.Subscriber(topic, kind, self._pose, queue_size=10, tcp_nodelay=True))
+            self._positions.append(subscribe(topic, kind, self._pose, self._ending, queue_size=10, tcp_nodelay=True))
 
     @property
     def looks(self) -> bool:

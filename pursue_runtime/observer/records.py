@@ -13,10 +13,13 @@ import os
 import zlib
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.bounded import read_json, whole
+from pursue_runtime.bounded import DATA, Bounds, read_json, whole
 
 MAX_RECORD = 64 * 1024 * 1024
 """The most bytes of a line. A new plan is the largest record."""
+
+BOUNDS = Bounds(MAX_RECORD, DATA.depth + 2, DATA.values + 10)
+"""What a record may hold: a call whose argument is data that was read within bounds."""
 
 Record = Dict[str, Any]
 
@@ -51,7 +54,7 @@ def parse_record(line: bytes) -> Optional[Tuple[int, Record]]:
     number, _, text = covered.partition(b" ")
     length, _, text = text.partition(b" ")
     try:
-        complete, record = whole(length.decode()) == len(text), read_json(text)
+        complete, record = whole(length.decode()) == len(text), read_json(text, BOUNDS)
         return (whole(number.decode()), record) if complete and isinstance(record, dict) else None
     except ValueError:
         return None

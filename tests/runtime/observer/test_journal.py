@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import threading
 import zlib
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_runtime.bounded import DATA, read_json
 from pursue_runtime.data import DataError
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
@@ -172,6 +174,14 @@ def test_brackets_with_a_right_checksum_are_no_record() -> None:
     line = format_record(3, {}).replace(b" 2 {}", b" %d %s" % (len(BRACKETS) - 1, BRACKETS[:-1]))
     covered = line[9:-1]
     assert records.parse_record(b"%08x %s\n" % (zlib.crc32(covered), covered)) is None
+
+
+def test_whatever_was_read_within_bounds_can_be_read_as_a_record() -> None:
+    deep: Any = 1
+    for _ in range(DATA.depth):
+        deep = [deep]
+    record = {"at": 1e9, "call": "planned", "args": [1, read_json(json.dumps(deep))], "seq": 3, "status": "holding"}
+    assert records.parse_record(format_record(4, record)) == (4, record)
 
 
 def test_a_record_that_is_longer_than_the_limit_is_none(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
