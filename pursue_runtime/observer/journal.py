@@ -14,11 +14,8 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tup
 
 from pursue_runtime.data import DataError
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.records import Record, RecordFile, RecordsRead, read_records, sync_folder
+from pursue_runtime.observer.records import FORMAT, Record, RecordFile, RecordsRead, read_records, sync_folder
 from pursue_runtime.state import ENDED, WAITING, SystemState
-
-FORMAT = 2
-"""The format of the journals that are written here. Format 1 had no checksums."""
 
 ADOPTED = "adopted"
 """The call with which a mission continues from a state that the journal does not lead to."""

@@ -15,6 +15,9 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from pursue_runtime.bounded import DATA, Bounds, read_json, whole
 
+FORMAT = 2
+"""The format of journals that have such records. Format 1 had the JSON objects alone."""
+
 MAX_RECORD = 64 * 1024 * 1024
 """The most bytes of a line. A new plan is the largest record."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+import signal
 from pathlib import Path
 from typing import Callable, Tuple
 
@@ -118,6 +119,28 @@ def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
     assert status == "stopped" and "journal is not complete" in reason and "no other node" in reason, run.output()
     assert len(run.orders()) == orders and "exit code 1" in run.verdict()
     assert run.crashes() == [], run.output()
+
+
+def test_a_node_that_knows_more_stops_an_observer_that_has_lost_the_mission(
+    ros: Ros, scenario: Path, tmp_path: Path
+) -> None:
+    """One controller stands still while everything else is lost, and goes on when the observer waits for a start."""
+    with launched(ros, scenario, tmp_path, use_sim_time=True, delays="middle", speed=1, lost_after=FOR_EVER) as run:
+        known = run.until_step("bot1_inb")
+        frozen = run.kill("controller_bot1", signal.SIGSTOP)
+        journal = journal_of(run)
+        for node in NODES:
+            if node not in ("sim_clock", "controller_bot1"):
+                run.kill(node)
+        os.remove(journal)
+        run.until(lambda: run.now().status == "waiting")
+        orders = len(run.orders())
+        os.kill(frozen, signal.SIGCONT)
+        status = run.until_over()
+        reason = run.now()["reason"]
+    assert status == "stopped", run.output()
+    assert "controller_bot1 knows of a state" in reason and int(reason.split(" state ")[1].split()[0]) >= known.seq
+    assert len(run.orders()) == orders and "refused state 0" in run.output()
 
 
 def test_states_that_no_observer_publishes_change_nothing(ros: Ros, scenario: Path, tmp_path: Path) -> None:
