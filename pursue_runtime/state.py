@@ -33,7 +33,7 @@ class SystemState(NamedTuple):
     `mission` the id of the mission whose state this is, "" for the one of the workspace. `late` names the agents that
     should have finished by now, `lost` those that nothing is expected of any more, `held` those that wait for a person.
     `displaced` names the robots that are not known to be where the state has them, `returning` those of them that are
-    to go back there.
+    to go back there. `commanded` is True if the event was a command, not a report.
     """
 
     seq: int
@@ -53,6 +53,7 @@ class SystemState(NamedTuple):
     held: Tuple[str, ...] = ()
     displaced: Tuple[str, ...] = ()
     returning: Tuple[str, ...] = ()
+    commanded: bool = False
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""
@@ -98,7 +99,7 @@ def format_state(state: SystemState) -> str:
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
     agents = tuple((key, ",".join(getattr(state, key))) for key in AGENT_LISTS)
     led_by = ("event", state.event), ("agent", state.agent), *agents
-    facts = (("mission", state.mission), ("plan", state.plan), *led_by)
+    facts = (("mission", state.mission), ("plan", state.plan), *led_by, ("commanded", int(state.commanded)))
     head += [f"{key}={value}" for key, value in facts if value]
     head.append("status=" + state.status)
     if state.reason:
@@ -139,7 +140,7 @@ def parse_state(text: str) -> Optional[SystemState]:
     lists: Dict[str, Any] = {key: tuple(filter(None, facts.get(key, "").split(","))) for key in AGENT_LISTS}
     led_by = event, agent, status, reason, unit, plan
     state = SystemState(seq, stamp, locations, values, clocks, *led_by, mission=facts.get("mission", ""))
-    return state._replace(**lists)
+    return state._replace(commanded=facts.get("commanded") == "1", **lists)
 
 
 def _finite(text: str) -> float:

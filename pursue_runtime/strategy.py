@@ -62,6 +62,10 @@ class Strategy:
     def __init__(self, data: Mapping[str, Any]) -> None:
         try:
             self.agents: List[str] = list(data["commands_agents"])
+            self.reacts_to = {
+                str(robot): {str(event): tuple(map(str, doers)) for event, doers in events.items()}
+                for robot, events in dict(data.get("reacts_to") or {}).items()
+            }
             self.reaction = float(exact(data["reaction"]))
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
             self._table = StateTable(entries)

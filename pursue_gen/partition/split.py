@@ -30,12 +30,14 @@ class SubStrategy:
     """What one controller does: in each discrete state, in the strategy's order, its commands and no others.
 
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
-    no program: its commands are instructions to people.
+    no program: its commands are instructions to people. `reacts_to` has, for its robots that take part in collaborative
+    events of others, these events and the controllable agents that do them.
     """
 
     controller: str
     agents: Tuple[str, ...]
     blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
+    reacts_to: Tuple[Tuple[str, str, Tuple[str, ...]], ...] = ()
 
     @property
     def commands(self) -> int:
@@ -74,9 +76,26 @@ def partition(
     if humans:
         owners[UI] = humans
     return tuple(
-        SubStrategy(name, commanded, _select(strategy, commanded, controllers == GENERAL))
+        SubStrategy(
+            name, commanded, _select(strategy, commanded, controllers == GENERAL), _reactions(agents, commanded)
+        )
         for name, commanded in owners.items()
     )
+
+
+def _reactions(agents: Sequence[Agent], commanded: Tuple[str, ...]) -> Tuple[Tuple[str, str, Tuple[str, ...]], ...]:
+    """For the robots among these: the events of others in which they take part, and the controllable agents that do
+    them."""
+    robots = [agent for agent in agents if agent.is_robot and agent.name in commanded]
+    return tuple(
+        (robot.name, event, tuple(a.name for a in agents if a.controllable and event in _names(a) and a is not robot))
+        for robot in robots
+        for event in dict.fromkeys(ref.name for ref in robot.reacts_to)
+    )
+
+
+def _names(agent: Agent) -> List[str]:
+    return [ref.name for ref in agent.can_do]
 
 
 def _owners(

@@ -19,10 +19,14 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
     Bounds of zones are in time units: decimals where that is exact, else fractions.
     """
+    reacts_to: Dict[str, Dict[str, List[str]]] = {}
+    for robot, event, doers in sub.reacts_to:
+        reacts_to.setdefault(robot, {})[event] = list(doers)
     return {
         "format": 1,
         "controller": sub.controller,
         "commands_agents": list(sub.agents),
+        **({"reacts_to": reacts_to} if reacts_to else {}),
         "reaction": number(reaction),
         "strategy": [
             {"state": _state(state), "commands": [_command(command) for command in commands]}

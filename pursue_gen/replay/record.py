@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Iterator, Mapping, Optional, Tuple
 
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import FINISH, Word, parse_word
+from pursue_runtime.words import FINISH, Word, parse_report, parse_word
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,9 @@ class MissionRecord:
 def read_word(at: float, text: str, node: str = "") -> RecordedWord:
     """The word in a text; one without an event where it is none."""
     bare = text.strip()
+    report = parse_report(bare)
+    if report is not None:
+        return RecordedWord(at, bare, node, report.agent, report.event)
     word = Word("", FINISH) if bare == FINISH else parse_word(bare) or Word("", "")
     return RecordedWord(at, bare, node, *word)
 

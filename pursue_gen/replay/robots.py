@@ -43,6 +43,8 @@ def check_robots(
     places: Dict[str, Dict[str, Point]] = {robot: {} for robot in robots}
     for order in record.orders:
         place = diary.activity(order)
+        if place is None and (_returns(record, order) if order.is_goal else _joins(record, game.scenario, order)):
+            continue
         if place is None:
             what = "a goal" if order.is_goal else f"the action {order.action}"
             seq = _number_at(record, order.at)
@@ -134,6 +136,24 @@ def _elsewhere(
 
 def _far(one: Point, other: Point) -> bool:
     return any(not abs(a - b) <= NEAR for a, b in zip(one, other))
+
+
+def _returns(record: MissionRecord, order: RobotOrder) -> bool:
+    """True if a state had the robot return to its place about when it got the goal."""
+    ends = [*(state.stamp for state in record.states[1:]), float("inf")]
+    return any(
+        order.robot in state.returning and state.stamp - EARLY <= order.at <= end + LATE
+        for state, end in zip(record.states, ends)
+    )
+
+
+def _joins(record: MissionRecord, scenario: Scenario, order: RobotOrder) -> bool:
+    """True if another agent had begun the event, as a collaborative one to which the robot reacts."""
+    reacts = any(a.name == order.robot and order.action in {ref.name for ref in a.reacts_to} for a in scenario.agents)
+    return reacts and any(
+        state.event == order.action and state.agent != order.robot and state.stamp - EARLY <= order.at
+        for state in record.states
+    )
 
 
 def _number_at(record: MissionRecord, at: float) -> int:

@@ -10,9 +10,25 @@ from pursue_gen.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.replay.moves import DiscreteState, Moves
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
-from pursue_runtime.words import BLOCKED, FAILED, FINISH, FREE, PING, PLANNED, START, STOP
+from pursue_runtime.words import (
+    BACK,
+    BLOCKED,
+    DISPLACED,
+    FAILED,
+    FINISH,
+    FREE,
+    HELD,
+    PING,
+    PLANNED,
+    RESUME,
+    START,
+    STOP,
+)
 
 CONTROL = (START, PING, STOP, FINISH)
+REPORTS = {BLOCKED: WORLD, FREE: NOTE, HELD: WORLD, RESUME: NOTE, DISPLACED: WORLD, BACK: NOTE}
+"""Reports about robots and ways, which move no automaton, and what they are in the findings."""
+
 APART = 60.0
 """Seconds by which the recorder may have received a report earlier or later than the observer: links may be cut."""
 
@@ -56,7 +72,7 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, System
 
 
 def _control(word: RecordedWord) -> bool:
-    return word.text in CONTROL or word.event in (PLANNED, FAILED, BLOCKED, FREE)
+    return word.text in CONTROL or word.event in (PLANNED, FAILED, *REPORTS)
 
 
 def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> List[Finding]:
@@ -70,9 +86,10 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
     for word in record.words:
         if word.text == STOP:
             found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} published {STOP}"))
-        elif word.event in (BLOCKED, FREE):
+        elif word.event in REPORTS:
+            kind = "way" if word.event in (BLOCKED, FREE) else "robot"
             text = f"{_sender(word)} published {word.text}"
-            found.append(Finding(WORLD if word.event == BLOCKED else NOTE, "way", now(word).seq, text))
+            found.append(Finding(REPORTS[word.event], kind, now(word).seq, text))
         elif word.event == FAILED:
             found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot carry out its order"))
     for word in said.unmatched:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Callable, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.locations import action_of, is_movement, is_under_way
+from pursue_runtime.locations import action, action_of, is_movement, is_under_way
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Command, Plans, Strategy
@@ -32,6 +32,7 @@ class CommandScheduler:
         self.state: Optional[SystemState] = None
         self.planned: Optional[Tuple[float, Command]] = None
         self.is_new = False  # the last state was a new one
+        self.joined: List[StartedActivity] = []  # what our robots do with others, who have begun it in the last state
         self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
         self._name = name
         self._agents = strategy.agents
@@ -64,7 +65,7 @@ class CommandScheduler:
     def on_state(self, state: SystemState, now: float) -> List[StartedActivity]:
         """Take a state, find the next command, and return what our agents have begun."""
         before = self.state
-        self.is_new = False
+        self.is_new, self.joined = False, []
         if before is not None and (older(state, before) or rewinds(state, before)):
             self.counts["old"] += 1
             return []
@@ -75,6 +76,7 @@ class CommandScheduler:
             return []  # the answer to a ping, or a heartbeat
         self.is_new = True
         self.planned, self._patience, self._unanswered = None, None, 0
+        self.joined = self._joined(before, state) if state.status in (*LIVE, WON) else []
         if state.status == WON:  # what won it, if that is done at once
             return [order for order in self._begun(before, state) if order.origin == order.target]
         if state.status not in LIVE:
@@ -131,6 +133,28 @@ class CommandScheduler:
             elif begins or (own and origin == target and self._instant(state, target)):
                 orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))
         return orders
+
+    def _joined(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
+        """Return the collaborative events that others have begun since the state before, with our robots as partners:
+        those that react to the event and are at its place."""
+        orders: List[StartedActivity] = []
+        for robot, events in self._own.reacts_to.items():
+            place = state.locations.get(robot, "")
+            for event, doers in events.items():
+                others = (agent for agent in state.locations if agent != robot)
+                begun = {agent for agent in others if self._begins(before, state, agent, event, place)}
+                by_hand = not state.commanded and state.event == event and begun <= {state.agent} & set(doers)
+                if begun and not by_hand:
+                    orders.append(StartedActivity(robot, event, place, place))
+        return orders
+
+    @staticmethod
+    def _begins(before: Optional[SystemState], state: SystemState, agent: str, event: str, place: str) -> bool:
+        """Return True if the agent has begun this event, at this place, since the state before."""
+        here = state.locations[agent]
+        if here == action(event, place):
+            return before is None or before.locations.get(agent) != here
+        return before is not None and (state.agent, state.event, here) == (agent, event, place)
 
     def _instant(self, state: SystemState, location: str) -> bool:
         """Return True if the last event is a command without duration, not the end of another one."""

@@ -92,7 +92,7 @@ class Controller:
             if scheduler.is_new:  # else the alarm stays as it is
                 self.wake()
             self.learned()
-            for order in orders:
+            for order in [*orders, *scheduler.joined]:
                 self.exegg.exeggute(*order)
             receipt = scheduler.repeated_receipt()
             if receipt:

@@ -83,6 +83,7 @@ class Mission:
         self._shown = self.robots.revision()  # in the newest state
         self._automata = Automata(model, unit)
         self._event = self._agent = ""
+        self._commanded = False
         self._ended: Optional[float] = None
 
     # State ----------------------------------------------------------------------------------------------------------
@@ -96,8 +97,9 @@ class Mission:
         position = self.position(now)
         late, lost = tuple(sorted(self.late)), tuple(sorted(self.lost))
         what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
-        robots = (tuple(sorted(names)) for names in (self.robots.held, self.robots.displaced, self.robots.returning))
-        return SystemState(self.seq, now, position.locations, position.values, position.clocks, *what, *robots)
+        state = SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
+        held, displaced, returning = self.robots.revision()
+        return state._replace(held=held, displaced=displaced, returning=returning, commanded=self._commanded)
 
     @property
     def plan_request(self) -> Optional[PlanRequest]:
@@ -227,6 +229,7 @@ class Mission:
         self._early, self._turns, self._warned = {}, {}, False
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
+        self._commanded = state.commanded
         self._shown = self.robots.revision()
         return [self.state(now), *self._status_changes(now)]
 
@@ -291,9 +294,11 @@ class Mission:
         if self.robots.refuse(moves, self.position(now).values):
             self._reject("held", f"{moves[0].edge.word}: {' and '.join(self.robots.reasons())}")
             return self._status_changes(now)
-        return self._take(moves, now)
+        return self._take(moves, now, commanded=True)
 
-    def _take(self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "") -> List[SystemState]:
+    def _take(
+        self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False
+    ) -> List[SystemState]:
         """Apply the moves, and then internal edges of objectives that are enabled."""
         states: List[SystemState] = []
         while moves:
@@ -308,6 +313,7 @@ class Mission:
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
+            self._commanded, commanded = commanded, False
             self._log("info", f"state {self.seq}: {self._event} by {self._agent}")
             moves = self._evaluate(now, why)
             states.append(self.state(now))
@@ -339,7 +345,7 @@ class Mission:
 
     def _new_state(self, now: float) -> List[SystemState]:
         self.seq, self._shown = self.seq + 1, self.robots.revision()
-        self._event = self._agent = ""
+        self._event, self._agent, self._commanded = "", "", False
         return [self.state(now)]
 
     def _update_status(self, now: float, patience: float) -> None:
@@ -464,7 +470,7 @@ class Mission:
     # Ends -------------------------------------------------------------------------------------------------------------
 
     def _end(self, status: str, reason: str, now: float) -> List[SystemState]:
-        self._event = self._agent = ""
+        self._event, self._agent, self._commanded = "", "", False
         self._conclude(status, reason, now)
         return [self.state(now)]
 

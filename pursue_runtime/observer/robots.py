@@ -82,8 +82,8 @@ class Robots:
         """Return the robots for which the mission holds."""
         return set(self.held) | self.returning
 
-    def revision(self) -> Tuple[object, ...]:
-        """Return a value that each change of this changes."""
+    def revision(self) -> Tuple[Tuple[str, ...], Tuple[str, ...], Tuple[str, ...]]:
+        """Return the robots that are held, displaced and returning, by name."""
         return tuple(sorted(self.held)), tuple(sorted(self.displaced)), tuple(sorted(self.returning))
 
     def _place(self, name: str) -> None:

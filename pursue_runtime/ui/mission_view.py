@@ -12,7 +12,7 @@ from pursue_runtime.model import Edge, Model
 from pursue_runtime.simulator.simulator import ACTING, report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Plans, Strategy
-from pursue_runtime.words import START, Word, format_word
+from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
 ORDER_TIMEOUT = 0.5  # real seconds without a new state after which an order counts as lost
@@ -68,11 +68,18 @@ def reporters(model: Model, ends: bool, settings: Mapping[str, Any]) -> List[str
 
 
 def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Task]:
-    """Return what those of these agents do that are under way, in system order; the end may be reported at any time."""
+    """Return what those of these agents do that are under way, in system order; the end may be reported at any time.
+
+    A robot that is held has the task to resume.
+    """
     found = []
     for automaton in model.of_kind(*ACTING):
         location = state.locations.get(automaton.name, "")
         if automaton.name not in agents:
+            continue
+        if automaton.name in state.held:
+            resume = format_report(RobotReport(automaton.name, RESUME))
+            found.append(Task(automaton.name, automaton.kind, "held, until it is to continue", "Resume", resume))
             continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
         end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
@@ -310,6 +317,6 @@ def read_line(
             return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
         return offer.word, ""
     event = text.partition("@")[0].rpartition(":")[2]
-    if event in words or text.startswith("_") or text == "Finish!":
+    if event in words or event.startswith("_") or text == "Finish!":
         return text, ""
     return text, f"{text} is not a word of this scenario; it was published anyway" if text else ""

@@ -109,7 +109,8 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
 def text_of(state: SystemState) -> str:
     """The text on pursue/system_state, as docs/run_time.md has it."""
     head = f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"
-    facts = {"plan": state.plan, "event": state.event, "agent": state.agent, "lost": ",".join(state.lost)}
+    facts = {"plan": state.plan, "event": state.event, "agent": state.agent}
+    facts.update((name, ",".join(getattr(state, name))) for name in ("lost", "displaced", "returning"))
     head += "".join(f" {name}={value}" for name, value in facts.items() if value) + f" status={state.status}"
     head += f" reason={state.reason}" if state.reason else ""
     lines = [head, *(f"{name}={value}" for name, value in {**state.locations, **state.values}.items()), ""]

@@ -179,6 +179,24 @@ def test_a_goal_without_a_state_is_a_fault() -> None:
     assert kinds(found(made)) == [("order", 1), ("order", 8)]
 
 
+def test_a_robot_that_returns_to_its_place_may_be_sent_there() -> None:
+    made = mission()
+    made.order(made.states[8].stamp + 0.05, "bot1", "b")
+    made.change(made.states[8].seq, displaced=("bot1",), returning=("bot1",))
+    assert kinds(found(made)) == []
+
+
+def test_reports_about_robots_are_listed_with_their_reason() -> None:
+    made = mission()
+    made.say(made.states[5].stamp + 0.01, "bot1:_held_ on its way to b: preempted", "controller_bot1")
+    made.say(made.states[5].stamp + 0.02, "bot1:_resume_", "")
+    said = [(f.level, f.text) for f in found(made).findings if f.kind == "robot"]
+    assert said == [
+        ("world", "controller_bot1 published bot1:_held_ on its way to b: preempted"),
+        ("note", "an unknown node published bot1:_resume_"),
+    ]
+
+
 def test_the_recorders_clock_may_be_a_little_behind_the_observers() -> None:
     made = mission()
     orders = ("move_base_simple/goal", "pursue/actions")

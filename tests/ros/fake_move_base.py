@@ -17,6 +17,7 @@ before the action server was up), `bot1 cancel`, `bot1 action e 1.00 2.00` (with
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import threading
@@ -242,7 +243,7 @@ class FakeMoveBase:
     # The world --------------------------------------------------------------------------------------------------------
 
     def step(self, _: object) -> None:
-        with self.lock:
+        with self.lock, contextlib.suppress(rospy.ROSException):  # the node is going down
             arrived = self.body.move()
             if arrived:
                 self.say(f"stands {self.body.at[0]:.2f} {self.body.at[1]:.2f}")

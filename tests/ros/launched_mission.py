@@ -28,6 +28,9 @@ LOGGING_DELAY = 15.0
 INTERRUPTED = ("KeyboardInterrupt", "rospy.exceptions.ROSInitException", "rospy.exceptions.ROSInterruptException")
 """What a node dies of that is interrupted while it starts: as those do that were started again at the end."""
 
+PLAYED: Mapping[str, object] = {"simulate": False, "goals": "simple", "ends": "words"}
+"""The launch arguments of a mission whose robots are played by the test, which reports their ends."""
+
 Entry = Dict[str, Any]
 
 

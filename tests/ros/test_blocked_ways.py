@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from launched_mission import ENDED, LaunchedMission, State, launched
+from launched_mission import ENDED, PLAYED, LaunchedMission, State, launched
 from ros_world import Ros, generated, make
 
 from tests.waiting import PATIENCE
@@ -84,7 +84,7 @@ def drive(run: LaunchedMission, until_location: str = "") -> State:
 
 
 def test_a_blocked_way_is_avoided_by_the_new_plan(ros: Ros, ring: Path, tmp_path: Path) -> None:
-    with launched(ros, ring, tmp_path, simulate=False, time_unit=0.5, lost_after=LATE, planner=PLANNER) as run:
+    with launched(ros, ring, tmp_path, **PLAYED, time_unit=0.5, lost_after=LATE, planner=PLANNER) as run:
         drive(run, "going_a_to_b")
         run.publish("going_c_to_b:_blocked_")
         hold = run.until(lambda: next((state for state in run.states() if state.status == "holding"), None))
@@ -101,8 +101,7 @@ def test_a_robot_that_finds_its_way_blocked_turns_round_and_takes_the_other_way(
     ros: Ros, alone: Path, tmp_path: Path
 ) -> None:
     with launched(
-        ros, alone, tmp_path, ["bot1"], simulate=False, goals="simple", ends="words", time_unit=0.5, lost_after=LATE,
-        planner=PLANNER,
+        ros, alone, tmp_path, ["bot1"], **PLAYED, time_unit=0.5, lost_after=LATE, planner=PLANNER
     ) as run:
         drive(run, "going_b_to_c")
         run.until(lambda: len(run.orders()) == 2)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Callable, Dict, List, NamedTuple, Tuple
 
 import pytest
-from launched_mission import EVENTS, LaunchedMission, launched
+from launched_mission import EVENTS, PLAYED, LaunchedMission, launched
 from ros_world import Ros, generated, make
 
 from pursue_runtime.observer.records import read_records
@@ -232,7 +232,7 @@ def test_early_and_late_robots_are_followed_failed_ones_replaced_and_where_nobod
     ros: Ros, either: Path, tmp_path: Path
 ) -> None:
     """The test plays the robots: it reports what becomes of their orders, each while the model has time for it."""
-    with launched(ros, either, tmp_path, simulate=False, use_sim_time=True, speed=2, lost_after=FOR_EVER) as run:
+    with launched(ros, either, tmp_path, **PLAYED, use_sim_time=True, speed=2, lost_after=FOR_EVER) as run:
         run.until_step("bot1_b2a")
         run.publish("bot1_going_b_to_a2a")
         assert run.until_step("bot1_going_b_to_a2a")["clocks"]["Cbot2"] < 9, "the model says 10 and more"
@@ -267,7 +267,7 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
     request, leave = tmp_path / "request", tmp_path / "leave"
     planner = f"python3 {FAKE_PLANNER} {scenario / 'src'} {request} {leave}"
     with launched(
-        ros, scenario, tmp_path, simulate=False, use_sim_time=True, speed=3, lost_after=8, planner=planner,
+        ros, scenario, tmp_path, **PLAYED, use_sim_time=True, speed=3, lost_after=8, planner=planner,
         planning_limit=1,
     ) as run:
         run.until_step("bot2_c2a")

@@ -146,7 +146,7 @@ def test_action_goals_a_failure_on_the_way_and_results_that_come_twice(
 
 
 def test_simple_goals_an_early_end_and_a_result_of_long_ago(ros: Ros, workspace: Path, tmp_path: Path) -> None:
-    arguments = "ends:=result on_uncovered:=warn"
+    arguments = "goals:=simple ends:=result on_uncovered:=warn"
     robots, said = played(ros, workspace, tmp_path, arguments, bot1={"travel": 0.05}, bot2={"plays": ["stale"]})
     well(said)
     early = "bot1_going_c_to_b2b is outside the model's time window"
@@ -155,7 +155,8 @@ def test_simple_goals_an_early_end_and_a_result_of_long_ago(ros: Ros, workspace:
 
 
 def test_ends_are_seen_by_pose_and_by_tf(ros: Ros, workspace: Path, tmp_path: Path) -> None:
-    (tmp_path / "own.yaml").write_text("end_settle: 0.2\nbot1: {ends: pose}\nbot2: {ends: tf, goals: action}\n")
+    own = "end_settle: 0.2\nbot1: {ends: pose, goals: simple}\nbot2: {ends: tf, goals: action}\n"
+    (tmp_path / "own.yaml").write_text(own)
     slower = {"travel": 9.2 * UNIT}  # a robot is within the tolerance some moments before its goal
     robots, said = played(ros, workspace, tmp_path, f"robots:={tmp_path}/own.yaml", bot1=slower, bot2=slower)
     well(said)
@@ -170,7 +171,7 @@ def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_missio
     arguments = f"ends:=result on_stop:=cancel planner:=off robots:={tmp_path}/own.yaml"
     bot1, bot2 = {"plays": ["abort"]}, {"plays": ["never"]}
     with playing(ros, workspace, tmp_path, arguments, bot1=bot1, bot2=bot2) as (robots, log, mission):
-        failed = "reports bot1:_failed_"
+        failed = "reports bot1:_blocked_ on its way to b: aborted: Failed to find a valid control."
         wait_for(lambda: failed in log.read_text() and "goal a" in robots.heard("bot2"), log, "bot1 has not failed")
         wait_for(lambda: "cancel" in robots.heard("bot2"), log, "bot2 is not called back")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
@@ -210,7 +211,7 @@ def test_a_simple_goal_that_a_restarted_move_base_has_lost_is_sent_again(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
     bot1 = {"travel": 6.0, "boot": 1.5}  # the goal comes as soon as move_base connects: before its action server is up
-    with playing(ros, workspace, tmp_path, "ends:=result", bot1=bot1) as (robots, log, mission):
+    with playing(ros, workspace, tmp_path, "goals:=simple ends:=result", bot1=bot1) as (robots, log, mission):
         wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
         robots.order("bot1", "restart 0.3")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")

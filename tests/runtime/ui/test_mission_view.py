@@ -316,6 +316,15 @@ def test_without_a_simulator_everybody_s_ends_are_reported_by_a_person() -> None
     assert done_hints(tasks(crew, busy, ["bot"])) == []
 
 
+def test_a_robot_that_is_held_has_the_task_to_resume() -> None:
+    crew = Model(model_data(mover("bot", "robot", 9), worker("cook", "human")))
+    busy = state(crew, 3, 100.0, {}, bot="going_a_to_b", cook="doing_screw_in_s")._replace(held=("bot",))
+    given = tasks(crew, busy, reporters(crew, True, {}))
+    assert [(task.agent, task.label, task.word) for task in given][:1] == [("bot", "Resume", "bot:_resume_")]
+    assert read_line("done bot", [], set(), given) == ("bot:_resume_", "")
+    assert read_line("bot:_resume_", [], set(), given) == ("bot:_resume_", "")
+
+
 def test_an_end_that_a_controller_decides_is_reported_by_nobody() -> None:
     crew = Model(model_data(mover("bot", "robot", 9), mover("visitor", "agent", 9), worker("cook", "human")))
     assert reporters(crew, True, {"reports": ["visitor", "cook"]}) == ["visitor", "cook"]
