@@ -27,9 +27,9 @@ def check(
 ) -> None:
     """Tell everything that is wrong with scenarios, with line and column.
 
-    Findings go to stdout; the exit status is 3 where there are errors.
+    Findings go to stdout; the exit status is 3 where there are errors, 2 where a file cannot be read.
     """
-    from pursue_gen.solving.inputs import findings_in
+    from pursue_gen.solving.inputs import exit_status, findings_in
 
     findings = [finding for file in files for finding in findings_in(file)]
     if floor is not None:
@@ -42,7 +42,7 @@ def check(
     info(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
     if errors:
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
-        raise typer.Exit(3)
+        raise typer.Exit(exit_status(findings))
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
 

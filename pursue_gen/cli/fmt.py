@@ -20,7 +20,7 @@ def fmt(
 ) -> None:
     """Lay out scenarios in the one way: blanks and line breaks change, words, comments and their order never.
 
-    A file with syntax errors is left as it is, and the exit status is 3.
+    A file with syntax errors is left as it is, and the exit status is 3; where a file cannot be read, it is 2.
     """
     from pursue_gen.language.formatter_files import Layout, layout_of, layout_of_bytes, replace_text
 
@@ -52,6 +52,6 @@ def fmt(
         info(f"{counted(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} unchanged")
     if problems:
         findings: List[Diagnostic] = [finding for problem in problems for finding in problem.diagnostics]
-        raise PursueError(findings, problems[0].exit_status)
+        raise PursueError(findings, min(problem.exit_status for problem in problems))
     if check and changed:
         raise typer.Exit(1)

@@ -53,7 +53,7 @@ def layout_of_bytes(data: bytes, file: str) -> Layout:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("PML002", message, hint="a scenario is plain text in UTF-8")]) from None
+        raise PursueError([error("PML002", message, hint="a scenario is plain text in UTF-8")], 2) from None
     return _layout(data, text, file)
 
 

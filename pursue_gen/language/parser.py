@@ -61,10 +61,10 @@ def read_text(file: str) -> str:
         if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
             hint = "it is text in UTF-16: save it as UTF-8"
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("PML002", message, hint=hint)]) from None
+        raise PursueError([error("PML002", message, hint=hint)], exit_status=2) from None
     if "\0" in text:
         message = f"{file} is not plain text: it holds bytes that are 0 (the first is byte {content.index(0) + 1})"
-        raise PursueError([error("PML002", message, hint=hint)])
+        raise PursueError([error("PML002", message, hint=hint)], exit_status=2)
     return text
 
 

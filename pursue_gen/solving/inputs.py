@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Sequence, Tuple
+from typing import Iterable, Sequence, Tuple
 
 from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
@@ -16,6 +16,7 @@ from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
 
 _NETWORK_SUFFIX = ".xml"
+_UNREADABLE = ("PML001", "PML002")
 
 
 def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
@@ -28,6 +29,12 @@ def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
     if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
         return findings
     return in_order((*findings, *translation_notes(reading.scenario)))
+
+
+def exit_status(findings: Iterable[Diagnostic]) -> int:
+    """The status with which a command ends that found this: 0 without errors, 2 where a file cannot be read, else 3."""
+    errors = {finding.code for finding in findings if finding.severity is Severity.ERROR}
+    return 2 if errors.intersection(_UNREADABLE) else 3 if errors else 0
 
 
 def are_scenario(files: Sequence[Path]) -> bool:
