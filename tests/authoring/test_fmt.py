@@ -69,7 +69,7 @@ def test_stdin_with_errors_gives_no_text() -> None:
     done = pursue("fmt", "-", stdin=BROKEN.encode())
     assert (done.status, done.out) == (3, "")
     assert "<stdin>:2:5: error PML010" in done.err
-    assert pursue("fmt", "-", stdin=b"\xff").status == 3
+    assert pursue("fmt", "-", stdin=b"\xff").status == 2
 
 
 def test_stdin_and_files_do_not_mix(file: Path) -> None:
