@@ -6,11 +6,13 @@ from pathlib import Path
 
 
 def _use_own_runtime() -> None:
-    """Import the run time that was installed with this package.
+    """Import the run time that was installed with this package: beside it, or by catkin within it.
 
     A sourced workspace puts its own copy, which may be older, on PYTHONPATH.
     """
-    folder = Path(__file__).resolve().parent.parent / "pursue_runtime"
+    package = Path(__file__).resolve().parent
+    within = package / "_runtime" / "pursue_runtime"
+    folder = within if within.is_dir() else package.parent / "pursue_runtime"
     imported = sys.modules.get("pursue_runtime")
     if imported is not None and Path(imported.__file__ or "").resolve().parent == folder:
         return

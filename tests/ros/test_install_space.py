@@ -85,10 +85,29 @@ def test_the_install_space_holds_what_the_packages_hold(installed: Path) -> None
 
     def files(folder: Path) -> Set[str]:
         found = {path.relative_to(folder) for path in folder.rglob("*") if path.is_file()}
-        left_out = ("__pycache__", "_templates", "_diagnostics", "_scenarios")
+        left_out = ("__pycache__", "_templates", "_diagnostics", "_scenarios", "_runtime")
         return {path.as_posix() for path in found if not set(path.parts) & set(left_out) and path.suffix not in MADE_OF}
 
     site = next(installed.glob("lib/python3*/dist-packages"))
-    for name in ("pursue_gen", "pursue_runtime"):
-        assert files(site / name) == files(ROOT / name), name
-    assert files(site / "pursue_gen") and not list(site.rglob("*.hpp"))
+    assert files(site / "pursue_gen") == files(ROOT / "pursue_gen") and not list(site.rglob("*.hpp"))
+    assert files(site / "pursue_gen" / "_runtime" / "pursue_runtime") == files(ROOT / "pursue_runtime")
+    assert not (site / "pursue_runtime").exists(), "that is the place of a workspace's run time"
+
+
+def test_it_shares_an_install_space_with_a_workspace_of_another_version(
+    ros: Ros, installed: Path, tmp_path: Path
+) -> None:
+    """The workspace's run time is for its nodes, the program goes on with its own."""
+    older = next(installed.glob("lib/python3*/dist-packages")) / "pursue_runtime"
+    older.mkdir()
+    try:
+        (older / "__init__.py").write_text('__version__ = "0.0.1"\n')
+        done = rosrun(ros, installed, f"ws {SCENARIO} -o ws", tmp_path)
+        imported = "import pursue_runtime; print(pursue_runtime.__version__)"
+        nodes = ros.run(f"source {installed}/setup.bash; python3 -c '{imported}'", tmp_path, **SYSTEM)
+    finally:
+        shutil.rmtree(str(older))
+    assert done.returncode == 0, done.stdout
+    written = tmp_path / "ws" / "src" / "pursue_runtime" / "src" / "pursue_runtime"
+    assert (written / "data.py").read_bytes() == (ROOT / "pursue_runtime" / "data.py").read_bytes()
+    assert nodes.stdout.split() == ["0.0.1"]
