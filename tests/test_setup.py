@@ -27,7 +27,8 @@ def source(folder: Path) -> Path:
     for name in ("pursue_gen", "pursue_runtime", "templates", "bin", "scenarios", "docs"):
         if (ROOT / name).is_dir():
             shutil.copytree(str(ROOT / name), str(folder / name), ignore=built)
-    for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "package.xml", "CMakeLists.txt"):
+    texts = ("README.md", "CONTRIBUTING.md", "LICENSE")
+    for name in (*texts, "pyproject.toml", "setup.py", "MANIFEST.in", "package.xml", "CMakeLists.txt"):
         shutil.copy(str(ROOT / name), str(folder / name))
     shutil.copy(str(ROOT / "run"), str(folder / "run"))
     shutil.copytree(str(ROOT / ".ci"), str(folder / ".ci"))
@@ -70,7 +71,7 @@ def test_the_source_distribution_holds_what_the_project_is_built_from(tmp_path: 
     (archive,) = (tmp_path / "dist").glob("*.tar.gz")
     with tarfile.open(str(archive)) as packed:
         names = {name.partition("/")[2] for name in packed.getnames()}
-    assert not {*built_from, "setup.py", "pyproject.toml", "README.md", "LICENSE"} - names
+    assert not {*built_from, "setup.py", "pyproject.toml", "README.md", "CONTRIBUTING.md", "LICENSE"} - names
 
 
 @pytest.fixture(scope="module")
