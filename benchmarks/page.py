@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from typing import Any, Callable, Dict, Mapping, Optional
 
 from benchmarks import tables
@@ -30,9 +31,15 @@ def filled(
     def part(match: "re.Match[str]") -> str:
         if match.group(2) not in known:
             raise ValueError(f"the page asks for '{match.group(2)}'; there is {', '.join(known)}")
-        return f"{match.group(1)}\n{known[match.group(2)](results)}\n{match.group(4)}"
+        return f"{match.group(1)}\n{_wrapped(known[match.group(2)](results))}\n{match.group(4)}"
 
     return _PART.sub(part, page)
+
+
+def _wrapped(text: str) -> str:
+    """The text with its sentences in lines of at most 120 columns; tables and pictures stay as they are."""
+    wrapper = textwrap.TextWrapper(120, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(line if line.startswith(("|", "!")) else wrapper.fill(line) for line in text.split("\n"))
 
 
 def _where(results: Results) -> str:
