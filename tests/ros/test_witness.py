@@ -140,7 +140,7 @@ def test_a_node_that_knows_more_stops_an_observer_that_has_lost_the_mission(
         reason = run.now()["reason"]
     assert status == "stopped", run.output()
     assert "controller_bot1 knows of a state" in reason and int(reason.split(" state ")[1].split()[0]) >= known.seq
-    assert len(run.orders()) == orders and "refused state 0" in run.output()
+    assert len(run.orders()) == orders
 
 
 def test_states_that_no_observer_publishes_change_nothing(ros: Ros, scenario: Path, tmp_path: Path) -> None:
