@@ -17,7 +17,7 @@ from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemSta
 from pursue_runtime.words import FINISH, PLANNED, START, STOP
 
 FORMATS = (1, 2)
-CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "adopted")
+CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")
 END = "told"
 """Closes a journal: the end of the mission was published."""
 

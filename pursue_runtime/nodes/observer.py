@@ -167,8 +167,7 @@ class Observer:
                 journal.adopt(found.adopt, rospy.get_time())
             except DataError as problem:
                 why = f"the observer was restarted, and cannot go on from state {found.adopt.seq}: {problem}"
-        if why:
-            journal.call("stop", why, now=self.now())
+        journal.call("stop" if why else "restarted", *([why] if why else []), now=self.now())
 
     def await_clock(self) -> None:
         """Wait for simulated time where a mission goes on: it is 0 until /clock was received."""

@@ -29,6 +29,7 @@ CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "unplanned": Mission.on_no_plan,
     "searching": Mission.on_long_search,
     "stop": Mission.stop,
+    "restarted": Mission.on_restart,
     ADOPTED: Mission.adopt,
 }
 """Mission methods by the names that journals have for them: those of older workspaces are still read."""
@@ -108,8 +109,14 @@ class Journal:
         return states
 
     def end(self, now: float) -> None:
-        """Write that the end of the mission was published: the next mission begins a journal of its own."""
+        """Write that the end of the mission was published: the next mission begins a journal of its own.
+
+        A journal that was not trusted, or has failed, is set aside.
+        """
         with self._lock:
+            if self._file is None and self._path:
+                self.damage, self._lost = "", False
+                self._begin([])
             if self._file is not None:
                 self._write({"at": now, "call": END}, sync=True)
             elif self._path:

@@ -233,6 +233,12 @@ class Mission:
         self._shown = self.robots.revision()
         return [self.state(now), *self._status_changes(now)]
 
+    def on_restart(self, now: float) -> List[SystemState]:
+        """Take that the observer was restarted: what it has done last may not be known."""
+        if self.status in LIVE:
+            self._planning.renumber()
+        return []
+
     def _start(self, now: float) -> List[SystemState]:
         if self.status != WAITING:
             self._log("warn", f"{START} while the mission is {self.status}: ignored")

@@ -16,6 +16,9 @@ MIN_LEAD_TIME = 1.0
 ATTEMPTS = 5
 """Plans in a row that may arrive too late to be put in force."""
 
+UNKNOWN = 1000
+"""More requests than a mission can have made without a trace of them in the journal."""
+
 Cover = StateTable[Tuple[Zone, ...]]
 """The zones of each discrete state in which a plan has a decision."""
 
@@ -111,7 +114,15 @@ class Planning:
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
         self.reset()
+        self.renumber()
         self.excused &= absent
+
+    def renumber(self) -> None:
+        """Give requests new numbers from here on: a controller may have a plan with the next one, of a request that was
+        lost."""
+        self._number += UNKNOWN
+        if self.request is not None:
+            self.request = self.request._replace(number=self._number)
 
     def reset(self) -> None:
         """Drop the request and the proposal: no other plan is needed."""

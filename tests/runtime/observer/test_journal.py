@@ -95,6 +95,26 @@ def test_a_new_observer_knows_the_ways_that_are_blocked(path: Path) -> None:
     assert again.blocked == {("a", "b")} and again.plan_request == before.mission.plan_request
 
 
+@pytest.mark.parametrize("adopts", [False, True])
+def test_no_plan_of_a_lost_request_is_taken_for_one_that_is_requested_after_a_restart(path: Path, adopts: bool) -> None:
+    """A controller still has the answer to request 1, and its receipt comes again."""
+    before = Life(path)
+    states = before.play(*PLAY[:4])
+    assert before.mission.plan_request.number == 1
+    life = Life(path)
+    life.journal.adopt(states[-1], 1004.0) if adopts else life.journal.call("restarted", now=1004.0)
+    again = Life(path)
+    again.journal.call("restarted", now=1005.0)
+    number = again.mission.plan_request.number
+    assert number > life.mission.plan_request.number > 1
+    again.play(("planned", 1, answer(EVERYWHERE)), ("hear", "one:_plan_@1"), first=6)
+    assert again.mission.plan == 0
+    again.play(("planned", number, answer(EVERYWHERE)), ("hear", "one:_plan_@1"), first=8)
+    assert again.mission.plan == 0
+    again.play(("hear", f"one:_plan_@{number}"), first=10)
+    assert again.mission.plan == Life(path).mission.plan == number
+
+
 def test_a_new_observer_knows_when_something_was_last_written(path: Path) -> None:
     assert Life(path).journal.last == 0.0
     before = Life(path)
@@ -288,7 +308,8 @@ def test_what_was_not_trusted_is_set_aside_when_its_end_was_published(path: Path
     life.journal.call("stop", "it is damaged", now=1010.0)
     assert life.mission.status == "stopped" and path.read_bytes() == b"rubbish\n"
     life.journal.end(1011.0)
-    assert Life(path).mission.status == "waiting"
+    after = Life(path)
+    assert after.mission.status == "waiting" and not after.journal.damage and after.journal.after == 1011.0
 
 
 # What cannot be written, and what the disk has ------------------------------------------------------------------------
