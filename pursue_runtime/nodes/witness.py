@@ -20,7 +20,7 @@ from pursue_runtime.words import SEEN
 PATIENCE = 5.0
 """Seconds of real time for which an observer that starts waits for the nodes that publish there."""
 
-AGAIN = 0.5
+AGAIN = 0.1
 """Seconds of real time between two looks at which of them are still there."""
 
 NOTHING = SystemState(0, 0.0, {}, {}, {}, status=WAITING)

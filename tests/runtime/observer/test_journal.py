@@ -22,7 +22,7 @@ from pursue_runtime.observer import records
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.records import format_record, read_records
-from pursue_runtime.state import SystemState, format_state
+from pursue_runtime.state import LIVE, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from tests.runtime.observer.test_holding import COVER, EVERYWHERE, answer
 from tests.runtime.observer.test_mission import CHASE
@@ -451,6 +451,23 @@ def test_a_mission_goes_on_from_what_other_nodes_have_seen(path: Path, known: in
     again = Life(path)
     assert again.state() == life.state() == other.state() and not again.journal.damage
     assert not os.path.exists(f"{path}.failed")
+
+
+@pytest.mark.parametrize("death", range(1, len(PLAY) + 1))
+def test_wherever_a_mission_was_when_its_journal_was_lost_it_is_there_again(path: Path, death: int) -> None:
+    """The journal has only what it must have: the plan in force."""
+    state, other = seen(path, *PLAY[:death])
+    in_force = next(number for number, call in enumerate(PLAY, start=1) if "_plan_" in str(call))
+    life = Life(path)
+    life.play(*PLAY[:in_force if state.plan else 0])
+    os.rename(path, f"{path}.failed")
+    life = Life(path)
+    published = life.journal.adopt(state, state.stamp)
+    assert life.mission.position(2000.0) == other.mission.position(2000.0)
+    assert [each.seq for each in published] in ([state.seq], [state.seq, state.seq + 1])
+    assert published[0]._replace(late=()) == state._replace(late=())
+    assert (life.mission.in_force, life.mission.status in LIVE) == (other.mission.in_force, state.status in LIVE)
+    assert Life(path).state() == life.state()
 
 
 def test_where_the_journal_is_whole_a_later_state_is_added_to_it(path: Path) -> None:
