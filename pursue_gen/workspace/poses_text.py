@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, List, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
@@ -18,22 +18,24 @@ def poses_text(scenario: Scenario, placing: Placing, robots: Sequence[str] = ())
     """
     places, spots = placing.places, placing.spots
     head = [_title(scenario, robots)]
+    missing = _computed(scenario)
+    alone = _computed(scenario, robots[0]) if len(robots) == 1 else missing
     if placing.computed:
-        missing = [poi.name for poi in scenario.pois if poi.pose is None]
         head.append(f"Computed from the distances, not measured: {', '.join(missing)}. Put your map's poses here.")
     shared = any(len(present) > 1 for present in robots_at(scenario).values())
     if robots and shared and placing.distance > 0:
         head.append(f"Robots that may be at one place stand {placing.distance:g} m apart (--spot-distance).")
-    head.append("[x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion")
+    free = "; 0, 0, 0, 0: any orientation" if placing.computed else ""
+    head.append(f"[x, y, z, qx, qy, qz, qw]: metres, and a unit quaternion{free}")
     own: Dict[str, Table] = {}
     if len(robots) == 1:
         places = spots[robots[0]]
     else:
         differ = {robot: {name: p for name, p in spots[robot].items() if p != places[name]} for robot in robots}
         own = {robot: table for robot, table in differ.items() if table}
-    data: Dict[str, Any] = {"format": 2 if own else 1, "computed": placing.computed, "poses": _lines(places)}
+    data: Dict[str, Any] = {"format": 2 if own else 1, "computed": placing.computed, "poses": _lines(places, alone)}
     if own:
-        data["robots"] = {robot: _lines(table) for robot, table in own.items()}
+        data["robots"] = {robot: _lines(table, _computed(scenario, robot)) for robot, table in own.items()}
     return yaml_text(data, head).encode()
 
 
@@ -44,7 +46,19 @@ def _title(scenario: Scenario, robots: Sequence[str]) -> str:
     return f"{where}, in frame map, written by pursue-gen {__version__}."
 
 
-def _lines(table: Table) -> Dict[str, Any]:
-    return {
-        name: inline([float(number) for number in (p.x, p.y, p.z, p.qx, p.qy, p.qz, p.qw)]) for name, p in table.items()
-    }
+def _computed(scenario: Scenario, robot: str = "") -> List[str]:
+    """The places without a pose, also without one for the robot."""
+    return [
+        poi.name
+        for poi in scenario.pois
+        if poi.pose is None and robot not in {spot.robot.name for spot in poi.spots}
+    ]
+
+
+def _lines(table: Table, computed: Sequence[str]) -> Dict[str, Any]:
+    """A line for each place; a computed pose demands no orientation."""
+    lines = {}
+    for name, p in table.items():
+        orientation = (0.0, 0.0, 0.0, 0.0) if name in computed else (p.qx, p.qy, p.qz, p.qw)
+        lines[name] = inline([float(number) for number in (p.x, p.y, p.z, *orientation)])
+    return lines

@@ -97,6 +97,11 @@ class Navigation:
         return self._goal.current.name if self._goal.current else ""
 
     @property
+    def position(self) -> Optional[Position]:
+        """Return the last position of the robot."""
+        return self._at.position
+
+    @property
     def is_open(self) -> bool:
         """Return True while the robot may get goals and actions."""
         return (self._view.running or self._view.returning) and not self._view.held

@@ -52,6 +52,7 @@ class Exeggutor:
             self._call_back()
             for link in self._links.values():
                 link.keep("", False, "")
+            positions = {name: robot.position for name, robot in self._robots.items()}
             self._robots, self._status = {}, RUNNING
             self._poses = poses
             self._places = {robot: {poi: place_of(poi, pose) for poi, pose in poses[robot].items()} for robot in poses}
@@ -65,6 +66,9 @@ class Exeggutor:
                     inputs = (partial(take, robot) for take in (self._result, self._statuses, self._place))
                     self._links[robot] = RobotLink(robot, settings[robot], self._ending, *inputs)
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
+                position = positions.get(robot)
+                if position is not None:  # amcl does not publish it again while the robot stands
+                    self._robots[robot].on_position(position, rospy.get_time())
 
     @staticmethod
     def _log(level: str, text: str) -> None:

@@ -2,10 +2,11 @@
 """Robots as move_base and amcl show them: goals of both kinds, status, feedback, results, positions; and their faults.
 
 Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
-action takes), boot (seconds from the start of move_base until its action server is up), recovery (seconds until a robot
-that is stuck gives up), plays (what becomes of its first goal, of its second …; the last one of all that follow):
-succeed, abort (at once), reject (at once), never, stuck (it gives up after the recovery), twice (the result comes
-twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
+action takes; negative: the robot does not report its end), boot (seconds from the start of move_base until its action
+server is up), recovery (seconds until a robot that is stuck gives up), plays (what becomes of its first goal, of its
+second …; the last one of all that follow): succeed, abort (at once), reject (at once), never, stuck (it gives up after
+the recovery), twice (the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks
+the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed and
 started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`.
@@ -68,6 +69,13 @@ class Body:
     def go(self, target: Tuple[float, float, float], travel: float) -> None:
         """Set out."""
         self.way = (rospy.get_time(), travel, self.at, target)
+
+    def put(self, at: Tuple[float, float, float]) -> None:
+        """Be carried there; a robot on its way goes on from there."""
+        self.at = at
+        if self.way is not None:
+            _, travel, _, target = self.way
+            self.go(target, travel)
 
     def move(self) -> bool:
         """Move on; return True on arrival."""
@@ -263,7 +271,8 @@ class FakeMoveBase:
         x, y, _ = self.body.at
         self.say(f"action {message.data} {x:.2f} {y:.2f}")
         done = String(f"{message.data}DONE")
-        rospy.Timer(rospy.Duration(self.acts), lambda _: self.words.publish(done), oneshot=True)
+        if self.acts >= 0.0:
+            rospy.Timer(rospy.Duration(self.acts), lambda _: self.words.publish(done), oneshot=True)
 
     def on_order(self, message: String) -> None:
         what, *rest = message.data.split()
@@ -271,7 +280,7 @@ class FakeMoveBase:
         with self.lock:
             if what == "put":
                 x, y, yaw = map(float, rest)
-                self.body.at, self.body.way = (x, y, yaw), None
+                self.body.put((x, y, yaw))
             elif what == "play":
                 self.plays = rest
             elif what == "travel":

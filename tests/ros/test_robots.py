@@ -3,134 +3,21 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import re
 import time
-from collections import Counter
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Tuple
+from typing import Any
 
 import pytest
-import yaml
-from ros_world import Ros, end, generated, make
-
-from tests.waiting import PATIENCE
+from fake_robots import UNIT, Robots, played, playing, robots_workspace, wait_for, well
+from ros_world import Ros, end
 
 pytestmark = pytest.mark.ros
-
-FAKE = Path(__file__).resolve().parent / "fake_move_base.py"
-UNIT = 0.2
-"""Seconds per time unit: a movement takes 1.8 to 2 s, bot1_inb 0.6 to 0.8 s, bot2_ina 1.2 to 1.4 s."""
-
-SLACK = 100
-"""Time units by which the robots may be late in their model: they move in real time, and a machine may stand still."""
-
-TOLERANCE = 0.45
-"""Metres from a place at which a robot is there: ~end_tolerance, and what it may move before amcl publishes again."""
-
-LAUNCH = f"exec roslaunch scenario_1_bringup mission.launch simulate:=false time_unit:={UNIT} tolerance:=0.5"
 
 
 @pytest.fixture(scope="module")
 def workspace(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
-    found = ros.run(f"python3 -c 'import {wanted}'", ros.home)
-    if found.returncode:
-        pytest.skip(f"no messages of move_base here: {found.stdout.strip().splitlines()[-1]}")
-    slack = {"bot1": SLACK, "bot2": SLACK}
-    return make(ros, generated("thesis/scenario_1", tmp_path_factory.mktemp("robots") / "ws", slack=slack))
-
-
-class Robots:
-    """Two fake robots at the initial point of the scenario, and what they have heard."""
-
-    def __init__(self, ros: Ros, workspace: Path, logs: Path, there: Dict[str, str], **more: Dict[str, Any]) -> None:
-        files = {bot: workspace / f"src/controller_{bot}/config/poses.yaml" for bot in ("bot1", "bot2")}
-        poses = {bot: yaml.safe_load(file.read_text())["poses"] for bot, file in files.items()}
-        usual: Dict[str, Dict[str, Any]] = {"bot1": {"acts": 3.5 * UNIT}, "bot2": {"acts": 6.5 * UNIT}}
-        robots = {
-            name: {"start": poses[name]["c"][:2], "travel": 9.5 * UNIT, **settings, **more.get(name, {})}
-            for name, settings in usual.items()
-        }
-        self.log = logs / "robots"
-        self.poses = [(poi, x, y) for own in poses.values() for poi, (x, y, *_) in own.items()]
-        self._ros, self._workspace, self._there = ros, workspace, there
-        self.goals = {f"{x:.2f} {y:.2f}": poi for poi, x, y in self.poses}
-        (logs / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
-        ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, **there)
-        self.process = ros.start(f"exec python3 {FAKE}", workspace, self.log, **there)
-
-    def heard(self, robot: str) -> List[str]:
-        """What this robot has heard, goals by their names."""
-        told = re.findall(rf"^{robot} (goal|lost|cancel|action) ?(.*)$", self.log.read_text(), re.MULTILINE)
-        return [f"{what} {self.goals.get(detail, detail.split(' ')[0])}".strip() for what, detail in told]
-
-    def publish(self, topic: str, kind: str, message: str) -> None:
-        """Publishes it, as a person does, until a robot or a node has it."""
-        command = f"source devel/setup.bash; rostopic pub --once {topic} {kind} \"{message}\""
-        done = self._ros.run(command, self._workspace, **self._there)
-        assert done.returncode == 0, done.stdout
-
-    def order(self, robot: str, what: str) -> None:
-        """Has the robot do this, for the test."""
-        self.publish(f"{robot}/test", "std_msgs/String", f"'{what}'")
-        found = re.compile(rf"^{robot} test {re.escape(what)}$", re.MULTILINE)
-        wait_for(lambda: bool(found.search(self.log.read_text())), self.log, f"{robot} does not {what}")
-
-    def at(self, robot: str) -> Tuple[float, float]:
-        """Where it stopped last, by its own account."""
-        told = re.findall(rf"^{robot} stands (\S+) (\S+)$", self.log.read_text(), re.MULTILINE)
-        return tuple(map(float, told[-1])) if told else (math.inf, math.inf)  # type: ignore[return-value]
-
-    def actions(self, robot: str) -> List[str]:
-        """The actions that it was told, and at which place it was then (by the tolerance of a position)."""
-        told = re.findall(rf"^{robot} action (\w+) (\S+) (\S+)$", self.log.read_text(), re.MULTILINE)
-        return [f"{action} at {self.place(float(x), float(y))}" for action, x, y in told]
-
-    def place(self, x: float, y: float) -> str:
-        """The place within the tolerance of this position."""
-        near = [poi for poi, px, py in self.poses if math.hypot(px - x, py - y) <= TOLERANCE]
-        return near[0] if near else f"{x} {y}"
-
-
-@contextlib.contextmanager
-def playing(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dict[str, Any]) -> Iterator[Any]:
-    """A mission with fake robots: (robots, what roslaunch says, its process)."""
-    with ros.master() as there:
-        fakes = Robots(ros, workspace, logs, there, **robots)
-        mission = ros.start(f"source devel/setup.bash; {LAUNCH} {arguments}", workspace, logs / "launch", **there)
-        try:
-            yield fakes, logs / "launch", mission
-        finally:
-            end(mission)
-            end(fakes.process)
-
-
-def played(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dict[str, Any]) -> Any:
-    """Plays it to its end: (robots, what was said)."""
-    with playing(ros, workspace, logs, arguments, **robots) as (fakes, log, mission):
-        deadline = time.monotonic() + 2 * PATIENCE
-        while mission.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.1)
-    return fakes, log.read_text()
-
-
-def wait_for(condition: Callable[[], bool], log: Path, what: str) -> None:
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, f"{what}; it was said:\n{log.read_text()[-8000:]}"
-        time.sleep(0.05)
-
-
-def well(said: str) -> None:
-    """The goal was reached, each end counted once, and none was told where it cannot be; but one that is not answered
-    for half a second, on a busy machine, is told again."""
-    assert "The goal is reached" in said, said[-8000:]
-    assert not re.search(r'File ".*/controller_\w+/scripts/', said), said[-8000:]
-    again = {word for word, times in Counter(re.findall(r"reports (\w+)", said)).items() if times > 1}
-    assert set(re.findall(r"(\S+): it cannot happen", said)) <= again, said[-8000:]
-    for word in ("bot1_going_c_to_b2b", "bot2_going_c_to_a2a"):
-        assert len(re.findall(rf"state \d+: {word}", said)) == 1, said[-8000:]
+    return robots_workspace(ros, tmp_path_factory.mktemp("robots") / "ws", "thesis/scenario_1", ("bot1", "bot2"))
 
 
 def test_action_goals_a_failure_on_the_way_and_results_that_come_twice(
@@ -317,3 +204,32 @@ def test_settings_that_cannot_be_end_the_controller_with_status_3(
     with ros.master() as there:
         done = ros.run(f"source devel/setup.bash; {command}", workspace, **there)
     assert (done.returncode, message in done.stdout, "Traceback" in done.stdout) == (3, True, False), done.stdout
+
+
+# Collaborative events -------------------------------------------------------------------------------------------------
+
+
+def test_a_partner_gets_the_event_once(ros: Ros, tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
+    folder = tmp_path_factory.mktemp("partners") / "ws"
+    pair = robots_workspace(ros, folder, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
+    with playing(ros, pair, tmp_path, "goals:=action ends:=result") as (robots, log, mission):
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
+    assert robots.actions("bot2") == ["bot2_ina at a"]
+    assert robots.actions("bot3") == ["bot2_ina at a"]
+    assert robots.actions("bot1") == ["bot1_inb at b"]
+
+
+def test_a_partner_that_was_taken_away_returns_before_the_event(
+    ros: Ros, tmp_path_factory: pytest.TempPathFactory, tmp_path: Path
+) -> None:
+    folder = tmp_path_factory.mktemp("partners") / "ws"
+    pair = robots_workspace(ros, folder, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
+    arguments = "goals:=action ends:=result on_uncovered:=warn"
+    with playing(ros, pair, tmp_path, arguments, bot1={"acts": 8.0}) as (robots, log, mission):
+        wait_for(lambda: "bot3_going_c_to_a2a" in log.read_text(), log, "bot3 has not arrived")
+        robots.order("bot3", "put 9.0 9.0 0.0")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
+    assert "bot3 is" in log.read_text() and "where the state has it: it is sent back" in log.read_text()
+    assert (robots.actions("bot2"), robots.actions("bot3")) == (["bot2_ina at a"], ["bot2_ina at a"])

@@ -19,12 +19,14 @@ from worlds import SCENARIOS, files, world
 
 import pursue_runtime
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import load
+from pursue_gen.language import load, parse
 from pursue_gen.partition import partition
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
 from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
+from pursue_gen.workspace.poses_text import poses_text
+from pursue_gen.workspace.spots import placing
 from pursue_runtime import bundle
 from pursue_runtime.poses import read_poses
 
@@ -281,6 +283,27 @@ def test_the_spot_distance_changes_poses_and_nothing_of_the_game() -> None:
         same = near[path] == far[path] or path.endswith("config/mission.yaml")
         assert same == (path not in ("src/controller_bot1/config/poses.yaml", "src/controller_bot2/config/poses.yaml"))
     assert sent(near, "controller_bot2")["bot2"] == sent(near, "controller_bot1")["bot1"]
+
+
+def test_a_place_without_a_pose_demands_no_orientation_but_a_robot_with_a_pose_of_its_own_does() -> None:
+    computed = yaml.safe_load(files("thesis/scenario_1")["src/controller_bot1/config/poses.yaml"])["poses"]
+    assert all(pose[3:] == [0.0] * 4 for pose in computed.values())
+    measured = yaml.safe_load(files("airport/luggage")["src/controller_cart/config/poses.yaml"])["poses"]
+    assert all(any(pose[3:]) for pose in measured.values())
+    text = """
+poi "a" //[0, 0, 0, 0, 0, 0, 1]
+poi "b" //[x, y, z, qx, qy, qz, qw] bot1 [3, 0, 0, 0, 0, 1, 0]
+connect a and b distance 3
+event "e" location b duration 1
+agent "bot1" controllable mobile 1 location a can_do e
+agent "bot2" controllable mobile 1 location a
+reach_objective: do e after 0
+"""
+    placed = placing(parse(text, "own.pur"), 0.8)
+    of_bot1, of_bot2 = (
+        yaml.safe_load(poses_text(parse(text, "own.pur"), placed, [robot]))["poses"]["b"] for robot in ("bot1", "bot2")
+    )
+    assert (of_bot1[3:], of_bot2[3:]) == ([0.0, 0.0, 1.0, 0.0], [0.0] * 4)
 
 
 def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:
