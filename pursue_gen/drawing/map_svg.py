@@ -25,10 +25,12 @@ def draw(
     computed: bool,
     floor: Optional[Floor] = None,
     ident: str = "",
+    spots: Optional[Mapping[str, Mapping[str, Pose]]] = None,
 ) -> str:
     """The map as an SVG document; `computed` adds a note that the poses were computed, not given.
 
-    `floor` is drawn under it, `ident` is the picture's id in a page.
+    `floor` is drawn under it, `ident` is the picture's id in a page. `spots`: agent → place → pose; those beside the
+    poses of their places get the agent's mark.
     """
     width = min(_WIDEST, _WIDTH * math.sqrt(max(1.0, len(poses) / _ROOMY)))
     paper = Paper(poses, floor, width)
@@ -37,6 +39,9 @@ def draw(
     body = [paper.floor(floor)] if floor else []
     body += [_connection(places[c.a], places[c.b], c.distance) for c in scenario.connections]
     body += [_poi(name, places[name]) for name in sorted(places)]
+    for agent_name, table in (spots or {}).items():
+        beside = [pose for place, pose in table.items() if pose != poses[place]]
+        body += [mark(looks[agent_name], *paper.point(pose.x, pose.y), 5.0) for pose in beside]
     body += _happening(scenario, places)
     body += _standing(scenario, places, looks)
     above, below = _room(scenario, places, paper.height)

@@ -21,6 +21,7 @@ from pursue_gen.report.verdict import Lost
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Network
+from pursue_gen.workspace.spots import SPOT_DISTANCE, placing
 
 
 @dataclass(frozen=True)
@@ -79,13 +80,17 @@ def pictures(report: Report) -> Dict[str, str]:
 def _map(report: Report) -> Section:
     _, computed = poses(report.scenario)
     positions = f"Positions are {'computed from the distances' if computed else 'those of the scenario, in metres'}."
+    if report.floor is not None:
+        apart = f"{SPOT_DISTANCE:g} m apart unless the scenario says where"
+        positions += f" Small marks are where further robots stand, {apart}."
     shown = figure(_map_svg(report, "map-picture"), f"{positions} Distances stand at the connections.")
     return Section("map", "The map", shown)
 
 
 def _map_svg(report: Report, ident: str = "") -> str:
-    where, computed = poses(report.scenario)
-    return map_svg.draw(report.scenario, where, computed, report.floor, ident)
+    where = placing(report.scenario, SPOT_DISTANCE)
+    spots = where.spots if report.floor is not None else None
+    return map_svg.draw(report.scenario, where.places, where.computed, report.floor, ident, spots)
 
 
 def _strategy_data(report: Report, won: Solution) -> StrategyData:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from itertools import count
-from typing import DefaultDict, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from itertools import compress, count, islice
+from typing import DefaultDict, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses
@@ -64,12 +64,11 @@ def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[
     given = {poi.name: [places[poi.name], *own[poi.name].values()] for poi in scenario.pois}
     everywhere = _Taken(distance, (pose for those in given.values() for pose in those))
     for poi in scenario.pois:
+        others = _without_own(poi, present[poi.name])[1:]
         here = _Taken(distance, given[poi.name])
-        for robot in _without_own(poi, present[poi.name])[1:]:
-            spot = _beside(places[poi.name], distance, here, everywhere, _ROOM * len(present[poi.name]))
+        for robot, spot in zip(others, _beside(places[poi.name], distance, here, everywhere, _ROOM * len(others))):
             found[robot][poi.name] = spot
             everywhere.add(spot)
-            here.add(spot)
     return found
 
 
@@ -116,19 +115,24 @@ class _Taken:
         return math.floor(pose.x / self._distance), math.floor(pose.y / self._distance)
 
 
-def _beside(pose: Pose, distance: float, here: _Taken, everywhere: _Taken, most: int) -> Pose:
-    """The first free spot beside a pose; after `most` of them the first that is free as far as this place goes."""
+def _beside(pose: Pose, distance: float, here: _Taken, everywhere: _Taken, most: int) -> Iterator[Pose]:
+    """Spots beside a pose: those of the nearest `most` that are free, then those that are free as far as this place
+    goes. They are `distance` apart from each other."""
+    line = _line(pose, distance)
+    nearest = list(islice(line, most))
+    room = [not everywhere.near(spot) for spot in nearest]
+    yield from compress(nearest, room)
+    yield from (spot for spot, is_free in zip(nearest, room) if not is_free and not here.near(spot))
+    yield from (spot for spot in line if not here.near(spot))
+
+
+def _line(pose: Pose, distance: float) -> Iterator[Pose]:
+    """The points on both sides of a pose, the nearest first, the left one before the right one."""
     yaw = math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
-    second: Optional[Pose] = None
-    for number in count(1):
-        steps = (number + 1) // 2 * (1 if number % 2 else -1)
-        x, y = pose.x - steps * distance * math.sin(yaw), pose.y + steps * distance * math.cos(yaw)
-        spot = replace(pose, x=_rounded(x), y=_rounded(y))
-        if not here.near(spot):
-            second = second or spot
-            if number > most or not everywhere.near(spot):
-                break
-    return spot if number <= most else second or spot
+    for steps in count(1):
+        for offset in (steps * distance, -steps * distance):
+            x, y = pose.x - offset * math.sin(yaw), pose.y + offset * math.cos(yaw)
+            yield replace(pose, x=_rounded(x), y=_rounded(y))
 
 
 def _rounded(metres: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from typing import Dict, List
 
 import pytest
@@ -62,6 +63,15 @@ def test_a_floor_plan_lies_under_everything_where_its_yaml_says() -> None:
     assert (left, bottom) == pytest.approx(first, abs=0.02)
     assert float(group.attrib["width"]) == pytest.approx(second[0] - first[0], abs=0.02)
     assert float(group.attrib["height"]) == pytest.approx(second[1] - third[1], abs=0.02)
+
+
+def test_spots_beside_a_place_get_the_marks_of_their_robots() -> None:
+    where = poses((0, 0), (3, 0), (3, 2))
+    plain = draw(SCENARIO, where, False)
+    assert draw(SCENARIO, where, False, spots={"bot": where}) == plain
+    moved = {**where, "hall": replace(where["hall"], y=1.0)}
+    circles = [drawn.count("<circle") for drawn in (plain, draw(SCENARIO, where, False, spots={"bot": moved}))]
+    assert circles[1] == circles[0] + 1
 
 
 def test_two_runs_draw_the_same() -> None:

@@ -144,6 +144,14 @@ def test_a_pose_stays_a_pose_and_a_comment_a_comment() -> None:
     assert scenario is not None and [poi.pose for poi in scenario.pois] == [None, None]
 
 
+def test_the_poses_of_robots_stay_as_they_are() -> None:
+    line = f'poi "a" {POSE} bot2 [3, 2.5,0, 0, 0, 0, 1],  by the door'
+    source = f'{line}\nagent "bot2" controllable location a\n'
+    written = formatted(source)
+    assert written.splitlines()[0] == line and formatted(written) == written
+    assert [poi.spots[0].robot.name for poi in read(written, "test.pur").partial.pois] == ["bot2"]  # type: ignore[union-attr]
+
+
 def test_findings_that_are_no_syntax_errors_do_not_matter() -> None:
     assert formatted('poi "a" poi "a"\nconnect a and x distance 1.5') == (
         'poi "a"\npoi "a"\n\nconnect a and x distance 1.5\n'

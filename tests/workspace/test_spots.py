@@ -15,6 +15,7 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.language import parse
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.tga import translate
 from pursue_gen.workspace.spots import spots, spots_in_one
 
 ROUNDING = 0.002  # metres: spots are rounded to millimetres
@@ -92,6 +93,12 @@ def test_only_robots_that_may_be_at_a_place_take_room_there() -> None:
 def test_people_and_agents_of_the_environment_have_no_spots() -> None:
     more = 'agent "nurse" human controllable mobile 1 location a\nagent "guest" mobile 1 location a\n'
     assert list(spots_of(scenario({"a": f"//[1, 2, 0, {EAST}]"}, robots=1, more=more), 1.0)) == ["bot1"]
+
+
+def test_poses_change_nothing_of_the_network() -> None:
+    plain = scenario({"a": "", "b": ""})
+    placed = scenario({"a": f"//[1, 2, 0, {EAST}] bot2 [1, 3, 0, {EAST}]", "b": f"//[4, 2, 0, {EAST}]"})
+    assert translate(placed) == translate(plain)
 
 
 def test_with_distance_0_all_have_the_given_pose_and_the_places_are_named() -> None:
