@@ -162,6 +162,7 @@ JSON_READERS: Dict[str, Callable[[Path, str], object]] = {
 }
 
 HEAD = "format: 1\n"
+POSE = [0, 0, 0, 0, 0, 0, 1]
 YAML_READERS: Dict[str, Callable[[Path, str], object]] = {
     "a data file": lambda folder, text: read_data(str(written(folder, "x.yaml", f"{HEAD}x: {text}\n"))),
     "data of a mission": lambda _, text: parse_data(f"{HEAD}x: {text}\n".encode(), "x.yaml"),
@@ -177,6 +178,15 @@ YAML_READERS: Dict[str, Callable[[Path, str], object]] = {
     "machines.yaml": lambda _, text: parse_machines(f"{HEAD}machines: {text}\n", "machines.yaml", ("observer",)),
     "robots.yaml": lambda folder, text: read_robots(written(folder, "robots.yaml", f"{HEAD}robots: {text}\n")),
     "poses.yaml": lambda folder, text: read_poses(written(folder, "poses.yaml", f"poses: {text}\n"), ("a",)),
+    "poses of robots": lambda folder, text: read_poses(
+        written(folder, "poses.yaml", f"poses: {{a: {POSE}}}\nrobots: {{bot: {text}}}\n"), ("a",), ("bot",)
+    ),
+    "a signed pose": lambda folder, text: check_data(
+        str(written(folder, "poses.yaml", f"{HEAD}poses: {{a: {text}}}\n"))
+    ),
+    "a signed table of a robot": lambda folder, text: check_data(
+        str(written(folder, "poses.yaml", f"{HEAD}poses: {{a: {POSE}}}\nrobots: {{bot: {text}}}\n"))
+    ),
     "a map": lambda folder, text: read_floor(written(folder, "map.yaml", f"resolution: {text}\n")),
     "a game": lambda _, text: read_game(f"{HEAD}rules: {text}\n", "game.yaml"),
 }  # fmt: skip
