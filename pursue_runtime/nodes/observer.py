@@ -293,13 +293,13 @@ class Observer:
             late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.silent))
             values: Dict[str, object] = {"mission": mission.name, "seq": mission.seq, "status": mission.status}
             values.update({"plan": mission.plan, "planning": f"{self.planner.seconds:.0f} s"})
-            blocked = " ".join("-".join(way) for way in sorted(mission.blocked))
+            blocked = " ".join("-".join(way) for way in sorted(mission.ways.blocked))
             values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
             robots = {"held": mission.robots.held, "displaced": mission.robots.displaced}
             values.update({key: " ".join(sorted(names)) for key, names in robots.items()})
             values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")
-            warns = mission.late or mission.lost or mission.blocked or mission.status == HOLDING
+            warns = mission.late or mission.lost or mission.ways.blocked or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
         return Report(self.words.get_num_connections() > 0, level, message, values)
 

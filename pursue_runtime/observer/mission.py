@@ -10,7 +10,7 @@ from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
-from pursue_runtime.observer.ways import Way, blocked_reason, in_words, way_back, way_of
+from pursue_runtime.observer.ways import Ways
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
@@ -71,8 +71,7 @@ class Mission:
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
-        self.blocked: Set[Way] = set()
-        self._turns: Dict[str, Move] = {}  # how robots that found their way blocked would set out for its other end
+        self.ways = Ways(model)
         self.robots = Robots(model)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
@@ -115,7 +114,7 @@ class Mission:
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        robots = *self.robots.revision(), *self.blocked, *self._turns
+        robots = *self.robots.revision(), *self.ways.revision()
         return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
@@ -207,7 +206,7 @@ class Mission:
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
         if self._planning.on_no_plan(number, why):
-            self._turns.clear()  # a plan without these robots is the next to look for
+            self.ways.turns.clear()  # a plan without these robots is the next to look for
         return self._status_changes(now)
 
     def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
@@ -226,7 +225,8 @@ class Mission:
         self.seq, self.status, self.reason = state.seq, state.status, state.reason
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
-        self._early, self._turns, self._warned = {}, {}, False
+        self._early, self._warned = {}, False
+        self.ways.turns.clear()
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
         self._commanded = state.commanded
@@ -313,7 +313,7 @@ class Mission:
             for name, _ in moves:
                 self.late.discard(name)
                 self.lost.pop(name, None)
-                self._turns.pop(name, None)
+                self.ways.turns.pop(name, None)
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
             self.counts["taken"] += 1
@@ -360,7 +360,7 @@ class Mission:
         `patience`: the time units for which clocks may be outside what the plan covers.
         """
         trouble = self._planning.unexcused(self.lost)
-        trouble = trouble or self._planning.unavoided(self.blocked)
+        trouble = trouble or self._planning.unavoided(self.ways.blocked)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
         waits = self.robots.reasons()
         trouble = "" if waits else trouble  # another plan begins when these robots can go on
@@ -395,11 +395,11 @@ class Mission:
 
     def _request_plan(self, now: float) -> bool:
         """Request another plan from here; return False if there is none."""
-        position = Model.after(tuple(self._turns.values()), self.position(now))
-        excused = frozenset(self.late | set(self.lost)) - set(self._turns)
+        position = Model.after(tuple(self.ways.turns.values()), self.position(now))
+        excused = frozenset(self.late | set(self.lost)) - set(self.ways.turns)
         ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.blocked, self._turns)
+        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
         return not self._planning.no_plan_reason
 
     def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
@@ -411,7 +411,7 @@ class Mission:
         proposal = self._planning.acknowledged()
         if proposal is None:
             return []
-        turns = tuple(self._turns[name] for name in proposal.request.turning)
+        turns = tuple(self.ways.turns[name] for name in proposal.request.turning)
         if not covers(proposal.cover, Model.after(turns, self.position(now)), self._tolerance):
             self._planning.expire(proposal, now)
             return self._status_changes(now)
@@ -422,44 +422,25 @@ class Mission:
         for name, _ in turns:
             self.late.discard(name)
             self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
-        self._turns.clear()
+        self.ways.turns.clear()
         self._update_status(now, self._tolerance)
         return self._new_state(now)
 
     def _on_robot_report(self, report: RobotReport, now: float) -> List[SystemState]:
-        """Take a report about a robot: it has failed, is held or resumes, is displaced or back in its place."""
+        """Take a report about a robot (failed, held, resumes, displaced, back in place) or a way (blocked, free)."""
         agent, location, wrong = report.agent, self._automata.location_of(report.agent), ""
         if report.event in (BLOCKED, FREE):
-            return self._on_way(report, now)
-        if report.event != FAILED:
+            wrong, why = self.ways.on_report(report, location, agent in self.lost)
+            if why:
+                self._mark_lost(agent, why)
+        elif report.event != FAILED:
             wrong = self.robots.on_report(report, location)
         elif not is_under_way(location) and agent not in self.robots.displaced:
             wrong = "expected the name of an agent that is under way"
-        elif agent not in self.lost or self._turns.pop(agent, None) is not None:
+        elif agent not in self.lost or self.ways.turns.pop(agent, None) is not None:
             self._mark_lost(agent, f"has failed {report.text}".rstrip())
         if wrong:
             self._reject("impossible", f"{agent}:{report.event}: {wrong}")
-        return self._status_changes(now)
-
-    def _on_way(self, report: RobotReport, now: float) -> List[SystemState]:
-        """Take a report that a way is blocked, or free again; a robot that reports it on its way cannot go on."""
-        agent = report.agent
-        place = self._automata.location_of(agent)
-        way = way_of(self.model, place or agent)
-        if way is None:
-            expected = "the name of a movement, such as going_a_to_b, or of an agent that moves"
-            self._reject("impossible", f"{agent}:{report.event}: expected {expected}")
-            return []
-        if report.event == FREE:
-            self.blocked.discard(way)
-        else:
-            if place and agent not in self.lost:
-                turn = way_back(self.model, agent, place) if way not in self.blocked else None
-                self._turns.update({agent: turn} if turn and self.model.automaton(agent).kind == "robot" else {})
-                why = f": {report.text}" if report.text else ""
-                self._mark_lost(agent, f"has found that {in_words(way)} is blocked{why}")
-            self.blocked.add(way)
-        self._log("warn", blocked_reason(self.blocked) or "no way is blocked any more")
         return self._status_changes(now)
 
     def _mark_lost(self, agent: str, why: str) -> None:

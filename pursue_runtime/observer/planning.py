@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.model import Position
-from pursue_runtime.observer.ways import Way, blocked_reason, check_avoids
+from pursue_runtime.observer.ways import Way, Ways, blocked_reason, check_avoids
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import StateTable, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
@@ -91,11 +91,10 @@ class Planning:
         stamp: float,
         ahead: float,
         excused: FrozenSet[str],
-        blocked: AbstractSet[Way],
-        turning: Iterable[str] = (),
+        ways: Ways,
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
-        place = place, excused, frozenset(blocked)
+        place = place, excused, ways.revision()
         if place != self._place:
             self.reset()
             self._place = place
@@ -108,8 +107,7 @@ class Planning:
         self._number += 1
         self.searched = 0.0
         what = position.locations, position.values, position.clocks, stamp, ahead
-        names, ways = tuple(sorted(excused)), tuple(sorted(blocked))
-        self.request = PlanRequest(self._number, *what, names, ways, tuple(sorted(turning)))
+        self.request = PlanRequest(self._number, *what, tuple(sorted(excused)), *ways.revision())
 
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""

@@ -1,15 +1,49 @@
-"""Ways of the map in the observer: which way a movement takes, and what is said of ways that are blocked."""
+"""Ways of the map in the observer: which of them are blocked, and how robots turn round there."""
 
 from __future__ import annotations
 
-from typing import Any, Collection, Mapping, Optional, Tuple
+from typing import Any, Collection, Dict, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_movement, movement
 from pursue_runtime.model import Model, Move
+from pursue_runtime.words import FREE, RobotReport
 
 Way = Tuple[str, str]
 """The two places that a way connects, in alphabetical order."""
+
+
+class Ways:
+    """The ways that are `blocked`; `turns`: how the robots that found that would set out for where they come from."""
+
+    def __init__(self, model: Model) -> None:
+        self.blocked: Set[Way] = set()
+        self.turns: Dict[str, Move] = {}
+        self._model = model
+
+    def on_report(self, report: RobotReport, location: str, is_lost: bool) -> Tuple[str, str]:
+        """Take a report that a way is blocked, or free: of an agent at this location, or ("") of the named movement.
+
+        Return why it cannot be ("": it can), and why the agent is lost now ("": it is not).
+        """
+        name, why = report.agent, ""
+        way = way_of(self._model, location or name)
+        if way is None:
+            return "expected the name of a movement, such as going_a_to_b, or of an agent that moves", ""
+        if report.event == FREE:
+            self.blocked.discard(way)
+            return "", ""
+        if location and not is_lost:
+            turn = way_back(self._model, name, location)
+            if turn and way not in self.blocked and self._model.automaton(name).kind == "robot":
+                self.turns[name] = turn
+            why = f"has found that {in_words(way)} is blocked" + (f": {report.text}" if report.text else "")
+        self.blocked.add(way)
+        return "", why
+
+    def revision(self) -> Tuple[Tuple[Way, ...], Tuple[str, ...]]:
+        """Return the blocked ways, and the robots that are to turn round."""
+        return tuple(sorted(self.blocked)), tuple(sorted(self.turns))
 
 
 def way_of(model: Model, location: str) -> Optional[Way]:

@@ -252,7 +252,7 @@ def test_a_robot_that_finds_its_way_blocked_is_lost_and_the_plan_is_to_avoid_tha
     wanted = made.mission.plan_request
     assert (wanted.excused, wanted.blocked) == (("bot",), (("a", "b"),))
     assert made.hear("bot:_blocked_", 3.5) is None
-    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running" and made.mission.blocked == {("a", "b")}
+    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running" and made.mission.ways.blocked == {("a", "b")}
 
 
 def test_anybody_may_report_that_a_way_is_blocked() -> None:
@@ -301,14 +301,14 @@ def test_a_way_that_is_free_again_needs_no_plan() -> None:
     planned(made, EVERYWHERE, 1.7)
     revision = made.mission.revision()
     assert made.hear("going_a_to_b:_free_", 1.8) is None, "a plan that avoids it is still one"
-    assert made.mission.blocked == set() and made.mission.revision() != revision
+    assert made.mission.ways.blocked == set() and made.mission.revision() != revision
 
 
 @pytest.mark.parametrize("who", ["bot", "dog", "rule", "nobody", "going_a_to_c", "a"])
 def test_where_nobody_moves_no_way_can_be_blocked(who: str) -> None:
     made = journey()
     assert made.hear(f"{who}:_blocked_", 1.0) is None and made.hear(f"{who}:_free_", 1.0) is None
-    assert made.mission.counts["impossible"] == 2 and not made.mission.blocked and not made.mission.lost
+    assert made.mission.counts["impossible"] == 2 and not made.mission.ways.blocked and not made.mission.lost
 
 
 # Controllers ----------------------------------------------------------------------------------------------------------

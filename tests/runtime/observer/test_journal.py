@@ -89,10 +89,10 @@ def test_a_new_observer_still_has_the_plan_in_force_for_those_who_come_later(pat
 def test_a_new_observer_knows_the_ways_that_are_blocked(path: Path) -> None:
     before = Life(path)
     before.play(*PLAY[:2], ("hear", "bot:_blocked_"), ("hear", "going_a_to_b:_free_"))
-    assert Life(path).mission.blocked == set()
+    assert Life(path).mission.ways.blocked == set()
     before.play(("hear", "going_a_to_b:_blocked_"), first=4)
     again = Life(path).mission
-    assert again.blocked == {("a", "b")} and again.plan_request == before.mission.plan_request
+    assert again.ways.blocked == {("a", "b")} and again.plan_request == before.mission.plan_request
 
 
 @pytest.mark.parametrize("adopts", [False, True])

@@ -134,5 +134,5 @@ def test_a_new_observer_has_the_robot_on_its_way_back(tmp_path: Path) -> None:
         before.journal.call(*call, now=1000.0 + 2 * moment)
         after = life()
         assert after.state(2000.0) == before.state(2000.0) and after.plan_request == before.plan_request
-        assert after.blocked == before.blocked
+        assert after.ways.revision() == before.ways.revision()
     assert before.state(2000.0).locations["bot"] == "going_b_to_a"
