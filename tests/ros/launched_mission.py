@@ -236,8 +236,13 @@ class LaunchedMission:
     @contextlib.contextmanager
     def node(self, package: str, kind: str, *arguments: str) -> Iterator[Node]:
         """A node that is started by hand."""
-        log = self.folder / f"{kind}-{len(list(self.folder.iterdir()))}.log"
-        command = f"source devel/setup.bash; exec rosrun {package} {kind} {' '.join(arguments)}"
+        with self.program(f"source devel/setup.bash; exec rosrun {package} {kind} {' '.join(arguments)}", kind) as node:
+            yield node
+
+    @contextlib.contextmanager
+    def program(self, command: str, name: str) -> Iterator[Node]:
+        """A program that runs where the mission is, in the folder of its workspace."""
+        log = self.folder / f"{name}-{len(list(self.folder.iterdir()))}.log"
         process = self._start(command, log)
         try:
             yield Node(process, log)
