@@ -338,7 +338,7 @@ def test_without_a_controller_the_mission_holds_and_goes_on_when_it_is_back(
     check_time(run)
 
 
-def test_who_comes_later_sees_the_mission_and_a_stop_ends_everybody_with_status_1(
+def test_a_late_node_sees_the_mission_and_a_stop_ends_all_nodes_with_status_1(
     ros: Ros, scenario: Path, tmp_path: Path
 ) -> None:
     """Nothing is started again here but by hand."""

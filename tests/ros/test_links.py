@@ -141,7 +141,7 @@ def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp
         more(made)
 
 
-def test_a_node_that_stood_still_is_heard_again_whole(ros: Ros, built: Build, tmp_path: Path) -> None:
+def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, built: Build, tmp_path: Path) -> None:
     workspace = built("thesis/scenario_1")
     with nodes(ros, workspace, tmp_path) as made:
         talk(made, workspace)

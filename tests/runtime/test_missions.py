@@ -179,7 +179,7 @@ def damage(robot: Robot, digest: str, what: str) -> None:
 
 @pytest.mark.parametrize("kind", ["data", "no data", "manifest", "no manifest", "folder", "{", "[]", "{}",
                                   '{"format": 1, "current": "../x"}', '{"format": 1, "current": 7}'])
-def test_what_is_damaged_is_said_and_never_played(robot: Robot, kind: str) -> None:
+def test_what_is_damaged_is_reported_and_never_played(robot: Robot, kind: str) -> None:
     digest = robot.receive("two")
     robot.switch(digest)
     damage(robot, digest, kind)

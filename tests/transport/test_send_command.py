@@ -301,7 +301,7 @@ def test_what_does_not_go_together_is_told(
     assert not any("prepare" in robot.requests for robot in robots)
 
 
-def test_a_bundle_of_somebody_unknown_is_not_sent(send: Any, robots: List[FakeRobot], desk: Path) -> None:
+def test_a_bundle_of_an_unknown_key_is_not_sent(send: Any, robots: List[FakeRobot], desk: Path) -> None:
     from fake_robot import STRANGER
 
     (desk / "theirs.pursue").write_bytes(make_bundle("catch", STRANGER)[1])

@@ -307,7 +307,7 @@ def test_a_key_that_the_robots_do_not_trust_changes_nothing() -> None:
     assert all(robot.requests.count("prepare") == 1 for robot in robots)
 
 
-def test_a_robot_under_the_name_of_another_is_told() -> None:
+def test_a_robot_under_the_name_of_another_is_reported() -> None:
     robots = fleet()
     with serving(robots) as places:
         swapped = [places[0], replace(places[1], port=places[2].port), replace(places[2], port=places[1].port)]
@@ -368,7 +368,7 @@ def troubled(draw: st.DrawFn) -> List[FakeRobot]:
 
 @settings(max_examples=150)
 @given(robots=troubled())
-def test_all_have_the_new_one_or_none_or_it_is_told_that_they_differ(robots: List[FakeRobot]) -> None:
+def test_all_have_the_new_one_or_none_or_it_is_reported_that_they_differ(robots: List[FakeRobot]) -> None:
     before = [robot.standing for robot in robots]
     broken: List[str] = []
 

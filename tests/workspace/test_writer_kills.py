@@ -90,7 +90,7 @@ def test_an_edit_before_stops_it_and_nothing_is_changed(tmp_path: Path, path: st
 
 
 @pytest.mark.parametrize("path", ["README.md", "src/gone/x.yaml", "src/new/deep/y.yaml"])
-def test_an_edit_after_the_kill_is_kept_and_told(tmp_path: Path, path: str) -> None:
+def test_an_edit_after_the_kill_is_kept_and_reported(tmp_path: Path, path: str) -> None:
     for call, ws, _ in renewed(tmp_path, {}):
         before = {**tree(ws), path: PERSON}
         put(ws, {path: PERSON})

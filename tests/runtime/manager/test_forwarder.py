@@ -116,7 +116,7 @@ def test_who_does_not_read_is_given_up_and_others_hear_on(stage: Callable[..., S
         assert here.record.counts()["given up"] == 1
 
 
-def test_what_subscribers_say_is_not_heard_and_too_much_of_it_ends_the_talk(stage: Callable[..., Stage]) -> None:
+def test_what_subscribers_send_is_ignored_and_too_much_of_it_ends_the_connection(stage: Callable[..., Stage]) -> None:
     here = stage()
     there = here.connect()
     there.sendall(b'{"topic": "pursue/events", "data": "_stop_"}\n\x00\xff')

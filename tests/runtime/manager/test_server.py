@@ -149,7 +149,7 @@ def test_a_ticket_that_is_used_up_while_the_body_comes_is_old(serve: Serve) -> N
 
 # What it refuses, before it reads
 
-def test_a_refused_body_is_not_read_and_the_answer_is_heard(serve: Serve) -> None:
+def test_a_refused_body_is_not_read_and_the_answer_is_received(serve: Serve) -> None:
     robot = serve()
     order = Desk(2).order(robot.reader.ticket, body=b"x" * 500_000)
     told = parse(exchange(robot.port, head(Content_Length=500_000, Pursue_Order=order), b"x" * 500_000))
@@ -251,7 +251,7 @@ def test_one_request_a_connection_whatever_follows(serve: Serve) -> None:
     assert robot.reader.messages == []
 
 
-def test_where_others_reach_it_and_nobody_is_trusted_nothing_is_told(serve: Serve, tmp_path: Path) -> None:
+def test_where_others_reach_it_and_no_key_is_trusted_no_details_are_returned(serve: Serve, tmp_path: Path) -> None:
     for key in (tmp_path / "keys").iterdir():
         key.unlink()
     robot = serve(exposed=True)
@@ -312,7 +312,7 @@ def test_there_is_room_for_so_many_connections(serve: Serve) -> None:
     until(lambda: ask(robot).http == 200, "who goes leaves room")
 
 
-def test_a_reader_that_does_not_answer_is_told_in_time(serve: Serve) -> None:
+def test_a_reader_that_does_not_answer_is_reported_in_time(serve: Serve) -> None:
     robot, desk = serve(patience=0.3), Desk()
     robot.reader.answers = False
     told = send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64))
@@ -338,7 +338,7 @@ def test_a_client_that_leaves_while_the_reader_works_harms_nobody(serve: Serve) 
     assert "errors" not in robot.record.counts(), robot.lines
 
 
-def test_our_own_mistake_is_told_without_how_it_came(serve: Serve) -> None:
+def test_an_internal_error_is_reported_without_details(serve: Serve) -> None:
     robot = serve(there=lambda: 1 // 0)
     told = ask(robot)
     assert (told.http, told.facts["message"]) == (500, "something went wrong here")

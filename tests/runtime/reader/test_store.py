@@ -202,7 +202,7 @@ def test_a_mission_that_was_damaged_meanwhile_is_sent_again(robot: Robot) -> Non
     '{"format": 1, "current": "", "next": 7, "prepared": null, "history": []}',
     '{"format": 1, "current": "", "next": null, "prepared": null, "history": ["/etc"]}',
 ])  # fmt: skip
-def test_a_damaged_state_is_told_and_missions_are_kept(robot: Robot, text: str) -> None:
+def test_a_damaged_state_is_reported_and_missions_are_kept(robot: Robot, text: str) -> None:
     robot.send(FIRST)
     robot.send(SECOND)
     (robot.folder / "missions" / "state.json").write_bytes(text.encode("latin-1"))

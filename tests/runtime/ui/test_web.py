@@ -213,7 +213,7 @@ def test_pages_of_others_cannot_listen_or_speak(serve: Serve, node: Node, origin
 @pytest.mark.parametrize("host", [
     "evil.example", "evil.example:8080", "127.0.0.1.evil.example", "[", "a b", "localhost.evil.example",
 ])
-def test_a_name_that_somebody_has_pointed_here_is_refused(serve: Serve, host: str) -> None:
+def test_a_name_that_was_pointed_here_is_refused(serve: Serve, host: str) -> None:
     web = serve()
     assert get(web, Host=host).status in (400, 403)
     assert refused(web, origin=f"http://{host}", Host=host) in (400, 403)
