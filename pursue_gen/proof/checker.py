@@ -12,14 +12,14 @@ from collections import deque
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
-from typing import Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.closed_loop import ClosedLoop, Entry, in_words, sample
 from pursue_gen.proof.delays import Broken
 from pursue_gen.proof.extrapolation import MaxConstants
 from pursue_gen.proof.invariant import is_invariant
-from pursue_gen.proof.moves import JointMove, State
+from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.proof.zones import with_neighbours
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
@@ -66,6 +66,7 @@ def verify(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
+    arenas: Optional[Callable[[int], Arena]] = None,
 ) -> Report:
     """Check that the strategy wins when each command takes effect up to `reaction` time units after its decision.
 
@@ -79,14 +80,14 @@ def verify(
     though it wins, because extrapolation is not exact there. Whoever waits in a reach game may rely on
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
     Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on time or memory.
-    `progress` is called a few times a second.
+    `progress` is called a few times a second; `arenas` as for `ClosedLoop`.
     """
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
-    loop = ClosedLoop(network, objective, strategy, reaction, ranks)
+    loop = ClosedLoop(network, objective, strategy, reaction, ranks, arenas=arenas)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
@@ -34,10 +34,14 @@ class ClosedLoop:
         reaction: Fraction,
         ranks: Optional[Mapping[ZoneKey, int]],
         instant: Fraction = Fraction(0),
+        arenas: Optional[Callable[[int], Arena]] = None,
     ) -> None:
-        """`instant`, in time units: the strategy is played promptly, as `delays.Rules` has it."""
+        """`instant`, in time units: the strategy is played promptly, as `delays.Rules` has it.
+
+        `arenas`: those of the network by their scale (`Arena.kept`), where several loops share them.
+        """
         scale = _scale(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
-        self.arena, self.strategy = Arena(network, scale), strategy
+        self.arena, self.strategy = (arenas or Arena.kept(network))(scale), strategy
         self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
         self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
         self.bad = None if objective.kind is Kind.REACH else _place(network, objective.bad)

@@ -16,6 +16,7 @@ from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.moves import Arena
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -58,13 +59,13 @@ def strategy_margin(
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
     depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found.
     """
-    left = states
+    left, arenas = states, Arena.kept(network)
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left
         if left <= 0:
             return None
-        report = verify(network, objective, strategy, delay, limit=left, prompt=True, limits=limits)
+        report = verify(network, objective, strategy, delay, limit=left, prompt=True, limits=limits, arenas=arenas)
         left -= report.states
         return None if report.reason.startswith("limit") else report.ok
 

@@ -6,8 +6,9 @@ Written from the rules of the game, not from the solver: the two must not share 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from itertools import product
-from typing import Dict, Iterable, List, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.strategy import DiscreteState, Move
@@ -69,6 +70,12 @@ class Arena:
                 self._edges.setdefault((k, edge.source), []).append(edge)
         self._situations: Dict[State, Situation] = {}
         self._refuse()
+
+    @staticmethod
+    def kept(network: Network) -> Callable[[int], Arena]:
+        """A function from a scale to the arena of the network in it, the same one each time: what several searches
+        need to know of a discrete state is worked out once."""
+        return lru_cache(maxsize=None)(partial(Arena, network))
 
     def _start(self) -> Dbm:
         """The clocks at the start: 0, or what the network says."""
