@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
@@ -63,6 +64,8 @@ class Model:
     def __init__(self, data: Mapping[str, Any]) -> None:
         try:
             self.scenario = str(data["scenario"])
+            self.reaction = float(Fraction(str(data.get("reaction", 0))))
+            """Time units that the strategy allows a command; 0: not known."""
             self.clocks: Tuple[str, ...] = tuple(data["clocks"])
             self.variables: Dict[str, int] = dict(data["variables"])
             self.automata = tuple(_automaton(automaton) for automaton in data["automata"])
@@ -70,7 +73,7 @@ class Model:
             self.objective = str(objective["kind"])
             self.goal: Optional[Tuple[str, str]] = tuple(objective["goal"]) if objective["goal"] else None
             self.bad: Optional[Tuple[str, str]] = tuple(objective["bad"]) if objective["bad"] else None
-        except (KeyError, TypeError, ValueError, AttributeError) as problem:
+        except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
             raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
         self._by_name = {automaton.name: automaton for automaton in self.automata}
 

@@ -1,11 +1,72 @@
-"""When a word that got no answer is published again."""
+"""When a word that got no answer, or a new state, is published again. Times are seconds of real time."""
 
 from __future__ import annotations
 
+from typing import Optional
+
+from pursue_runtime.state import SystemState
+
 FIRST_TIMEOUT, LAST_TIMEOUT = 0.5, 4.0
-"""Seconds of real time without an answer after which a word is published again: at first, and at most."""
+"""Where no reaction is known: the time after which a word without an answer is published again, at first, at most."""
+
+REPEATS = 3
+"""So many messages in a row may be lost on the way of one command, and it still takes effect within the reaction."""
+
+PATIENCE = 20
+"""After so many words without an answer, the next ones come with LAST_TIMEOUT between them."""
+
+SHORTEST = 0.01
+"""The least interval between two resends: an answer takes some milliseconds."""
 
 
-def resend_timeout(sent: int) -> float:
-    """Return the seconds of real time to wait for an answer to a word that was published `sent` times (at least 1)."""
-    return min(FIRST_TIMEOUT * 2.0 ** (sent - 1), LAST_TIMEOUT)
+def resend_interval(reaction: float) -> float:
+    """Return the interval of the first resends if the strategy allows a command `reaction` seconds (0: not known).
+
+    REPEATS intervals take three fifths of the reaction, the rest is for the messages' way.
+    """
+    return min(max(reaction / (REPEATS + 2), SHORTEST), FIRST_TIMEOUT) if reaction > 0 else FIRST_TIMEOUT
+
+
+def resend_timeout(sent: int, reaction: float = 0.0) -> float:
+    """Return how long to wait for an answer to a word that was published `sent` times (at least 1).
+
+    The first REPEATS resends lie within the reaction; the timeouts then grow to twice the reaction, so that a node that
+    was absent gets the word soon after its return. `reaction` as for `resend_interval`.
+    """
+    if reaction <= 0:
+        return min(FIRST_TIMEOUT * 2.0 ** (sent - 1), LAST_TIMEOUT)
+    if sent > PATIENCE:
+        return LAST_TIMEOUT
+    first = resend_interval(reaction)
+    return min(first * 2.0 ** max(0, sent - REPEATS), max(first, 2 * reaction), LAST_TIMEOUT)
+
+
+class StateRepeats:
+    """Publishes each new state REPEATS times more, unchanged, at resend intervals, until there is a newer one.
+
+    A node that missed the state gets it within the reaction; for all others it is the state that they have.
+    """
+
+    def __init__(self, reaction: float) -> None:
+        """`reaction` as for `resend_interval`."""
+        self._interval = resend_interval(reaction)
+        self._state: Optional[SystemState] = None
+        self._left = 0
+        self._next = 0.0
+
+    def on_publish(self, state: SystemState, now: float) -> None:
+        """Take that a state was published; a heartbeat is no new one."""
+        known = self._state
+        if known is None or (known.seq, known.status) != (state.seq, state.status):
+            self._state, self._left, self._next = state, REPEATS, now + self._interval
+
+    def due(self, now: float) -> Optional[SystemState]:
+        """Return the state to publish again now, if any."""
+        if not self._left or now < self._next:
+            return None
+        self._left, self._next = self._left - 1, now + self._interval
+        return self._state
+
+    def next_moment(self) -> Optional[float]:
+        """Return when to call `due` again; None: not before the next state."""
+        return self._next if self._left else None

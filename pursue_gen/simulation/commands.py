@@ -30,7 +30,16 @@ class ZonedCommand(NamedTuple):
 
     def due_between(self, clocks: Mapping[str, float], earliest: float, latest: float) -> bool:
         """True if one of the zones holds at some moment from `earliest` to `latest` (time units from these clocks)."""
-        return any(_meets(zone, clocks, earliest - EPSILON, latest + EPSILON) for zone in self.zones)
+        windows = (_window(zone, clocks, earliest - EPSILON, latest + EPSILON) for zone in self.zones)
+        return any(first <= last for first, last in windows)
+
+    def first_due(self, clocks: Mapping[str, float], earliest: float, latest: float) -> Optional[float]:
+        """The first moment from `earliest` to `latest` at which one of the zones holds; None if there is none.
+
+        A zone that is only touched does not count: its bounds may be strict.
+        """
+        windows = (_window(zone, clocks, earliest, latest) for zone in self.zones)
+        return min((first for first, last in windows if last - first > 3 * EPSILON), default=None)
 
 
 class Commands:
@@ -45,10 +54,14 @@ class Commands:
 
     def find(self, state: Mapping[str, str], agent: str, event: str) -> List[ZonedCommand]:
         """The commands by which the agent does the event in this state."""
+        return [held for held in self.all_in(state) if (held.agent, held.event) == (agent, event)]
+
+    def all_in(self, state: Mapping[str, str]) -> List[ZonedCommand]:
+        """All commands in this state."""
         found: List[ZonedCommand] = []
         for names, table in self._tables.items():
             found += table.get(tuple(state.get(name, "") for name in names), [])
-        return [held for held in found if (held.agent, held.event) == (agent, event)]
+        return found
 
 
 def commands_of(strategy: Strategy) -> Commands:
@@ -101,14 +114,17 @@ def _side(text: str) -> Tuple[Optional[str], Optional[str], float]:
     return clock.strip(), less.strip() or None, 0.0
 
 
-def _meets(zone: Iterable[Limit], clocks: Mapping[str, float], earliest: float, latest: float) -> bool:
-    """True if the zone holds at some moment of that stretch."""
+def _window(
+    zone: Iterable[Limit], clocks: Mapping[str, float], earliest: float, latest: float
+) -> Tuple[float, float]:
+    """The first and the last moment from `earliest` to `latest` at which the zone holds; never if the last is before
+    the first."""
     for left, right, bound in zone:
         if left and right:
             if clocks[left] - clocks[right] > bound + EPSILON:
-                return False
+                return 0.0, -1.0
         elif left:
             latest = min(latest, bound - clocks[left] + EPSILON)
         elif right:
             earliest = max(earliest, -bound - clocks[right] - EPSILON)
-    return earliest <= latest
+    return earliest, latest

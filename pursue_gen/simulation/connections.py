@@ -8,6 +8,12 @@ from typing import Dict
 from pursue_gen.simulation.event_queue import Action, EventQueue
 from pursue_gen.simulation.faults import FaultPlan
 
+SHARE = 0.2
+"""Where messages are lost, each takes at most this share of the reaction: the rest is for sending it again."""
+
+RECONNECTION = 0.5, 2.0
+"""Seconds between which a robot connects to its controller again, and gets the order that it should carry out."""
+
 DECIMALS = 2e-6
 """Seconds by which messages come before the last moment that was promised: stamps travel with six decimals."""
 
@@ -22,15 +28,21 @@ def drawn_share(draw: random.Random, extremes: float = 0.5) -> float:
 class Connections:
     """All connections of one mission. A connection has the name of what it carries, such as `word:controller_bot1`."""
 
-    def __init__(self, events: EventQueue, fault_plan: FaultPlan, seed: str) -> None:
+    def __init__(self, events: EventQueue, fault_plan: FaultPlan, seed: str, reaction: float = 0.0) -> None:
+        """`reaction`: the seconds within which the strategy expects a command to take effect."""
         self._events, self._fault_plan = events, fault_plan
         self._draw = random.Random(f"{seed}/wires")
         self._last: Dict[str, float] = {}
+        self._holds_up = bool(fault_plan.kinds & {"delay", "cut"})
+        self._longest = SHARE * reaction if "loss" in fault_plan.kinds else float("inf")
 
     def send(self, connection: str, latest: float, deliver: Action, machine: str = "") -> None:
         """Delivers a message after at most `latest` seconds, if no fault is in its way; `machine` may be cut off."""
         fault_plan, now = self._fault_plan, self._events.now
-        moment = now + max(0.0, latest - DECIMALS) * drawn_share(self._draw)
+        longest = max(0.0, min(latest, self._longest) - DECIMALS)
+        moment = now + longest * drawn_share(self._draw)
+        if not self._holds_up:  # a message comes in time, even if it has to overtake the one before it
+            moment = min(max(moment, self._last.get(connection, 0.0)), now + longest)
         if not fault_plan.kinds:
             self._deliver(connection, moment, deliver)
             return
@@ -46,13 +58,22 @@ class Connections:
         if again is not None:
             self._events.schedule(moment + again, deliver)
 
+    def send_order(self, deliver: Action) -> None:
+        """Delivers an order from a controller to its robot, on the same machine: at once, unless they are disconnected
+        (`orders`). Then the robot gets it when it has connected again."""
+        delay = self._fault_plan.disconnection(*RECONNECTION)
+        self._events.schedule(self._events.now + delay, deliver)
+
     def is_cut(self, machine: str) -> bool:
         """True while the machine is cut off."""
         cut = self._fault_plan.cut
         return cut is not None and cut[0] == machine and cut[1] <= self._events.now < cut[2]
 
     def _deliver(self, connection: str, moment: float, deliver: Action) -> float:
-        moment = self._last[connection] = max(moment, self._last.get(connection, 0.0))
+        last = max(moment, self._last.get(connection, 0.0))
+        if self._holds_up:
+            moment = last
+        self._last[connection] = last
         self._events.schedule(moment, deliver)
         return moment
 

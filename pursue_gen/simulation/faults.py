@@ -17,8 +17,10 @@ FAULTS: Mapping[str, str] = {
     "loss": "one message in 20 is lost",
     "duplicates": "one message in 10 comes twice, the second up to 2 s later",
     "reorder": "one message in 10 is overtaken by those sent up to 2 s after it",
+    "orders": "one order in 20 finds its robot disconnected, which gets it 0.5 to 2 s later",
     "clocks": "the clock of each controller is wrong by up to 0.5 s, either way",
     "deaths": "up to three times a controller or the observer dies, and is started again after 0.3 to 3 s",
+    "restart": "once a controller or the observer dies, and is back within the margin of the strategy, and 3 s",
     "cut": "the machine of a controller and its robot is cut off for 1 to 60 s; what was sent comes later",
     "early": "one movement or action in 5 ends before the model's window, by up to half of its least duration",
     "late": "one movement or action in 5 ends 0.2 to 15 time units after the model's window",
@@ -28,22 +30,41 @@ FAULTS: Mapping[str, str] = {
 }
 """Every kind of fault, and its parameters."""
 
+RATES: Mapping[str, float] = {"delay": 0.1, "loss": 0.05, "duplicates": 0.1, "reorder": 0.1, "orders": 0.05}
+"""How often these happen; `loss=0.2` in the place of `loss` sets another probability."""
+
 HARMLESS = ("duplicates", "junk")
 """Faults that delay no agent: missions in which nothing else goes wrong are won as if nothing did."""
 
 
 def read_faults(text: str) -> Tuple[str, ...]:
-    """The kinds of faults of `--faults`: names with commas between them, `all`, `none`. Raises PursueError."""
+    """The kinds of faults of `--faults`: names with commas between them, `all`, `none`. A name in RATES may have a
+    probability, as in `loss=0.2`. Raises PursueError."""
     names = [name.strip() for name in text.split(",") if name.strip()]
     if names == ["none"] or not names:
         return ()
     if names == ["all"]:
         return tuple(FAULTS)
-    unknown = [name for name in names if name not in FAULTS]
+    wrong = [name for name in names if "=" in name and _rate(name) is None]
+    if wrong:
+        hint = f"a probability from 0 to 1 for {', '.join(RATES)}, such as loss=0.2"
+        raise PursueError([error("SIM002", f"{', '.join(wrong)} is no fault with a probability", hint=hint)], 2)
+    kinds = {name.partition("=")[0]: name for name in names}
+    unknown = [name for name in kinds if name not in FAULTS]
     if unknown:
         hint = f"names with commas between them: {', '.join(FAULTS)}; or all, or none"
         raise PursueError([error("SIM002", f"there are no faults called {', '.join(unknown)}", hint=hint)], 2)
-    return tuple(name for name in FAULTS if name in names)
+    return tuple(kinds[name] for name in FAULTS if name in kinds)
+
+
+def _rate(text: str) -> Optional[float]:
+    """The probability in `loss=0.2`; None if there is none."""
+    name, _, number = text.partition("=")
+    try:
+        rate = float(number)
+    except ValueError:
+        return None
+    return rate if name in RATES and 0.0 <= rate <= 1.0 else None
 
 
 @dataclass(frozen=True)
@@ -53,6 +74,7 @@ class Crash:
     moment: float
     node: str
     seconds: float
+    kind: str = "deaths"
 
 
 @dataclass(frozen=True)
@@ -71,19 +93,23 @@ class FaultPlan:
     """The faults of one mission: which kinds there are in it, and each case, drawn one after the other."""
 
     def __init__(self, kinds: Sequence[str], seed: str, start: float, span: float, controllers: Sequence[str],
-                 robots: Sequence[str]) -> None:
-        """`start`: when the mission starts; `span`: the seconds after that in which faults begin that have a moment.
+                 robots: Sequence[str], absence: float = 0.0) -> None:
+        """`start`: when the mission starts; `span`: the seconds after that in which faults begin that have a moment;
+        `absence`: the seconds for which a node may be absent within the margin of the strategy.
 
         With one kind, the mission has it; of several, each with probability 1/2, but one at least.
         """
         self._draw = draw = random.Random(f"{seed}/faults")
+        self._rates = {**RATES, **{text.partition("=")[0]: _rate(text) or 0.0 for text in kinds if "=" in text}}
+        kinds = [text.partition("=")[0] for text in kinds]
+        self._absence = absence
         chosen = [kind for kind in kinds if len(kinds) == 1 or draw.random() < 0.5]
         self.kinds: FrozenSet[str] = frozenset(chosen or ([draw.choice(list(kinds))] if kinds else []))
         self.happened: Dict[str, int] = {}
         self.offsets = dict.fromkeys(controllers, 0.0)
         if "clocks" in self.kinds:
             self.offsets = {name: self._count("clocks", draw.uniform(-0.5, 0.5)) for name in controllers}
-        self.crashes = self._draw_crashes(start, span, controllers)
+        self.crashes = self._draw_crashes(start, span, controllers) + self._draw_restart(start, span, controllers)
         self.cut: Optional[Tuple[str, float, float]] = None
         if "cut" in self.kinds and controllers:
             begin = start + draw.uniform(0.0, span)
@@ -104,19 +130,23 @@ class FaultPlan:
 
     def is_lost(self) -> bool:
         """Is this message lost?"""
-        return self._chance("loss", 0.05)
+        return self._chance("loss", self._rates["loss"])
 
     def delay(self) -> float:
         """Seconds by which this message is late, and holds up those behind it."""
-        return self._draw.uniform(0.0, 5.0) if self._chance("delay", 0.1) else 0.0
+        return self._draw.uniform(0.0, 5.0) if self._chance("delay", self._rates["delay"]) else 0.0
 
     def reorder_delay(self) -> float:
         """Seconds by which this message, and no other, is late."""
-        return self._draw.uniform(0.0, 2.0) if self._chance("reorder", 0.1) else 0.0
+        return self._draw.uniform(0.0, 2.0) if self._chance("reorder", self._rates["reorder"]) else 0.0
+
+    def disconnection(self, least: float, most: float) -> float:
+        """Seconds after which this order reaches its robot."""
+        return self._draw.uniform(least, most) if self._chance("orders", self._rates["orders"]) else 0.0
 
     def duplicate_delay(self) -> Optional[float]:
         """Seconds after which this message comes again."""
-        return self._draw.uniform(0.0, 2.0) if self._chance("duplicates", 0.1) else None
+        return self._draw.uniform(0.0, 2.0) if self._chance("duplicates", self._rates["duplicates"]) else None
 
     def duration(self, low: float, high: float, usual: float) -> float:
         """How long an activity with this window takes, in time units, where it would have taken the usual time."""
@@ -147,6 +177,14 @@ class FaultPlan:
         draw = self._draw
         moments = [start + draw.uniform(0.0, span) for _ in range(draw.randint(1, 3))]
         return [Crash(moment, draw.choice(nodes), draw.uniform(0.3, 3.0)) for moment in moments]
+
+    def _draw_restart(self, start: float, span: float, controllers: Sequence[str]) -> List[Crash]:
+        longest = min(self._absence, 3.0)
+        if "restart" not in self.kinds or longest <= 0:
+            return []
+        draw = self._draw
+        moment = start + draw.uniform(0.0, span)
+        return [Crash(moment, draw.choice(["observer", *controllers]), draw.uniform(0.2, 1.0) * longest, "restart")]
 
     def _breakdown(self, robots: Sequence[str]) -> Optional[Breakdown]:
         kinds = sorted(self.kinds & {"failed", "silent"})

@@ -16,7 +16,7 @@ from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
-from pursue_runtime.state import SystemState
+from pursue_runtime.state import LIVE, SystemState
 
 
 class TakenStep(NamedTuple):
@@ -43,9 +43,15 @@ class Judge:
         self._plans: Dict[int, Commands] = {0: commands}
         self._reaction, self._faults, self._offset = reaction, faults, offset
         self._before: Optional[SystemState] = None
-        self._entered = 0.0
+        self._entered = self._decided_since = 0.0
         self._zeros: Dict[str, float] = {}
         self._ordered: Set[Tuple[str, int]] = set()
+        self.lateness = 0.0
+        """The time units for which a command was due at most before something happened; counted with faults only."""
+        self.latest = ""
+        """Which command that was."""
+        self.overdue: List[str] = []
+        """The ends that came outside the model's window, with the time units by which they did."""
 
     def on_plan(self, number: int, strategies: Mapping[str, Any], people: Optional[Mapping[str, Any]]) -> None:
         """A new plan has been published under this number."""
@@ -57,6 +63,10 @@ class Judge:
     def on_state(self, state: SystemState, now: float) -> None:
         """The observer publishes a state, at this moment (seconds)."""
         before, self._before = self._before, state
+        if self._faults and before is not None and state.seq != before.seq:
+            self.note_lateness(before, now)
+            if state.plan != before.plan:
+                self._decided_since = now
         if before is None or before.seq == 0:
             if state.seq > 0:
                 self._check_start(state, now)
@@ -73,9 +83,19 @@ class Judge:
         if state.status != "waiting":
             self._check_clocks(state, now)
 
+    def note_lateness(self, state: SystemState, now: float) -> None:
+        """Takes that nothing has happened in the state until now. While a mission holds its commands are late, too."""
+        plan = self._plans.get(state.plan) if state.status in LIVE else None
+        clocks = {clock: (now - zero) / state.unit for clock, zero in self._zeros.items()}
+        stay = (now - self._decided_since) / state.unit
+        for command in plan.all_in(state.discrete()) if plan else ():
+            due = command.first_due(clocks, -stay, 0.0)
+            if due is not None and -due > self.lateness:
+                self.lateness, self.latest = -due, f"{command.event} in state {state.seq}"
+
     def _check_start(self, state: SystemState, now: float) -> None:
         self._zeros = dict.fromkeys(self._arena.network.clocks, now)
-        self._entered = now
+        self._entered = self._decided_since = now
         if (state.seq, self._key(state)) != (1, self._arena.initial):
             self._problem(f"the mission starts with state {state.seq}, not where the network starts")
         self._check_clocks(state, now)
@@ -101,7 +121,7 @@ class Judge:
         target = move.moves[0].edge.target
         self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
-        self._entered = now
+        self._entered = self._decided_since = now
 
     def _off_model(self, move: JointMove, clocks: Mapping[str, float], what: str) -> None:
         guard = move.moves[0].edge.guard.clocks
@@ -110,6 +130,8 @@ class Judge:
         elif move.controllable and not all(_holds(bound, clocks) for bound in guard):
             self._problem(f"{what} is a command at clocks that its guard forbids")
         self.off_model += 1
+        if not self._is_deadline(move):
+            self.overdue.append(what)
 
     def _is_deadline(self, move: JointMove) -> bool:
         """True for the step that marks a passed deadline: it is no command, though no other agent owns it."""

@@ -6,6 +6,7 @@ import random
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
+from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.connections import Connections
 from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
@@ -42,26 +43,35 @@ STOPPED, a safe stop, and LOST, because a fault broke what the strategy was prom
 JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_plan_@1", "@@", ":_failed_")
 """Words on pursue/events that change nothing."""
 
-HEARTBEAT, SILENCE, PLANNING = 1.0, 20.0, 10.0
-"""Seconds, as the observer's parameters ~heartbeat, ~silence and ~planning_limit have them."""
+HEARTBEAT, SILENCE = 1.0, 20.0
+"""Seconds, as the observer's parameters ~heartbeat and ~silence have them."""
+
+RETURN = 3.0
+"""Reactions that pass at most from the return of a node to the effect of a command that it has delayed."""
 
 
 @dataclass(frozen=True)
 class Settings:
     """What is simulated. `until`: the time units after which a mission is over; `span`: faults begin within so many;
-    `bound`: how long it may take without faults (None: not known)."""
+    `bound`: how long it may take without faults (None: not known); `margin`: the delay of commands with which the
+    strategy is known to win, in time units."""
 
     opponent: str = "mixed"
     faults: Tuple[str, ...] = ()
     until: float = 1000.0
     span: float = 50.0
     bound: Optional[float] = None
+    margin: float = 0.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a mission ended, after so many time units. `play`: what happened, a line for each event, where it was asked
-    for; `problems`: what must never be; `happened`: how often which fault did."""
+    """How a mission ended, after so many time units.
+
+    `lateness`: the longest time, in time units, for which a command was due; `cause`: which fault was too long for the
+    strategy, if the mission was not won; `problems`: what must never be; `happened`: how often which fault did;
+    `play`: what happened, a line for each event, where it was asked for.
+    """
 
     seed: int
     opponent: str
@@ -71,6 +81,8 @@ class Outcome:
     steps: int
     plan: int
     off_model: int
+    lateness: float = 0.0
+    cause: str = ""
     problems: Tuple[str, ...] = ()
     happened: Mapping[str, int] = field(default_factory=dict)
     play: Tuple[str, ...] = ()
@@ -83,13 +95,14 @@ class SimulatedMission:
                  record: bool = False) -> None:
         name = str(seed)
         self.events = EventQueue(START)
-        self.fault_plan = FaultPlan(settings.faults, name, START, settings.span, tuple(stage.strategies), stage.robots)
+        self.fault_plan = FaultPlan(settings.faults, name, START, settings.span, tuple(stage.strategies), stage.robots,
+                                    settings.margin - RETURN * stage.reaction)
         self.faulty = bool(self.fault_plan.kinds)
         self.lines: List[str] = []
         self._stage, self._settings, self._seed, self._record = stage, settings, seed, record
         bad = stage.solution.objective.bad
         self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.fault_plan.offset)
-        self._connections = Connections(self.events, self.fault_plan, name)
+        self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
         self._kind = _opponent(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)
         self._move_timer = Timer(self.events, self._act)
@@ -140,7 +153,12 @@ class SimulatedMission:
 
     def _outcome(self) -> Outcome:
         mission, problems = self._observer.mission, [*self._judge.problems, *self._complaints]
+        if self.faulty and self._latched is not None:
+            self._judge.note_lateness(self._latched, self.events.now)
         end, reason = self._end(mission)
+        cause = self._cause(mission) if end in (STOPPED, HELD, LOST) else ""
+        if end == LOST and not cause:
+            end, reason = FAILED, f"it was lost, but no fault was longer than the margin: {reason}"
         time = self.events.now - START
         bound = self._settings.bound
         if not self.fault_plan.voids_guarantees and end == GOAL and bound is not None and time > bound + 1e-3:
@@ -150,8 +168,19 @@ class SimulatedMission:
         happened = dict(sorted(self.fault_plan.happened.items()))
         return Outcome(
             self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
-            tuple(problems), happened, tuple(self.lines),
+            self._judge.lateness, cause, tuple(problems), happened, tuple(self.lines),
         )
+
+    def _cause(self, mission: Mission) -> str:
+        """Which fault was longer than what the strategy is proven for; "" if none was."""
+        judge, margin = self._judge, self._settings.margin
+        causes = []
+        if judge.lateness > margin + EPSILON:
+            causes.append(f"{judge.latest} was due for {judge.lateness:.3f} time units, the margin is {margin:g}")
+        causes += [f"{step} came outside the model's window" for step in judge.overdue[:1]]
+        causes += [f"{name} is late" for name in sorted(mission.late - set(mission.lost))]
+        causes += [f"{name} {why}" for name, why in sorted(mission.lost.items())]
+        return "; ".join(causes)
 
     def _end(self, mission: Mission) -> Tuple[str, str]:
         """How it ended, before the judge's problems are looked at."""
@@ -185,6 +214,11 @@ class SimulatedMission:
             self._choose_move(state)
         if self._people is not None:
             self._people.on_state(state)
+
+    def repeat(self, state: SystemState) -> None:
+        """The observer publishes a state once more, unchanged."""
+        for node in self._controllers.values():
+            self._send_state(node, state, self._stage.reaction)
 
     def _send_state(self, node: ControllerNode, state: SystemState, latest: float) -> None:
         """Sends a state to a controller: to the process that is subscribed now."""
@@ -225,7 +259,7 @@ class SimulatedMission:
         self._judge.on_order(order.agent, order.trigger, order.target, seq, newest, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
-            self._connections.send(f"order:{order.agent}", 0.0, mover.on_order)
+            self._connections.send_order(mover.on_order)
 
     # What the world does ----------------------------------------------------------------------------------------------
 
@@ -290,7 +324,7 @@ class SimulatedMission:
             node = self._controllers[crash.node]
         if not node.alive:
             return
-        self.fault_plan.count("deaths")
+        self.fault_plan.count(crash.kind)
         self._note(f"{crash.node} dies")
         node.kill()
         self.events.schedule(self.events.now + crash.seconds, lambda: self._restart(crash.node, node))
@@ -301,7 +335,7 @@ class SimulatedMission:
         if isinstance(node, ObserverNode):
             return
         if self._observer.alive and self._latched is not None:  # what is latched comes at once
-            self._send_state(node, self._latched, 0.3)
+            self._send_state(node, self._latched, 0.0)
             if self._plan is not None:
                 self._send_plan(node, self._plan)
 

@@ -12,6 +12,7 @@ from pursue_runtime.controller.scheduler import CommandScheduler, StartedActivit
 from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui import mission_view as ui
@@ -30,6 +31,9 @@ class MissionLinks(Protocol):
 
     def publish(self, state: SystemState) -> None:
         """The observer publishes a state."""
+
+    def repeat(self, state: SystemState) -> None:
+        """The observer publishes a state once more, unchanged."""
 
     def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer publishes another plan."""
@@ -54,6 +58,8 @@ class ObserverNode:
         self._stage, self._links, self._log = stage, links, log
         self._entries: List[str] = []
         self._timer = Timer(links.events, lambda: self.call("tick"))
+        self._repeat_timer = Timer(links.events, self._repeat)
+        self._repeats = StateRepeats(stage.reaction)
         self._proposed = 0
         self.mission = self._mission()
 
@@ -89,23 +95,35 @@ class ObserverNode:
         self.mission = self._mission()
         replay(self.mission, [json.loads(entry) for entry in self._entries])
         self._proposed = 0
+        self._repeats = StateRepeats(self._stage.reaction)
         self.heartbeat()
 
     def kill(self) -> None:
         """It is killed."""
         self.alive = False
         self._timer.set()
+        self._repeat_timer.set()
 
     def _publish(self, states: Sequence[SystemState]) -> None:
         links, mission = self._links, self.mission
         for state in states:
             links.publish(state)
+            if links.faulty:  # without faults a repeated state changes nothing
+                self._repeats.on_publish(state, links.events.now)
+                self._repeat_timer.set(self._repeats.next_moment())
         proposal = mission.proposal or mission.in_force
         if proposal is not None and proposal["plan"] != self._proposed:
             self._proposed = proposal["plan"]
             links.publish_plan(proposal)
         links.request_plan(mission.plan_request)
         self._timer.set(mission.next_moment(links.events.now))
+
+
+    def _repeat(self) -> None:
+        state = self._repeats.due(self._links.events.now)
+        if state is not None:
+            self._links.repeat(state)
+        self._repeat_timer.set(self._repeats.next_moment())
 
 
 class ControllerNode:
@@ -172,10 +190,9 @@ class ControllerNode:
 
     def _set_timer(self) -> None:
         moment, patience = self._scheduler.next_wakeup()
-        now = self._links.events.now
-        self._timer.set(
-            None if moment is None else moment - self._offset + TICK, None if patience is None else now + patience
-        )
+        due = None if moment is None else moment - self._offset + TICK
+        resend = self._links.events.now + patience if patience is not None and self._links.faulty else None
+        self._timer.set(due, resend)  # without faults no word is lost, and one that is sent again is stale
 
 
 class PeopleNode:

@@ -13,6 +13,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome, Settings, simulate_mission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
@@ -72,7 +73,10 @@ def case_of(scenario: Scenario, won: Solution, options: Options, settings: Setti
     remaining = Remaining(won)
     bound = remaining.bound()
     span = _SPAN if bound is None else _PART * bound
-    return Case(scenario, won, options, replace(settings, bound=bound, span=span)), remaining.works
+    margin = float(won.reaction)
+    if settings.faults:
+        margin = float(strategy_margin(won.network, won.objective, won.strategy, won.reaction, USUAL).wins)
+    return Case(scenario, won, options, replace(settings, bound=bound, span=span, margin=margin)), remaining.works
 
 
 class MissionRunner:

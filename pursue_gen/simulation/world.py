@@ -23,15 +23,18 @@ INSIDE = 1e-3
 class FaultyDurations:
     """How long each activity of an agent takes; in the place of the simulator's `Delays`."""
 
-    def __init__(self, fault_plan: FaultPlan, seed: str) -> None:
-        self._fault_plan, self._seed = fault_plan, seed
+    def __init__(self, fault_plan: FaultPlan, seed: str, reserve: float) -> None:
+        """`reserve`: time units by which a usual end is before the end of its window, so that a report that is lost
+        can be published again in time."""
+        self._fault_plan, self._seed, self._reserve = fault_plan, seed, reserve
 
     def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Time units from the start of the agent's `number`-th activity to its end: each end of the window with
         probability 1/4."""
         part = drawn_share(random.Random(f"{self._seed}/{agent}/{number}"))
         inside = min(INSIDE, (window.high - window.low) / 2)
-        usual = window.low + inside + part * (window.high - window.low - inside)
+        width = max(0.0, window.high - window.low - inside - self._reserve)
+        usual = window.low + inside + part * width
         return self._fault_plan.duration(window.low, window.high, usual)
 
 
@@ -44,7 +47,8 @@ class SimulatedAgent:
         self.agent = agent
         self._stage = stage
         self._events, self._fault_plan, self._publish, self._promised = events, fault_plan, publish, promised
-        self._simulator = Simulator(stage.model, [agent], FaultyDurations(fault_plan, seed))
+        reserve = promised if "loss" in fault_plan.kinds else 0.0
+        self._simulator = Simulator(stage.model, [agent], FaultyDurations(fault_plan, seed, reserve))
         self._timer = Timer(events, self._on_timer)
         self._breakdown = fault_plan.breakdown if fault_plan.breakdown and fault_plan.breakdown.robot == agent else None
         self._place = ""

@@ -64,7 +64,7 @@ def generate(
     values["plays"] = _plays(scenario, trace)
     data = {
         "poses": poses_text(scenario, where),
-        "model": model_file.render(network, objective, scenario, __version__).encode(),
+        "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),

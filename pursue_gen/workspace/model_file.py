@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga.names import REACH, STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
 
 
-def render(network: Network, objective: Objective, scenario: Scenario, generator: str) -> str:
-    """The text of model.yaml: `network` is the one of the game that is played (its ends and slack included)."""
+def render(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction, generator: str) -> str:
+    """The text of model.yaml: `network` is the one of the game that is played (its ends and slack included), `reaction`
+    the delay (time units) that the strategy allows a command."""
     head = (
         f"The automata of {scenario.name}, written by pursue-gen {generator}.",
         "Clocks count time units; an event moves one sender (or owner) and every automaton that can receive it.",
@@ -22,6 +25,7 @@ def render(network: Network, objective: Objective, scenario: Scenario, generator
     data = {
         "format": 1,
         "scenario": scenario.name,
+        "reaction": number(reaction),
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
         "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],

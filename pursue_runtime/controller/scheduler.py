@@ -110,7 +110,7 @@ class CommandScheduler:
             self._patience = UNREADY
             return None
         self.planned = None
-        self._patience = resend_timeout(self._unanswered + 1)
+        self._patience = resend_timeout(self._unanswered + 1, strategy.reaction * state.unit)
         self.counts["sent_again" if self._unanswered else "sent"] += 1
         self._unanswered += 1
         return Word(command.agent, command.event, state.seq)

@@ -47,6 +47,7 @@ from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.settings import read_settings
 from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
+from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
@@ -91,6 +92,7 @@ class Observer:
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, self.ending)
         self.take_up()
+        self.repeats = StateRepeats(self.mission.model.reaction * self.settings.time_unit)
         self.await_clock()
         self.publish([self.mission.state(self.now())])
         self.witnesses.follow(self.on_seen)
@@ -197,8 +199,13 @@ class Observer:
                 self.call("stop", unknown_state(own, node, state))
 
     def on_alarm(self) -> None:
-        """Handle a deadline, or a step that an objective takes by itself."""
-        self.call("tick")
+        """Handle a deadline, or a step that an objective takes by itself; publish a new state once more, for a node
+        that did not receive it."""
+        with self.lock:
+            state = self.repeats.due(time.monotonic())
+            if state is not None:
+                self.send(self.states, message_of(state))
+            self.call("tick")
 
     def answer(self, answer: PlannerAnswer) -> None:
         """Handle the planner's answer."""
@@ -259,12 +266,15 @@ class Observer:
             self.send(self.states, message_of(state))
             self.after_reaction.do(partial(self.send_text, state))
             self.published_at = time.monotonic()
+            self.repeats.on_publish(state, self.published_at)
         proposal = self.mission.proposal or self.mission.in_force  # who comes later needs it as well
         if proposal is not None and proposal["plan"] != self.proposed:
             self.proposed = proposal["plan"]
             self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
         self.planner.request_plan(self.mission.plan_request)
-        self.alarm.set(self.mission.next_moment(self.now()))
+        repeat = self.repeats.next_moment()
+        patience = None if repeat is None else max(0.0, repeat - time.monotonic())
+        self.alarm.set(self.mission.next_moment(self.now()), patience)
         if self.mission.status in ENDED and not self.over:
             self.over = True
             if self.mission.status == WON:

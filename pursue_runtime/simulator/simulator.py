@@ -180,7 +180,8 @@ class Simulator:
         activity.moment = max(activity.moment, now + activity.shortest)
 
     def _resend_at(self, activity: Activity) -> float:
-        return max(activity.sent, self._state_received) + resend_timeout(activity.sends)
+        unit = self._state.unit if self._state is not None else 1.0
+        return max(activity.sent, self._state_received) + resend_timeout(activity.sends, self._model.reaction * unit)
 
     def _is_unanswered(self, activity: Activity, real: float) -> bool:
         return real >= self._resend_at(activity)

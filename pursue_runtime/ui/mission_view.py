@@ -9,13 +9,13 @@ from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, P
 
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
+from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import ACTING, report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Plans, Strategy
 from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
-ORDER_TIMEOUT = 0.5  # real seconds without a new state after which an order counts as lost
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
 
 
@@ -131,7 +131,7 @@ class MissionView:
         self._model = model
         self._environment = player
         self._orders = None if orders is None else Plans(orders)
-        self._ordered: Tuple[int, float] = (-1, 0.0)  # the state an order was given in, and when (real)
+        self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
         self._people = {automaton.name for automaton in model.of_kind("human")}
 
     def elapsed(self, now: float) -> float:
@@ -168,7 +168,8 @@ class MissionView:
         words = self._environment.due(now)
         order = self._next_order(now) if real >= self._resend_at() else None
         if order is not None and order[0] <= now + 1e-6:
-            self._ordered = (self.state.seq, real)
+            count = self._ordered[2] + 1 if self._ordered[0] == self.state.seq else 1
+            self._ordered = (self.state.seq, real, count)
             words.append(format_word(order[1]))
         return words
 
@@ -211,8 +212,10 @@ class MissionView:
 
     def _resend_at(self) -> float:
         """The real moment before which the last order may still be on its way."""
-        given, real = self._ordered
-        return real + ORDER_TIMEOUT if self.state is not None and given == self.state.seq else float("-inf")
+        seq, real, count = self._ordered
+        if self.state is None or self.state.seq != seq:
+            return float("-inf")
+        return real + resend_timeout(count, self._model.reaction * self.state.unit)
 
     def _next_order(self, now: float) -> Optional[Tuple[float, Word]]:
         if self._orders is None or self.state is None or self.state.status != RUNNING:

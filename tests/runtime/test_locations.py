@@ -6,7 +6,6 @@ import pytest
 
 from pursue_gen.tga import names
 from pursue_runtime.locations import action_of, is_action, is_end, is_movement, is_under_way, movement
-from pursue_runtime.resend import resend_timeout
 
 
 def test_locations_of_the_generator_are_known() -> None:
@@ -25,7 +24,3 @@ def test_an_edge_that_leaves_a_movement_or_an_action_is_its_end() -> None:
     going = names.going("a", "b")
     assert is_end(going, "b")
     assert not is_end(going, going) and not is_end("a", going)
-
-
-def test_words_are_published_again_ever_more_rarely() -> None:
-    assert [resend_timeout(sent) for sent in range(1, 7)] == [0.5, 1.0, 2.0, 4.0, 4.0, 4.0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -37,7 +38,7 @@ def network_of(scenario: Any) -> Network:
 
 
 def model_of(scenario: Any, network: Network) -> Any:
-    return Model(yaml.safe_load(render(network, scenario_objective(scenario), scenario, "0")))
+    return Model(yaml.safe_load(render(network, scenario_objective(scenario), scenario, Fraction(1, 10), "0")))
 
 
 @pytest.mark.parametrize("number", SCENARIOS)

@@ -9,6 +9,7 @@ from typing import Dict, Optional, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.simulation.mission import Outcome, Settings, simulate_mission
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_from
@@ -31,6 +32,13 @@ def solved(name: str) -> Tuple[Scenario, Solution]:
 def remaining(name: str) -> Remaining:
     """How long its strategy may need."""
     return Remaining(solved(name)[1])
+
+
+@functools.lru_cache(maxsize=None)
+def margin(name: str) -> float:
+    """The margin of its strategy, in time units."""
+    won = solved(name)[1]
+    return float(strategy_margin(won.network, won.objective, won.strategy, won.reaction, USUAL).wins)
 
 
 def files(name: str) -> Dict[str, bytes]:
@@ -58,5 +66,5 @@ def missions(name: str, number: int, settings: Settings, on: Optional[Stage] = N
     """The first so many missions."""
     times = remaining(name)
     bound = times.bound()
-    settings = replace(settings, bound=bound, span=0.6 * bound if bound else settings.span)
+    settings = replace(settings, bound=bound, span=0.6 * bound if bound else settings.span, margin=margin(name))
     return tuple(simulate_mission(on or stage(name), settings, seed, times) for seed in range(1, number + 1))

@@ -38,6 +38,16 @@ def test_names_all_and_none() -> None:
     assert read_faults("loss, delay") == ("delay", "loss")
 
 
+def test_faults_of_messages_may_have_another_probability() -> None:
+    assert read_faults("junk, loss=0.5") == ("loss=0.5", "junk")
+    assert 120 < len(sent(trouble("loss=0.5"))) < 280
+    for text in ("loss=2", "loss=often", "junk=0.5", "rain=0.5", "loss="):
+        with pytest.raises(PursueError) as refused:
+            read_faults(text)
+        assert refused.value.exit_status == 2
+        assert "no fault with a probability" in refused.value.diagnostics[0].message
+
+
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
     with pytest.raises(PursueError) as refused:
         read_faults("delay,rain")
@@ -73,6 +83,53 @@ def test_a_machine_that_is_cut_off_gets_all_messages_later() -> None:
     assert [k for k, _ in came] == list(range(20))
     assert came[0][1] >= end - begin - 0.02
     assert sent(about, 20, machine="another", at=begin - 1000.0)[0][1] <= 0.1
+
+
+def test_a_message_comes_in_time_even_if_the_one_before_it_takes_longer() -> None:
+    """Two messages, the first with a later deadline: the second one is not held up beyond its own."""
+    queue, came = EventQueue(1000.0), []
+    for seed in range(20):
+        connections = Connections(queue, trouble(), str(seed))
+        connections.send("word:x", 0.1, lambda: came.append(("first", queue.now)))
+        connections.send("word:x", 0.02, lambda: came.append(("second", queue.now)))
+    while queue.step():
+        pass
+    assert [name for name, _ in came].count("first") == [name for name, _ in came].count("second") == 20
+    assert all(moment <= 1000.02 for name, moment in came if name == "second")
+    assert any(moment > 1000.02 for name, moment in came if name == "first")
+
+
+def test_where_messages_are_lost_the_others_leave_time_to_send_one_again() -> None:
+    queue, came = EventQueue(1000.0), []
+    connections = Connections(queue, trouble("loss"), "1", 0.1)
+    for _ in range(200):
+        connections.send("word:x", 0.1, lambda: came.append(queue.now))
+    while queue.step():
+        pass
+    assert 150 < len(came) < 200
+    assert max(came) <= 1000.02
+
+
+def test_an_order_reaches_a_robot_that_is_disconnected_when_it_has_connected_again() -> None:
+    queue, came = EventQueue(1000.0), []
+    connections = Connections(queue, trouble("orders"), "1")
+    for _ in range(200):
+        connections.send_order(lambda: came.append(queue.now))
+    while queue.step():
+        pass
+    assert len(came) == 200
+    assert came.count(1000.0) > 150
+    assert all(1000.5 <= moment <= 1002.0 for moment in came if moment != 1000.0)
+
+
+def test_a_restart_lies_within_the_margin_and_there_is_none_where_that_is_too_short() -> None:
+    def restarts(absence: float) -> List[float]:
+        plans = [FaultPlan(("restart",), str(seed), 0.0, 30.0, ("controller_bot",), (), absence) for seed in range(50)]
+        return [crash.seconds for plan in plans for crash in plan.crashes]
+
+    assert len(restarts(0.5)) == 50 and max(restarts(0.5)) <= 0.5
+    assert max(restarts(100.0)) <= 3.0
+    assert restarts(0.0) == restarts(-1.0) == []
 
 
 def test_the_same_seed_draws_the_same() -> None:

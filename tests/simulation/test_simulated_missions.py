@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from stages import SCENARIOS, THESIS, THIEF, missions, remaining, solved, stage
+from stages import SCENARIOS, THESIS, THIEF, missions, remaining, sabotaged, solved, stage
 
 from pursue_gen.language import load
 from pursue_gen.proof.worst_case import worst_case
@@ -73,6 +73,36 @@ def test_a_fault_that_delays_no_agent_changes_no_outcome(kind: str) -> None:
     outcomes = missions(THIEF, 40, Settings("random", (kind,)))
     assert {outcome.end for outcome in outcomes} == {GOAL}, [(o.seed, o.reason) for o in outcomes if o.end == FAILED]
     assert sum(outcome.happened.get(kind, 0) for outcome in outcomes) > 20
+
+
+@pytest.mark.parametrize("kind", ["loss", "orders", "restart"])
+def test_lost_messages_and_short_absences_are_made_good(kind: str) -> None:
+    names = (THIEF, "thesis/scenario_4", "work_cell/work_cell", "catch_the_thief/burglary")
+    outcomes = [o for name in names for o in missions(name, 12, Settings("random", (kind,), until=150.0))]
+    assert {outcome.end for outcome in outcomes} <= {GOAL, SAFE}, [(o.seed, o.end, o.cause, o.reason) for o in outcomes]
+    assert sum(outcome.happened.get(kind, 0) for outcome in outcomes) > 5
+
+
+def test_with_lost_messages_commands_take_effect_about_as_soon_as_without() -> None:
+    outcomes = missions(THIEF, 40, Settings("random", ("loss",)))
+    assert 0.02 < max(outcome.lateness for outcome in outcomes) < 0.2
+
+
+def test_a_mission_that_is_lost_without_a_fault_that_was_too_long_is_a_failure() -> None:
+    """A strategy for another deadline: the commands come in time, and the mission is lost."""
+    name = "work_cell/work_cell"
+    path = "src/observer/config/model.yaml"
+    outcomes = missions(name, 10, Settings("random", ("junk", "orders"), until=100.0), sabotaged(
+        name, path, "Cobj <= 30", "Cobj <= 3"
+    ))
+    assert FAILED in {outcome.end for outcome in outcomes}
+
+
+def test_what_was_too_long_is_stated_with_a_mission_that_is_not_won() -> None:
+    outcomes = missions("work_cell/work_cell", 40, Settings("random", ("cut",), until=200.0))
+    others = [outcome for outcome in outcomes if outcome.end not in (SAFE, HELD)]
+    assert others and not any(outcome.end == FAILED for outcome in outcomes)
+    assert any("was due for" in outcome.cause and "the margin is" in outcome.cause for outcome in others)
 
 
 def test_robots_off_their_model_are_no_wrong_commands() -> None:
