@@ -88,6 +88,8 @@ class Navigation:
         self._goal = GoalTracker(settings)
         self._at = Whereabouts(settings)
         self._action: Optional[Action] = None
+        self.reaction = 0.0
+        """The seconds that the strategy allows a command: reports are sent again by it; 0: not known."""
         self._report: Optional[Report] = None
         self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
 
@@ -205,7 +207,7 @@ class Navigation:
             if (self._view.displaced or self._reports(DISPLACED)) and not self._reports(BACK):
                 self.trouble = ""
                 self._log("info", f"{self.name} is at {post.poi}")
-                self._report = Report(self._word(BACK))
+                self._report = Report(self._word(BACK), self.reaction)
             return
         self._doubt = now if self._doubt is None else self._doubt
         is_elsewhere = self._at.position is not None and not self._at.is_near(post)
@@ -214,7 +216,7 @@ class Navigation:
         self.trouble = self._at.describe(post)
         if not self._view.displaced and not self._reports(DISPLACED):
             self._log("warn", f"{self.name} {self.trouble}, where the state has it")
-            self._report = Report(self._word(DISPLACED, self.trouble))
+            self._report = Report(self._word(DISPLACED, self.trouble), self.reaction)
 
     @property
     def _grace(self) -> float:
@@ -279,7 +281,7 @@ class Navigation:
         poi = trip.movement.place.poi
         self._at.on_arrival(poi)
         trip.has_arrived, trip.goal_at, self.trouble = True, None, ""
-        self._report = Report(f"{self.name}_{trip.movement.location}2{poi}")
+        self._report = Report(f"{self.name}_{trip.movement.location}2{poi}", self.reaction)
 
     def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
         what = self._what(trip, how, text)
@@ -292,13 +294,13 @@ class Navigation:
             self._log("err", f"{self.name} {self.trouble}")
             trip.has_failed = True
             is_blocked = how == FAILURES[ABORTED] and not trip.is_return
-            self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble))
+            self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble), self.reaction)
 
     def _on_cancelled(self, trip: Trip, how: str, text: str) -> None:
         self.trouble = self._what(trip, f"{how} by another node", text)
         self._log("warn", f"{self.name} {self.trouble}; it is held until {self.name}:{RESUME} is published")
         trip.is_cancelled, trip.attempts = True, 0
-        self._report = Report(self._word(HELD, self.trouble))
+        self._report = Report(self._word(HELD, self.trouble), self.reaction)
 
     @staticmethod
     def _what(trip: Trip, how: str, text: str) -> str:

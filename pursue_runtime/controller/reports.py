@@ -10,8 +10,10 @@ from pursue_runtime.resend import resend_timeout
 class Report:
     """A word that is published until it is confirmed."""
 
-    def __init__(self, word: str) -> None:
+    def __init__(self, word: str, reaction: float = 0.0) -> None:
+        """`reaction`: the seconds that the strategy allows a command, by which the word is sent again; 0: not known."""
         self.word = word
+        self._reaction = reaction
         self.confirmed = False
         self._count, self._published = 0, 0.0
 
@@ -27,4 +29,4 @@ class Report:
         return self._again() if self._count and not self.confirmed else None
 
     def _again(self) -> float:
-        return self._published + resend_timeout(self._count)
+        return self._published + resend_timeout(self._count, self._reaction)

@@ -63,7 +63,8 @@ class Controller:
             what = "its part in" if part.strategy is not None else "no part in"
             rospy.loginfo("has %s mission %s", what, part.mission or "own")
         self.alarm.set()
-        self.exegg.take_up(part.poses.of(part.robots) if part else {})
+        reaction = part.strategy.reaction if part and part.strategy is not None else 0.0
+        self.exegg.take_up(part.poses.of(part.robots) if part else {}, reaction)
 
     def update_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: order the robots what was taken, and plan the next command."""

@@ -37,7 +37,7 @@ class Exeggutor:
         self._poses: Mapping[str, Table] = {}
         self._places: Dict[str, Dict[str, Place]] = {}
         self._ways: Dict[str, Dict[str, Movement]] = {}
-        self._status = RUNNING
+        self._status, self._reaction = RUNNING, 0.0
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
@@ -45,10 +45,12 @@ class Exeggutor:
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
-    def take_up(self, poses: Mapping[str, Table]) -> None:
-        """Take these robots, each with its poses of the places; orders given before are over. Raises DataError, with
-        no robots, where the settings of one are wrong."""
+    def take_up(self, poses: Mapping[str, Table], reaction: float) -> None:
+        """Take these robots, each with its poses of the places; orders given before are over. `reaction`: the time
+        units that the strategy allows a command. Raises DataError, with no robots, where the settings of one are
+        wrong."""
         with self._lock:
+            self._reaction = reaction
             self._call_back()
             for link in self._links.values():
                 link.keep("", False, "")
@@ -93,6 +95,7 @@ class Exeggutor:
                 if state.status in ENDED and before not in ENDED:
                     self._call_back_one(name)
                 view = self._view(name, state)
+                robot.reaction = self._reaction * state.unit
                 robot.on_state(view, rospy.get_time())
                 self._links[name].keep(view.location, robot.is_open, robot.goal)
             self._act()
