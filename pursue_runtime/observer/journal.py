@@ -154,7 +154,8 @@ class Journal:
             if entries:
                 self.after = 0.0 if other else _moment(entries[-1].get("at"))
             elif source:
-                os.remove(source)
+                with contextlib.suppress(OSError):
+                    os.remove(source)
             self._begin([])
             return
         self.damage = found.damage

@@ -41,7 +41,9 @@ DESK, STRANGER = (Ed25519PrivateKey.from_private_bytes(bytes([number]) * 32) for
 
 def state(seq: int, stamp: int, status: str) -> Dict[str, Any]:
     """The fields of a state."""
-    return {"seq": seq, "stamp": {"secs": stamp, "nsecs": 0}, "time_unit": 1.0, "status": status}
+    automata = [{"name": "bot1", "location": "a"}]
+    stamps = {"secs": stamp, "nsecs": 0}
+    return {"seq": seq, "stamp": stamps, "time_unit": 1.0, "status": status, "automata": automata}
 
 
 class RunningReader:

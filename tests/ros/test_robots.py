@@ -68,8 +68,10 @@ def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_missio
 def test_a_robot_that_connects_late_is_told_and_is_called_back_when_its_controller_is_interrupted(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
-    automata = "[{name: bot1, location: going_c_to_b}, {name: bot2, location: c}]"
-    fields = f"seq: 3, stamp: {{secs: 1}}, time_unit: 1.0, automata: {automata}, clocks: [{{name: Cbot1, value: 1.0}}]"
+    locations = {"bot1": "going_c_to_b", "bot2": "c", "rule1": "rule1_initial_location", "reachObj": "unlocked"}
+    automata = [f"{{name: {name}, location: {location}}}" for name, location in locations.items()]
+    clocks = "[{name: Cbot1, value: 1.0}, {name: Cbot2, value: 1.0}]"
+    fields = f"seq: 3, stamp: {{secs: 1}}, time_unit: 1.0, automata: [{', '.join(automata)}], clocks: {clocks}"
     publish = f"exec rostopic pub -l pursue/state pursue_msgs/SystemState '{{{fields}, status: %s}}'"
     told = {status: publish % status for status in ("holding", "running")}
     command = "exec rosrun controller_bot1 controller_bot1 _goals:=action _on_stop:=cancel"
