@@ -12,6 +12,7 @@ from pursue_runtime.controller.goal import ABORTED, CANCELLED, FAILURES, SUCCEED
 from pursue_runtime.controller.reports import Report
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
+from pursue_runtime.locations import is_action
 from pursue_runtime.words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, RobotReport, format_report
 
 GRACE = 2.0
@@ -200,7 +201,9 @@ class Navigation:
     def _check_post(self, now: float) -> None:
         """Report that the robot is not known to be where the state has it, or that it is there again."""
         post = self._view.post
-        if post is None or self.settings.believes_words:
+        is_acting = is_action(self._view.location) and self._action is None  # it may move, as its action demands
+        if post is None or is_acting or self.settings.believes_words:
+            self._doubt = None
             return
         if self._is_known(now):
             self._doubt = None

@@ -439,6 +439,8 @@ class Mission:
             wrong = "expected the name of an agent that is under way"
         elif agent not in self.lost or self.ways.turns.pop(agent, None) is not None:
             self._mark_lost(agent, f"has failed {report.text}".rstrip())
+        else:
+            self.robots.drop(agent)
         if wrong:
             self._reject("impossible", f"{agent}:{report.event}: {wrong}")
         return self._status_changes(now)

@@ -90,9 +90,26 @@ def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None
     assert robot.actions == ["e"]
 
 
+def test_a_robot_may_move_in_its_action(robot: World) -> None:
+    robot.stay(doing="clean")
+    robot.robot.act("clean", "doing_clean_in_b")
+    robot.act()
+    robot.at(8.0, 4.0)
+    assert robot.wait(30.0) == [] and robot.actions == ["clean"] and len(robot.goals) == 1
+    robot.stay()
+    assert robot.words == [DISPLACED], "it has not come back"
+
+
+def test_an_action_that_a_person_began_by_hand_is_not_looked_at(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.texts.clear()
+    robot.stay(doing="clean")
+    assert robot.wait(30.0) == [] and robot.actions == []
+
+
 def test_a_robot_that_is_being_moved_is_sent_back_when_it_stands(robot: World) -> None:
     robot.at(5.0, 4.0)
-    robot.stay(doing="e", displaced=True, returning=True, running=False)
+    robot.stay(displaced=True, returning=True, running=False)
     for step in range(10):
         robot.at(5.0 + 0.1 * step, 4.0)
         robot.wait(0.3)

@@ -16,6 +16,8 @@ from tests.runtime.observer.test_mission import Journey
 
 EVERYWHERE = "{format: 1, cover: [{state: {}, zones: [always]}]}"
 
+EVERYWHERE_DATA = {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}
+
 HANDOVER = """
 format: 1
 scenario: handover
@@ -130,6 +132,22 @@ def test_a_robot_that_cannot_return_is_lost(made: Journey) -> None:
     state = made.hear("giver:_failed_ on its way back to mid: aborted", 5.0)
     assert (state.lost, state.displaced, state.returning) == (("giver",), (), ())
     assert "giver has failed on its way back to mid: aborted; looking for another plan" in state.reason
+
+
+def test_a_lost_robot_that_cannot_return_again_does_not_hold_the_mission(made: Journey) -> None:
+    made.hear("taker:_displaced_", 2.0)
+    made.hear("other:other_mid2end", 2.1)
+    made.hear("giver:handOver@3", 2.2)
+    state = made.hear("taker:_failed_", 3.0)
+    assert state.lost == ("taker",)
+    number = made.mission.plan_request.number
+    made.mission.on_plan(number, {"strategies": {}, "people": None, "cover": EVERYWHERE_DATA}, 3.1)
+    assert made.mission.status == "running"
+    state = made.hear("taker:_displaced_", 3.2)
+    state = made.hear(f"giver:handOver@{state.seq}", 3.3)
+    assert (state.status, state.returning) == ("holding", ("taker",))
+    state = made.hear("taker:_failed_", 4.0)
+    assert (state.status, state.returning) == ("running", ())
 
 
 # Held -----------------------------------------------------------------------------------------------------------------
