@@ -68,6 +68,7 @@ NODES: Mapping[str, Mapping[str, Node]] = {
         "sim_clock": Node("nodes.sim_clock", "Simulated time, for missions that run faster than life."),
         "recorder": Node("nodes.recorder", "Records a mission in a bag."),
     },
+    "bringup": {"run_mission": Node("ui.run_mission", "Launches the mission, and exits with the verdict.")},
     "communication_manager": {"": Node("nodes.communication_manager", "")},
     "pursue_reader": {
         "": Node("nodes.pursue_reader", ""),

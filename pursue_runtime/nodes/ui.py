@@ -33,9 +33,9 @@ from pursue_runtime.nodes.node import (
     subscribe,
 )
 from pursue_runtime.nodes.state_message import subscribe_states
-from pursue_runtime.state import WAITING, SystemState
+from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
-from pursue_runtime.ui.environment import IdleEnvironment, RandomEnvironment, TraceEnvironment
+from pursue_runtime.ui.environment import make_player
 from pursue_runtime.ui.mission_view import (
     MARGIN,
     Environment,
@@ -54,7 +54,8 @@ from pursue_runtime.ui.options import Options, read_options
 from pursue_runtime.ui.page import Facts, PageRequest
 from pursue_runtime.ui.page_server import PageServer, open_page
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal
-from pursue_runtime.ui.trace import TraceError, read_trace
+from pursue_runtime.ui.trace import TraceError
+from pursue_runtime.ui.verdict import INTERRUPTED, NOT_STARTED, Verdict, write_verdict
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
@@ -130,7 +131,7 @@ class UI:
                 self.board.on_state(state, self.mission.elapsed(state.stamp))
             verdict = self.mission.verdict()
             if verdict is not None:
-                self.conclude(*verdict)
+                self.conclude(state.status, verdict[1])
             elif state.status != WAITING:
                 if self.phase != RUNNING:
                     self.phase = RUNNING
@@ -211,7 +212,7 @@ class UI:
         if self.mission.start is not None:
             return
         if self.tries == TRIES:
-            self.conclude(1, f"The observer does not answer {START}.")
+            self.conclude(NOT_STARTED, f"The observer does not answer {START}.")
             return
         self.phase = STARTING
         self.tries += 1
@@ -228,7 +229,7 @@ class UI:
                 if self.membership.again:  # a machine may be switched on later
                     self.terminal.line(f"{after} Waiting on.", PLAIN)
                 else:
-                    self.conclude(1, f"{after} The mission was not started.")
+                    self.conclude(NOT_STARTED, f"{after} The mission was not started.")
             elif self.phase == STARTING:
                 self.start()
             elif self.phase == RUNNING:
@@ -243,7 +244,7 @@ class UI:
             self.finish_received = None
             if self.states.get_num_connections() == 0:
                 after = f"after {self.mission.elapsed(now):.1f} time units"
-                self.conclude(0, f"The observer published {FINISH} and is gone, {after}.")
+                self.conclude(WON, f"The observer published {FINISH} and is gone, {after}.")
                 return
         for word in self.mission.due(now, real):
             self.events.publish(word)
@@ -274,11 +275,13 @@ class UI:
             reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent) for task in self.given]
             self.offers = [*possible_words(self.model, state, state.clocks_at(rospy.get_time())), *reports]
 
-    def conclude(self, status: int, sentence: str) -> None:
-        """End with this status and sentence; only the first call counts."""
+    def conclude(self, outcome: str, sentence: str) -> None:
+        """End with this outcome and sentence; only the first call counts."""
         if self.verdict is not None:
             return
+        status = 0 if outcome == WON else 1
         self.verdict = (status, sentence)
+        save_verdict(self.options.verdict, outcome, sentence)
         self.terminal.close()
         self.terminal.line(sentence, GOOD if status == 0 else BAD)
         if self.board is not None:
@@ -310,7 +313,7 @@ class UI:
     def master_lost(self, why: str) -> None:
         """End the node: without a master no node can start or join."""
         with self.lock:
-            self.conclude(1, f"The mission cannot go on: {why}.")
+            self.conclude(STOPPED if self.phase == RUNNING else NOT_STARTED, f"The mission cannot go on: {why}.")
 
     def report(self) -> Report:
         """For /diagnostics."""
@@ -340,7 +343,8 @@ class UI:
         if self.ending.renewed:
             self.terminal.close()
             restart_process()
-        if self.verdict is None:  # interrupted: the mission has no verdict
+        if self.verdict is None:  # the mission goes on without the UI, or everything ends
+            save_verdict(self.options.verdict, INTERRUPTED, "The UI was interrupted before the mission ended.")
             self.terminal.close()
             return 1
         return status
@@ -364,18 +368,12 @@ def on_terminal() -> bool:
     return all(stream is not None and not stream.closed and stream.isatty() for stream in (sys.stdin, sys.stdout))
 
 
-def make_player(options: Options, model: Model) -> Environment:
-    """Return the player of the uncontrollable agents. Raises TraceError."""
-    if options.mode == "random":
-        return RandomEnvironment(model, options.seed, options.pace)
-    if options.mode == "trace":
-        words = {edge.word for automaton in model.automata for edge in automaton.edges if edge.sync != "receive"}
-        try:
-            with open(options.trace, encoding="utf-8") as file:
-                return TraceEnvironment(read_trace(file.read(), options.trace, words))
-        except (OSError, UnicodeDecodeError) as problem:
-            raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
-    return IdleEnvironment()
+def save_verdict(path: str, outcome: str, sentence: str) -> None:
+    """Writes the verdict for the program that launched the mission; logs why where that is not possible."""
+    try:
+        write_verdict(path, Verdict(outcome, sentence))
+    except OSError as problem:
+        rospy.logerr("cannot write the verdict: %s", problem)
 
 
 def main(package: Package) -> int:
@@ -395,5 +393,6 @@ def main(package: Package) -> int:
         ui.board = open_page(model, options, settings, membership.source, ui)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
+        save_verdict(str(rospy.get_param("~verdict", "")), NOT_STARTED, str(problem))
         return 2
     return ui.run()

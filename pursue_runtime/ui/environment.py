@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import random
 from typing import List, Optional, Sequence, Tuple
 
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.mission_view import MARGIN, possible_words
-from pursue_runtime.ui.trace import TraceStep
+from pursue_runtime.ui.mission_view import MARGIN, Environment, possible_words
+from pursue_runtime.ui.options import Options
+from pursue_runtime.ui.trace import TraceError, TraceStep, read_trace
 
 MIN_PAUSE = 1.0  # time units after a word without effect until the next one
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
@@ -106,3 +108,17 @@ class TraceEnvironment:
 
     def _moment(self) -> float:
         return (self._start or 0.0) + self._steps[self._next].at * self._unit
+
+
+def make_player(options: Options, model: Model) -> Environment:
+    """Return the player of the uncontrollable agents. Raises TraceError."""
+    if options.mode == "random":
+        return RandomEnvironment(model, options.seed, options.pace)
+    if options.mode == "trace":
+        words = {edge.word for automaton in model.automata for edge in automaton.edges if edge.sync != "receive"}
+        try:
+            with open(options.trace, encoding="utf-8") as file:
+                return TraceEnvironment(read_trace(file.read(), options.trace, words))
+        except (OSError, UnicodeDecodeError) as problem:
+            raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
+    return IdleEnvironment()

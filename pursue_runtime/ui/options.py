@@ -6,7 +6,7 @@ import argparse
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence, Tuple
 
-from pursue_runtime.parameters import ParameterError, choice, flag, names, number, whole
+from pursue_runtime.parameters import ParameterError, choice, flag, names, number, text, whole
 
 MODES = {
     "ask": "you choose what the uncontrollable agents do",
@@ -20,7 +20,8 @@ MIN_TOKEN_LENGTH = 8  # characters of a token
 
 @dataclass(frozen=True)
 class Options:
-    """`wait` is in real seconds, `pace` in time units; a page for browsers on `host` and `port` if `web`."""
+    """`wait` is in real seconds, `pace` in time units; a page for browsers on `host` and `port` if `web`;
+    the file `verdict` gets the verdict."""
 
     mode: str
     trace: str
@@ -34,6 +35,7 @@ class Options:
     host: str = "127.0.0.1"
     port: int = 8080
     token: str = ""
+    verdict: str = ""
 
 
 def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: bool, nodes: Sequence[str]) -> Options:
@@ -67,6 +69,7 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
         host=str(found.get("host") or "127.0.0.1"),
         port=whole(found, "port", 8080, most=65535),
         token=token,
+        verdict=text(found, "verdict"),
     )
 
 
@@ -104,4 +107,5 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--port", metavar="N", help="of --web (default 8080; 0: any that is free)")
     parser.add_argument("--token", metavar="WORD", help="of --web: who opens the page must know it; one is made for "
                         "every address but loopback")
+    parser.add_argument("--verdict", metavar="FILE", help="write there how the mission ended, when it has")
     return parser

@@ -30,6 +30,10 @@ PUBLISH_EVENT = Path(__file__).resolve().parent / "publish_event.py"
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
 
+Started = Tuple["subprocess.Popen[bytes]", Dict[str, str]]
+"""A process, and the variables that lead to its master."""
+
+
 def _setup() -> str:
     """What a user of ROS sources first; Debian's own packages need nothing."""
     for distribution in ("noetic", "one"):
@@ -102,6 +106,20 @@ class Ros:
             yield {"ROS_MASTER_URI": uri}
         finally:
             end(core)
+
+    def start_with_master(self, command: str, folder: Path, log: Path, **more: str) -> "Started":
+        """Starts a command that brings up a master of its own on $ROS_MASTER_URI, and waits for that master; tries
+        again, on another port, where the command ends before: roslaunch gives its master ten seconds."""
+        for _ in range(6):
+            there = {"ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"}
+            process = self.start(command, folder, log, **there, **more)
+            deadline = time.monotonic() + PATIENCE / 2
+            while time.monotonic() < deadline and process.poll() is None:
+                if _has_run_id(there["ROS_MASTER_URI"]):
+                    return process, there
+                time.sleep(0.05)
+            end(process)
+        raise AssertionError(f"{command}: no master:\n{log.read_text(errors='replace')}")
 
     def _roscore(self, tries: int) -> "Tuple[str, subprocess.Popen[bytes]]":
         """Its address and its process. It ends by itself where its port is somebody else's by now, and where its master

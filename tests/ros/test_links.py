@@ -251,10 +251,10 @@ def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build,
 
 
 def test_where_roslaunch_loses_its_own_master_ui_and_observer_say_so(ros: Ros, built: Build, tmp_path: Path) -> None:
-    port, log = free_port(), tmp_path / "launch"
-    there = {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOME": str(tmp_path)}
-    line = f"roslaunch --skip-log-check -p {port} scenario_1_bringup mission.launch time_unit:=3 wait:={PATIENCE:g}"
-    launch = ros.start(f"source devel/setup.bash; exec {line}", built("thesis/scenario_1"), log, **there)
+    log, workspace = tmp_path / "launch", built("thesis/scenario_1")
+    line = f"roslaunch --skip-log-check scenario_1_bringup mission.launch time_unit:=3 wait:={PATIENCE:g}"
+    command = f"source devel/setup.bash; exec {line}"
+    launch, there = ros.start_with_master(command, workspace, log, ROS_HOME=str(tmp_path))
     try:
         until(lambda: "bot1_c2b" in log.read_text(errors="replace"), log.read_text)
         os.kill(ServerProxy(there["ROS_MASTER_URI"]).getPid("/test")[2], signal.SIGKILL)  # type: ignore[index]

@@ -79,5 +79,5 @@ def test_a_mission_with_another_python_first_on_path(ros: Ros, tmp_path: Path) -
 @needs_setup
 def test_a_mission_that_fails_fails_the_command(ros: Ros, tmp_path: Path) -> None:
     told = run_mission(SCENARIO, "-o", tmp_path / "ws", "mode:=trace", f"trace:={tmp_path}/none.yaml")
-    assert told.returncode == 1, told.stdout
-    assert "did not reach its goal" in told.stdout and "cannot read the trace" in told.stdout
+    assert told.returncode == 3, told.stdout
+    assert "did not reach its goal" in told.stdout and "not started: cannot read the trace" in told.stdout

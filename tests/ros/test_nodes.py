@@ -93,6 +93,18 @@ def test_the_launch_file_plays_the_mission_and_ends(ros: Ros, sourced: Tuple[Pat
     assert "Traceback" not in done.stdout, done.stdout
 
 
+def test_run_mission_exits_with_0_where_the_goal_is_reached(
+    ros: Ros, sourced: Tuple[Path, str], tmp_path: Path
+) -> None:
+    workspace, source = sourced
+    with ros.master() as there:
+        command = f"{source}exec rosrun scenario_1_bringup run_mission use_sim_time:=true wait:={PATIENCE:g}"
+        done = ros.run(command, workspace, ROS_HOME=str(tmp_path), **there)
+    last = done.stdout.rstrip().rpartition("\n")[2]
+    assert (done.returncode, last.startswith("won: The goal is reached, after ")) == (0, True), done.stdout[-6000:]
+    assert "ROS master" not in done.stdout, "nothing is wrong with it"
+
+
 def test_each_package_builds_alone(ros: Ros, built: Build, tmp_path: Path) -> None:
     packages: List[Path] = [p.parent for p in (built("thesis/scenario_1") / "src").glob("*/package.xml")]
     assert len(packages) == 10
