@@ -174,16 +174,23 @@ def _mission(values: Mapping[str, Any], robots: bool) -> List[Service]:
         Setting("token", "", "PURSUE_TOKEN", text=True),
         Setting("autostart", _bool(not robots), "PURSUE_AUTOSTART"),
         Setting("wait", "60"),
+        Setting("ends", _bool(robots)),
         without,
         Setting("also", "", "PURSUE_ALSO", text=True),
     )
     simulated = Setting("simulated", _bool(not robots), "PURSUE_SIMULATE")
+    real = (
+        Setting("goals", "action", "PURSUE_GOALS", text=True),
+        Setting("ends", "result", "PURSUE_ENDS", text=True),
+        Setting("on_stop", "cancel", "PURSUE_ON_STOP", text=True),
+    )
+    robot = (simulated, *(real if robots else ()))
     planner = Setting("planner", "off", "PURSUE_PLANNER", text=True)
     page = ("127.0.0.1:${PURSUE_PAGE_PORT:-8080}:8080",)
     bag = (Setting("file", "true"), without)
     return [
         Service("observer", "observer", "observer", (unit, planner, *shared), ("observer",), BASE),
-        *(Service(name, name, name, (simulated, *shared), (name,), name) for name in controllers),
+        *(Service(name, name, name, (*robot, *shared), (name,), name) for name in controllers),
         Service("UI", "UI", "UI", (*ui, *shared), ("UI",), BASE, ports=page),
         *([] if robots else [Service("simulator", "UI", "simulator", shared, ("UI",), BASE)]),
         Service("recorder", "UI", "recorder", (*bag, *shared), ("UI",), BASE, profile="record"),

@@ -289,7 +289,8 @@ def test_every_variable_of_a_unit_has_a_value(generated: Dict[str, bytes]) -> No
 
 def test_on_robots_nothing_is_simulated_and_nothing_starts_by_itself(generated: Dict[str, bytes]) -> None:
     told = generated["systemd/pursue.env"].decode()
-    for line in ('PURSUE_SIMULATE="false"', 'PURSUE_AUTOSTART="false"', 'PURSUE_PAGE_HOST="127.0.0.1"'):
+    real = 'PURSUE_GOALS="action"', 'PURSUE_ENDS="result"', 'PURSUE_ON_STOP="cancel"'
+    for line in ('PURSUE_SIMULATE="false"', 'PURSUE_AUTOSTART="false"', 'PURSUE_PAGE_HOST="127.0.0.1"', *real):
         assert f"\n{line}\n" in told
     assert '\nPURSUE_NODES="all"\n' in told
     reader = generated["systemd/pursue-pursue_reader.service"].decode()
