@@ -57,6 +57,10 @@ class Position(NamedTuple):
     values: Dict[str, int]
     clocks: Dict[str, float]
 
+    def aged(self, delay: float) -> Position:
+        """This position after so many time units in which nothing happens."""
+        return self._replace(clocks={clock: value + delay for clock, value in self.clocks.items()})
+
 
 class Model:
     """The network of the mission, in system order."""

@@ -12,7 +12,7 @@ from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.replanning.request import Request, read_request
-from pursue_gen.replanning.start import network_from, passed_bounds
+from pursue_gen.replanning.start import network_from, passed_bounds, start_clocks
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
@@ -91,7 +91,7 @@ def _reason_lost(network: Network, objective: Objective) -> str:
 
 def _cannot_be_met(game: Network, request: Request) -> str:
     """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
-    clocks = {name: request.clocks[name] + request.ahead for name in game.clocks}
+    clocks = start_clocks(game, request)
     agents = [agent.name for agent in request.scenario.agents]
     over: Dict[str, str] = {}
     for automaton in game.automata:

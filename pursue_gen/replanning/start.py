@@ -9,7 +9,7 @@ from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
-from pursue_gen.tga.names import going
+from pursue_gen.tga.names import agent_clock, going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
 from pursue_gen.zones.scale import least_common_multiple
 
@@ -44,6 +44,13 @@ def network_from(network: Network, request: Request) -> Network:
     reaction = request.rules.reaction
     grid = least_common_multiple((reaction.denominator, _FINEST))
     return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
+
+
+def start_clocks(network: Network, request: Request) -> Dict[str, Fraction]:
+    """The clocks when the plan begins; the movements of those who turn round begin then. Raises PursueError."""
+    starting = {agent_clock(agent) for agent in request.turning}
+    clocks = {name: _known(request.clocks, name, "clock") for name in network.clocks}
+    return {name: clock if name in starting else clock + request.ahead for name, clock in clocks.items()}
 
 
 def passed_bounds(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Tuple[ClockBound, ...]:
@@ -83,8 +90,7 @@ def _place(network: Network, request: Request) -> Tuple[Dict[str, str], Dict[str
             raise wrong(f"{automaton.name} has no location {here}", f"one of {', '.join(names)}")
     locations = {automaton.name: request.locations[automaton.name] for automaton in network.automata}
     values = {name: _known(request.values, name, "value") for name, _ in network.variables}
-    clocks = {name: _known(request.clocks, name, "clock") + request.ahead for name in network.clocks}
-    return locations, values, clocks
+    return locations, values, start_clocks(network, request)
 
 
 def _known(table: Mapping[str, T], name: str, what: str) -> T:

@@ -110,7 +110,7 @@ class Automata:
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
     def turn(self, moves: Iterable[Move], now: float) -> None:
-        """Apply moves of robots that turn round on their way: their edges start at the other end of it."""
+        """Apply moves of robots that turned round on their way at that time: their edges start at its other end."""
         for name, edge in moves:
             self._machines[name].set(edge.target)
             self._values.update(edge.assign)

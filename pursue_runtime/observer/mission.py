@@ -396,8 +396,9 @@ class Mission:
     def _request_plan(self, now: float) -> bool:
         """Request another plan from here; return False if there is none."""
         position = Model.after(tuple(self.ways.turns.values()), self.position(now))
-        excused = frozenset(self.late | set(self.lost)) - set(self.ways.turns)
-        ends = [delay for name, delay in self._automata.bounds(position) if name not in excused]
+        gone = frozenset(self.late | set(self.lost))
+        excused = gone - set(self.ways.turns)
+        ends = [delay for name, delay in self._automata.bounds(position) if name not in gone]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
         self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
         return not self._planning.no_plan_reason
@@ -412,13 +413,15 @@ class Mission:
         if proposal is None:
             return []
         turns = tuple(self.ways.turns[name] for name in proposal.request.turning)
-        if not covers(proposal.cover, Model.after(turns, self.position(now)), self._tolerance):
+        start = min(now, proposal.request.stamp + proposal.request.ahead * self._unit)  # there the proof begins
+        position = Model.after(turns, self.position(start)).aged((now - start) / self._unit)
+        if not covers(proposal.cover, position, self._tolerance):
             self._planning.expire(proposal, now)
             return self._status_changes(now)
         self.in_force = proposal.data
         self.plan, self._cover = proposal.data["plan"], proposal.cover
         self._planning.put_in_force(proposal)
-        self._automata.turn(turns, now)
+        self._automata.turn(turns, start)
         for name, _ in turns:
             self.late.discard(name)
             self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")

@@ -123,6 +123,14 @@ def test_who_returns_may_be_back_at_once_but_not_too_late() -> None:
     assert not end.controllable
 
 
+def test_who_turns_round_sets_out_when_the_plan_begins() -> None:
+    request = under_way("bot1", "c", "b", 0.0, ahead=50.0, turning=["bot1"])
+    network = network_from(played(translate(ring()), Rules()), read_request(request))
+    upper = {bound.left: bound.bound for bound in network.start if bound.right is None}
+    assert upper["Cbot1"] == 0 and network.automaton("bot1").locations != ()
+    assert replan(request)["won"]
+
+
 def test_who_is_on_a_way_when_it_is_blocked_may_still_arrive() -> None:
     assert replan(under_way("bot1", "b", "c", 5.0, excused=["bot2"], blocked=[["b", "c"]]))["won"]
 

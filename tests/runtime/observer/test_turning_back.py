@@ -57,12 +57,31 @@ def test_the_plan_is_to_begin_with_the_robot_on_its_way_back() -> None:
 def test_the_robot_goes_back_when_the_plan_is_in_force_and_not_before() -> None:
     made = journey()
     made.hear("bot:_blocked_", 3.0)
-    (state,) = planned(made, EVERYWHERE, 30.0)
+    (state,) = planned(made, EVERYWHERE, 3.5)
     assert (state.status, state.plan, state.lost, state.event, state.agent) == ("running", 1, (), "", "")
     assert (state.locations["bot"], state.values["Pbot"]) == ("going_b_to_a", -21)
-    assert (state.clocks["Cbot"], state.clocks["Creach"]) == (0.0, 30.0)
-    state = made.hear("bot_going_b_to_a2a", 31.0)
+    assert (state.clocks["Cbot"], state.clocks["Creach"]) == (0.0, 3.5)
+    state = made.hear("bot_going_b_to_a2a", 4.0)
     assert (state.status, state.locations["bot"]) == ("running", "a"), "it was not far"
+
+
+def test_the_way_back_begins_when_the_plan_has_it_begin() -> None:
+    """The proof begins at moment 4; what is covered are plays from there."""
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    assert made.mission.plan_request.ahead == 1.0
+    (state,) = planned(made, EVERYWHERE, 6.5)
+    assert (state.clocks["Cbot"], state.clocks["Creach"]) == (2.5, 6.5)
+
+
+def test_a_plan_that_comes_too_late_for_the_way_back_is_made_again_with_more_time_ahead() -> None:
+    cover = {"format": 1, "cover": [{"state": {"bot": "going_b_to_a"}, "zones": ["Cbot <= 4"]}]}
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    assert planned(made, cover, 13.0) == []
+    assert made.mission.plan_request.ahead == pytest.approx(10 * 1.3 + 1), "more than the way back takes"
+    (state,) = planned(made, cover, 23.0)
+    assert (state.status, state.locations["bot"], state.clocks["Cbot"]) == ("running", "going_b_to_a", 0.0)
 
 
 def test_a_plan_that_does_not_cover_the_way_back_is_not_put_in_force() -> None:
