@@ -15,9 +15,11 @@ from typing import Any, Collection, List, Tuple
 
 import yaml
 
-from pursue_runtime.bounded import BadText, node_value, yaml_tree
+from pursue_runtime.bounded import BadText, Bounds, node_value, yaml_tree
 
 EXPECTED = "expected `- {at: <time units since the start>, do: <word>}`"
+_BOUNDS = Bounds(size=2**24, depth=4, values=1_000_000)
+"""Some 200,000 steps."""
 CONTROL_WORDS = ("_ping_", "_stop_", "Finish!")
 
 
@@ -39,7 +41,7 @@ def read_trace(text: str, file: str, words: Collection[str]) -> Tuple[TraceStep,
     Raises TraceError, with every fault of the file in it.
     """
     try:
-        root = yaml_tree(text)
+        root = yaml_tree(text, _BOUNDS)
     except BadText as error:
         raise TraceError(f"{file}:{error.line or 1}: {error.reason}; {EXPECTED}") from error
     if not isinstance(root, yaml.SequenceNode):
