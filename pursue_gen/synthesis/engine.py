@@ -55,9 +55,13 @@ class Engine(ABC):
         """True if it can be used in this installation."""
         return True
 
+    def holds(self, game: Game) -> bool:
+        """True if its numbers can hold all times and values of the game."""
+        return True
+
     @abstractmethod
     def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
-        """Decide the game.
+        """Decide a game that it `holds`.
 
         `progress` is called a few times a second from the calling thread; what it raises ends the search, as does
         KeyboardInterrupt. Raises PursueError (SYN010, exit status 5) at one of the limits, and where the system gives

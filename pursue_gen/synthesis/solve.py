@@ -74,11 +74,18 @@ def solve(
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
     `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
-    a few times a second. Raises PursueError for networks that the game does not support, with exit status 5 at a limit,
-    and with 6 where the engine is not available.
+    a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
+    networks that the game does not support, with exit status 5 at a limit, with 6 where the engine is not available,
+    and with 2 where it does not hold the game.
     """
     chosen = choose(engine)
     game = compile_game(network, objective, reaction)
+    if not chosen.holds(game):
+        if engine is not None:
+            hint = "leave the choice to pursue-gen, or use --engine python"
+            message = f"the {engine} engine cannot hold the game: its times are too large, or it has too many clocks"
+            raise PursueError([error("SYN012", message, hint=hint)], exit_status=2)
+        chosen = next(other for other in ENGINES if other.available() and other.holds(game))
     outcome = chosen.solve(game, limits, progress)
     counts = outcome.counts
     stats = Stats(chosen.name, counts.discrete_states, counts.zones, outcome.seconds, counts.symbolic_states)

@@ -14,8 +14,14 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
-INF = 1 << 30
-"""The raw bound of "no bound". Finite raw bounds are far smaller."""
+from pursue_gen.diagnostics import PursueError, error
+
+INF = 1 << 256
+"""The raw bound of "no bound". Finite raw bounds are far smaller: `raw` makes none beyond `MOST`, and sums of as many
+as there can be in a zone stay below."""
+
+MOST = 1 << 200
+"""The constants of bounds are below."""
 
 LE_ZERO = 1
 """The raw bound `<= 0`."""
@@ -24,7 +30,10 @@ Number = Union[int, Fraction]
 
 
 def raw(c: int, strict: bool) -> int:
-    """The raw form of `< c` (strict) or `<= c`."""
+    """The raw form of `< c` (strict) or `<= c`. Raises PursueError for a number that no zone can hold."""
+    if not -MOST < c < MOST:
+        hint = "use smaller times, or fractions with smaller denominators"
+        raise PursueError([error("SYN013", "the times are too large, or too fine, to compute with", hint=hint)])
     return 2 * c + (0 if strict else 1)
 
 

@@ -7,13 +7,16 @@ from typing import Any, Callable, List, Sequence, Tuple
 
 import pytest
 
-from pursue_gen.zones.dbm import Dbm, Number
+from pursue_gen.zones.dbm import INF, Dbm, Number
 from pursue_gen.zones.federation import Federation, predt
 
 try:
     from pursue_gen.zones.native import _zones
 except ImportError:  # no compiler when the package was installed
     _zones = None  # type: ignore[assignment]
+
+_UNBOUNDED = 1 << 30
+"""No bound, for the native zones."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def _native(name: str) -> Twin:
 
     def zone(python: Dbm) -> Any:
         assert binding is not None
-        return binding.Dbm(python.dim, python.m)
+        return binding.Dbm(python.dim, tuple(min(bound, _UNBOUNDED) for bound in python.m))
 
     def federation(python: Federation) -> NativeFederation:
         return NativeFederation(binding, tuple(map(zone, python.zones)))
@@ -102,7 +105,7 @@ twins = pytest.mark.parametrize(
 
 def python(zone: Any) -> Dbm:
     """A zone of any implementation as Python's."""
-    return Dbm(zone.dim, tuple(zone.m))
+    return Dbm(zone.dim, tuple(INF if bound >= _UNBOUNDED else bound for bound in zone.m))
 
 
 def holds(zones: Any, point: Sequence[Number]) -> bool:

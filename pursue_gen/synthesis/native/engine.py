@@ -9,11 +9,16 @@ from typing import Any, ClassVar, Dict, List, Optional, Tuple
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
+from pursue_gen.zones.dbm import INF
 
 try:
     from pursue_gen.synthesis.native import _core
 except ImportError:  # no compiler when the package was installed: the Python reference serves
     _core = None  # type: ignore[assignment]
+
+
+_CLOCKS, _NO_BOUND, _VALUES = 39, 1 << 29, 1 << 31
+"""The bounds of module.cpp: clocks, raw bounds, values of variables."""
 
 
 def available() -> bool:
@@ -36,8 +41,19 @@ class NativeEngine(Engine):
         """True if it was built with the package."""
         return available()
 
+    def holds(self, game: Game) -> bool:
+        """True up to 39 clocks, while sums along a path through all clocks stay below 2²⁹, and values in 32 bits."""
+        times = [b for _, _, b in game.start]
+        times += [b for automaton in game.automata for place in automaton.invariants for _, b in place]
+        times += [b for edge in game.edges for _, _, b in edge.bounds]
+        values = [*game.initial_values, *(value for edge in game.edges for _, value in edge.assignments)]
+        values += [value for edge in game.edges for clause in edge.clauses for _, value in clause]
+        largest = max([game.delta, *(abs(b >> 1) + 1 for b in times)])
+        path = (len(game.clocks) + 2) * (2 * largest + 2 * game.delta + 2)
+        return len(game.clocks) <= _CLOCKS and path < _NO_BOUND and all(-_VALUES <= v < _VALUES for v in values)
+
     def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
-        """Decide the game, see `Engine`; raises ValueError for more than 39 clocks, or constants beyond 32 bits."""
+        """Decide the game, see `Engine`."""
         reached = NOTHING_YET
 
         def report(states: int, waiting: int, seconds: float, memory: int) -> None:
@@ -72,7 +88,8 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
 
 
 def _matrix(bounds: bytes) -> Tuple[int, ...]:
-    return tuple(array("i", bounds))
+    found = array("i", bounds)
+    return tuple(INF if bound >= _NO_BOUND else bound for bound in found) if max(found) >= _NO_BOUND else tuple(found)
 
 
 def _action(edges: Any) -> Action:
