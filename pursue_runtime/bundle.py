@@ -41,7 +41,7 @@ from pursue_runtime.manifest import (
 
 __all__ = [
     "ABORT", "ACTIONS", "COMMIT", "FILES", "FORMAT", "ID_LENGTH", "LIMIT", "MANIFEST", "MISSION", "ORDER_LENGTH", "OWN",
-    "PREPARE", "SIGNATURE", "Bundle", "Keys", "Manifest", "Order", "Refused", "fingerprint", "is_digest",
+    "PREPARE", "SIGNATURE", "Bundle", "Keys", "Manifest", "Order", "Refused", "check_seal", "fingerprint", "is_digest",
     "make_manifest", "mission_file", "mission_id", "new_ticket", "pack", "read_keys", "read_order", "read_public_key",
     "unpack", "write_order", "write_public_key",
 ]
@@ -128,9 +128,7 @@ def unpack(content: bytes, keys: Keys, limit: int = LIMIT) -> Bundle:
     text, seal = entries.pop(MANIFEST, None), entries.pop(SIGNATURE, None)
     if text is None or seal is None or len(seal) > _LONGEST_SEAL:
         raise Refused("bad_bundle", f"a bundle has a {MANIFEST} and a {SIGNATURE}")
-    facts = _object(seal, SIGNATURE)
-    signed_by = str(facts.get("key"))
-    signature = _check_signature(keys, signed_by, str(facts.get("signature")), _MISSION + text)
+    signed_by, signature = check_seal(text, seal, keys)
     manifest = _manifest(text)
     if set(entries) != set(manifest.files):
         raise Refused("bad_bundle", "the files are not those that the manifest lists")
@@ -140,6 +138,13 @@ def unpack(content: bytes, keys: Keys, limit: int = LIMIT) -> Bundle:
     if _zipped({MANIFEST: text, SIGNATURE: _seal(signed_by, signature), **entries}) != content:
         raise Refused("bad_bundle", "there is more in the file than its mission")
     return Bundle(hashlib.sha256(text).hexdigest(), manifest, entries, signed_by)
+
+
+def check_seal(text: bytes, seal: bytes, keys: Keys) -> Tuple[str, bytes]:
+    """Who has signed the text of a manifest, and the signature, from signature.json. Raises Refused."""
+    facts = _object(seal, SIGNATURE)
+    signed_by = str(facts.get("key"))
+    return signed_by, _check_signature(keys, signed_by, str(facts.get("signature")), _MISSION + text)
 
 
 def _manifest(text: bytes) -> Manifest:

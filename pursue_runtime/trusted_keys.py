@@ -30,6 +30,16 @@ class KeyFolder:
             self._stamp = stamp  # last: another thread may call this meanwhile
         return self._keys
 
+    def complete(self) -> bool:
+        """Return True if every key file could be read: only then a key that is not there was removed."""
+        try:
+            names = [name for name in os.listdir(self.folder) if name.endswith(".pub")]
+        except FileNotFoundError:
+            return True
+        except OSError:
+            return False
+        return all(os.access(os.path.join(self.folder, name), os.R_OK) for name in names)
+
     def _scan(self) -> Stamp:
         try:
             with os.scandir(self.folder) as entries:

@@ -28,7 +28,7 @@ from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Repo
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, text, whole
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
-from pursue_runtime.reader.reader import PATIENCE, Machine, Reader
+from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store, StoreError
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
@@ -83,7 +83,7 @@ class Node:
                 self.publish()
 
     def on_alarm(self) -> None:
-        """Handle the time at which an observer counts as gone."""
+        """Handle the time at which an observer counts as gone, or keys may have been removed."""
         with self.lock:
             self.reader.on_time(time.monotonic())
             self.publish()
@@ -95,7 +95,8 @@ class Node:
             self.published = text
             with contextlib.suppress(rospy.ROSException):  # the node is going down
                 self.statuses.publish(text)
-        self.alarm.set(None, self.reader.next_check(time.monotonic()))
+        check = self.reader.next_check(time.monotonic())
+        self.alarm.set(None, KEYS_PERIOD if check is None else min(check, KEYS_PERIOD))
 
     def master_lost(self, why: str) -> None:
         """End the node, which is then started again: another master would not know it."""

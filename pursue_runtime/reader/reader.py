@@ -9,7 +9,7 @@ import base64
 import binascii
 import hashlib
 import os
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import DATA, BadText, read_json
 from pursue_runtime.bundle import (
@@ -31,7 +31,7 @@ from pursue_runtime.data import DataError, read_data
 from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
-from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, manifest
+from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, is_signed, manifest
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover
 from pursue_runtime.trusted_keys import KeyFolder
@@ -43,8 +43,13 @@ FRESH = 1.5
 """Seconds for which it counts that no mission runs: an observer publishes it once a second, and one that was restarted,
 and is not connected to us yet, takes longer to begin."""
 
+KEYS_PERIOD = 2.0
+"""Seconds after which `on_time` looks at the trusted keys again."""
+
 RETRY_PERIOD = 10.0
 """Seconds until an exchange of missions that the disk did not take is tried again."""
+
+UNTRUSTED = "was signed with a key that is not trusted any more"
 
 CONTROLLER_FILES = ("strategy.yaml", POSES)
 FILES: Mapping[str, Tuple[str, ...]] = {
@@ -86,6 +91,8 @@ class Reader:
         self.counts = dict.fromkeys((PREPARE, COMMIT, ABORT, "exchanged"), 0)
         self._store = store
         self._keys = keys
+        self._checked: Optional[Keys] = None  # the keys with which `_untrusted` was found
+        self._untrusted: FrozenSet[str] = frozenset()
         self._log = log
         self._patience = patience
         self._known: Optional[SystemState] = None
@@ -102,6 +109,7 @@ class Reader:
             return self._refuse("", refused, now)
         self.ticket = new_ticket()
         try:
+            self._check_signatures()
             self.answer = self._execute(order, bundle, now)
         except Refused as refused:
             self.answer = self._refuse(order.ticket, refused, now)
@@ -120,7 +128,15 @@ class Reader:
         return self.on_time(now) or self.mission_runs != before
 
     def on_time(self, now: float) -> bool:
-        """Exchanges missions if that is wanted, and can be. True if it was done."""
+        """Exchanges missions if that is wanted, and can be. True if it was done, or missions were dropped."""
+        try:
+            dropped = self._check_signatures()
+        except StoreError as problem:
+            self._failures.count("failed", str(problem), now)
+            dropped = False
+        return self._exchange_next(now) or dropped
+
+    def _exchange_next(self, now: float) -> bool:
         state = self._store.state
         if state.next is None or not self._can_exchange(now):
             return False
@@ -154,6 +170,9 @@ class Reader:
         found = [] if self.keys() else [
             f"no key is trusted, every order is refused: put the desk's public key into {self._keys.folder}"
         ]
+        if self._store.state.current in self._untrusted:
+            name = mission_id(self._store.state.current)
+            found.append(f"mission {name} {UNTRUSTED}: it is replaced when no mission runs")
         return "; ".join([*found, *self._keys.problems])
 
     def status(self) -> Dict[str, Any]:
@@ -238,7 +257,9 @@ class Reader:
             if bundle.digest != mission:
                 raise Refused("bad_bundle", "the bundle holds another mission than the order says")
             self._store.put(bundle, content, lambda folder: self._check(folder, bundle.manifest.files))
+            self._untrusted -= {bundle.digest}
         elif mission != OWN:
+            self._refuse_untrusted(mission)
             if not self._store.is_intact(mission):
                 raise Refused("unknown_mission", f"mission {name} is not here: send it with its bundle")
             folder = os.path.join(self._store.folder, mission)
@@ -248,6 +269,7 @@ class Reader:
 
     def _commit(self, mission: str, content: bytes, now: float) -> Tuple[str, str]:
         state, name = self._store.state, mission_id(mission)
+        self._refuse_untrusted(mission)
         if mission not in (state.current, state.next, state.prepared):
             raise Refused("not_prepared", f"mission {name} is not prepared")
         prepared = None if state.prepared == mission else state.prepared
@@ -282,11 +304,39 @@ class Reader:
         if mission != OWN and not self._store.is_intact(mission):
             self._store.save(self._store.state._replace(next=None))
             raise Refused("unknown_mission", f"mission {mission_id(mission)} is damaged: send it again with its bundle")
-        history = [name for name in (*state.history, state.current) if name != mission]
+        before = (*state.history, state.current)
+        history = [name for name in before if name != mission and name not in self._untrusted]
         history = [name for number, name in enumerate(history) if name not in history[number + 1:]]
         self._store.save(state._replace(current=mission, next=None, history=tuple(history)))
         self.counts["exchanged"] += 1
         self._log("info", f"mission {mission_id(mission)} takes the place of {mission_id(state.current)}")
+
+    def _check_signatures(self) -> bool:
+        """Drops the missions that no trusted key has signed; the current one is replaced as soon as none runs.
+
+        True if anything has changed. Raises StoreError.
+        """
+        keys = self.keys()
+        if keys is not self._checked and self._keys.complete():
+            kept = self._store.kept()
+            self._untrusted = frozenset(name for name in kept if not is_signed(self._store.folder, name, keys))
+            self._checked = keys
+            for name in sorted(self._untrusted):
+                self._log("warn", f"mission {mission_id(name)} {UNTRUSTED}: it is not played")
+        state = self._store.state
+        if not self._untrusted.intersection(state.named()):
+            return False
+        history = tuple(name for name in state.history if name not in self._untrusted)
+        following = None if state.next in self._untrusted else state.next
+        if state.current in self._untrusted and following is None:
+            following = history[-1] if history else OWN
+        prepared = None if state.prepared in self._untrusted else state.prepared
+        self._store.save(state._replace(next=following, prepared=prepared, history=history))
+        return self._store.state != state
+
+    def _refuse_untrusted(self, mission: str) -> None:
+        if mission in self._untrusted:
+            raise Refused("unknown_key", f"mission {mission_id(mission)} {UNTRUSTED}: send it again with its bundle")
 
     def _check(self, folder: str, files: Iterable[str]) -> None:
         """Raises Refused where the nodes of this machine could not read their part of a mission."""

@@ -18,7 +18,19 @@ import zipfile
 from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import BadText, read_json
-from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, is_digest, mission_file, mission_id
+from pursue_runtime.bundle import (
+    MANIFEST,
+    MISSION,
+    OWN,
+    SIGNATURE,
+    Bundle,
+    Keys,
+    Refused,
+    check_seal,
+    is_digest,
+    mission_file,
+    mission_id,
+)
 
 STATE = "state.json"
 KEEP = 5
@@ -122,6 +134,16 @@ def manifest(folder: str, digest: str) -> Dict[str, Any]:
     if not good:
         raise StoreError(f"mission {mission_id(digest)} is of another version")
     return facts
+
+
+def is_signed(folder: str, digest: str, keys: Keys) -> bool:
+    """True if one of the keys has signed a mission in the store. Raises TemporaryError."""
+    try:
+        text, seal = (_read(os.path.join(folder, digest, name)) for name in (MANIFEST, SIGNATURE))
+        check_seal(text, seal, keys)
+    except (OSError, Refused):
+        return False
+    return True
 
 
 def find_damage(folder: str, digest: str) -> str:
@@ -238,14 +260,14 @@ class Store:
         """Keeps the mission of a bundle, as `unpack` has read it from `content`. `check` gets the folder where the
         mission is complete, and may raise. Raises StoreError, and what `check` raises; then nothing is left of it."""
         place = os.path.join(self.folder, bundle.digest)
-        if self.is_intact(bundle.digest):
+        if self.is_intact(bundle.digest) and self._has_seal(bundle.digest, content):
             check(place)
             return
         new = self._new()
         try:
             self._fill(new, bundle, _signature_of(content))
             check(new)
-            if os.path.lexists(place):  # damaged, or not a mission
+            if os.path.lexists(place):  # damaged, not a mission, or signed by another desk
                 os.rename(place, self._new())
             os.rename(new, place)
         except OSError as problem:
@@ -265,6 +287,13 @@ class Store:
                 self._remove_unused()
 
     # How it is done ---------------------------------------------------------------------------------------------------
+
+    def _has_seal(self, digest: str, content: bytes) -> bool:
+        """True if the mission has the signature of this bundle: it may have been sent before by another desk."""
+        try:
+            return _read(os.path.join(self.folder, digest, SIGNATURE)) == _signature_of(content)
+        except OSError:
+            return False
 
     def _save(self, state: StoreState) -> None:
         new = self._new()

@@ -13,6 +13,7 @@ import pytest
 
 from pursue_gen.workspace.generate import mission_of
 from pursue_runtime import trusted_keys as pursue_guard
+from pursue_runtime.manifest import mission_id
 from pursue_runtime.trusted_keys import KeyFolder, read_keys
 from tests import waiting
 from tests.runtime.reader_stage import (
@@ -398,3 +399,107 @@ def test_ten_thousand_refusals_do_not_fill_the_log(robot: Robot) -> None:
     assert robot.reader.refusals.counts == {"bad_order": 10_000} and files(robot) == there
     robot.send(FIRST)
     assert robot.reader.counts == {"prepare": 1, "commit": 1, "abort": 0, "exchanged": 1}
+
+
+# Keys that are removed ------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def two_desks(robot: Robot) -> Robot:
+    """A robot that has the first mission of the desk, then plays one that another trusted desk has sent."""
+    (robot.folder / "keys" / "theirs.pub").write_text(desk_bundle.write_public_key(STRANGER.public_key(), "them"))
+    robot.send(FIRST)
+    for action, content in (("prepare", THEIRS.bundle), ("commit", b"")):
+        assert robot.order(action, THEIRS.digest, content, signer=STRANGER).ok
+    return robot
+
+
+THEIRS, THEIRS_TOO = mission("theirs", signer=STRANGER), mission("theirs_too", signer=STRANGER)
+
+
+def remove_key(robot: Robot) -> None:
+    (robot.folder / "keys" / "theirs.pub").unlink()
+
+
+@pytest.mark.parametrize("restarted", [False, True])
+def test_a_mission_is_gone_with_the_key_that_signed_it(two_desks: Robot, restarted: bool) -> None:
+    robot = two_desks
+    assert robot.current == THEIRS.digest
+    remove_key(robot)
+    if restarted:
+        robot.restart()
+    robot.now += PATIENCE
+    assert robot.reader.on_time(robot.now)
+    assert robot.current == FIRST.digest
+    status = robot.reader.status()
+    assert (status["kept"], status["history"], status["next"]) == ([FIRST.digest], [OWN], None)
+    assert any(mission_id(THEIRS.digest) in line and "not trusted any more" in line for _, line in robot.log)
+    robot.restart()
+    assert robot.current == FIRST.digest
+
+
+def test_without_another_mission_the_workspaces_own_takes_its_place(robot: Robot) -> None:
+    robot.send(FIRST)
+    (robot.folder / "keys" / "desk.pub").unlink()
+    robot.state("waiting")
+    assert robot.current == OWN and robot.reader.status()["kept"] == []
+
+
+def test_one_that_is_played_is_replaced_when_it_is_over(two_desks: Robot) -> None:
+    robot = two_desks
+    robot.state("running")
+    remove_key(robot)
+    robot.state("running", 2)
+    assert robot.current == THEIRS.digest
+    assert "not trusted any more" in robot.reader.problem()
+    assert robot.order("abort", FIRST.digest).ok  # nobody can keep it there
+    robot.now += 1
+    robot.state("won", 3)
+    assert robot.current == FIRST.digest and robot.reader.problem() == ""
+
+
+def test_it_cannot_be_called_back(two_desks: Robot) -> None:
+    robot = two_desks
+    robot.state("running")
+    remove_key(robot)
+    for action in ("prepare", "commit"):
+        answer = robot.order(action, THEIRS.digest)
+        assert (answer.ok, answer.code) == (False, "unknown_key")
+
+
+def test_one_that_waits_or_is_prepared_is_dropped(two_desks: Robot) -> None:
+    robot = two_desks
+    robot.send(FIRST)
+    robot.state("running")
+    assert robot.order("prepare", THEIRS_TOO.digest, THEIRS_TOO.bundle, signer=STRANGER).ok
+    assert robot.order("commit", THEIRS_TOO.digest, signer=STRANGER).code == "waiting"
+    remove_key(robot)
+    robot.state("won", 2)
+    status = robot.reader.status()
+    assert (status["current"], status["next"], status["prepared"]) == (FIRST.digest, None, None)
+    assert status["kept"] == [FIRST.digest]
+
+
+def test_sent_again_with_a_trusted_key_it_counts(two_desks: Robot) -> None:
+    robot = two_desks
+    robot.state("running")
+    remove_key(robot)
+    robot.state("running", 2)
+    again = mission("theirs")
+    assert again.digest == THEIRS.digest
+    assert robot.order("prepare", again.digest, again.bundle).ok
+    assert robot.order("commit", again.digest).ok
+    robot.state("won", 3)
+    assert robot.current == again.digest
+    robot.restart()
+    robot.now += PATIENCE
+    robot.reader.on_time(robot.now)
+    assert robot.current == again.digest
+
+
+def test_keys_that_cannot_be_read_are_not_removed_keys(two_desks: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = two_desks
+    monkeypatch.setattr(KeyFolder, "complete", lambda self: False)
+    remove_key(robot)
+    robot.state("waiting", 2)
+    assert robot.current == THEIRS.digest
