@@ -15,8 +15,9 @@ import statistics
 import sys
 import time
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from benchmarks import simulation_page
 from benchmarks.synthesis import machine
@@ -24,6 +25,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.simulation.faults import read_faults
 from pursue_gen.simulation.make import make_case
+from pursue_gen.simulation.mission import Settings, simulate_mission
 from pursue_gen.simulation.runs import Case, MissionRunner
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
@@ -31,6 +33,8 @@ from pursue_gen.solving.solution import solve_scenario
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
+
+Row = Mapping[str, Any]
 
 CELLS: Sequence[Tuple[str, int]] = (
     ("loss", 1000),
@@ -56,7 +60,7 @@ def bundled() -> List[str]:
     return [path.relative_to(SCENARIOS).with_suffix("").as_posix() for path in sorted(SCENARIOS.rglob("*.pur"))]
 
 
-def case_for(name: str, faults: str) -> Optional[Case]:
+def case_for(name: str, faults: str = "all") -> Optional[Case]:
     """The case of a scenario with these faults; None where the objective cannot be met."""
     scenario = load(SCENARIOS / f"{name}.pur")
     try:
@@ -66,33 +70,37 @@ def case_for(name: str, faults: str) -> Optional[Case]:
     return make_case(scenario, won, SolveRequest(), "mixed", read_faults(faults), None)[0]
 
 
-def cell(job: Tuple[str, str, int, float]) -> Optional[Dict[str, Any]]:
-    """How the missions 1 to `runs` of a scenario end with these faults, within so many seconds of processor time."""
-    name, faults, runs, seconds = job
-    case = case_for(name, faults)
+def cells(job: Tuple[str, Sequence[Tuple[str, int]], float]) -> List[Row]:
+    """How the missions of a scenario end with each of these faults: the missions from 1 on, so many of them, or as many
+    as that take so many seconds of processor time."""
+    name, wanted, seconds = job
+    case = case_for(name)
     if case is None:
-        return None
-    runner, start = MissionRunner(case), time.process_time()
+        return []
+    runner = MissionRunner(case)
+    return [cell(name, runner, replace(case.settings, faults=read_faults(f)), f, runs, seconds) for f, runs in wanted]
+
+
+def cell(name: str, runner: MissionRunner, settings: Settings, faults: str, runs: int, seconds: float) -> Row:
+    """How missions with these settings end."""
+    start, done, latest = time.process_time(), 0, 0.0
     ends: Counter[str] = Counter()
     causes: Counter[str] = Counter()
     examples: List[Dict[str, Any]] = []
-    latest, done = 0.0, 0
-    for seed in range(1, runs + 1):
-        outcome = runner.run(seed)
-        done = seed
+    while done < runs and (not done or time.process_time() - start < seconds):
+        done += 1
+        outcome = simulate_mission(runner.stage, settings, done, runner.remaining)
         ends[outcome.end] += 1
         latest = max(latest, outcome.lateness)
         if outcome.end in ("lost", "failed"):
             causes[kind_of(outcome.cause)] += 1
             if len(examples) < 3:
-                examples.append({"seed": seed, "cause": outcome.cause or outcome.reason})
-        if time.process_time() - start > seconds:
-            break
+                examples.append({"seed": done, "cause": outcome.cause or outcome.reason})
     return {
         "scenario": name,
         "faults": faults,
         "missions": done,
-        "margin": case.settings.margin,
+        "margin": settings.margin,
         "ends": dict(sorted(ends.items())),
         "latest": round(latest, 3),
         "causes": dict(sorted(causes.items())),
@@ -124,13 +132,13 @@ def speed(name: str) -> Optional[float]:
     return statistics.median(rates)
 
 
-def _played(jobs: Sequence[Tuple[str, str, int, float]], processes: int) -> "Any":
-    """The cells, each as soon as it is done."""
+def _played(jobs: Sequence[Tuple[str, Sequence[Tuple[str, int]], float]], processes: int) -> Iterator[List[Row]]:
+    """The cells of each scenario, as soon as they are done."""
     if processes == 1:
-        yield from (found for found in map(cell, jobs) if found)
+        yield from map(cells, jobs)
         return
     with multiprocessing.get_context("spawn").Pool(processes) as pool:
-        yield from (found for found in pool.imap_unordered(cell, jobs) if found)
+        yield from pool.imap_unordered(cells, jobs)
 
 
 def main(words: Optional[Sequence[str]] = None) -> int:
@@ -142,6 +150,7 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="of processor time for each cell (60)")
     parser.add_argument("--jobs", type=int, default=1, help="so many processes (1)")
     parser.add_argument("--speed", action="store_true", help="measure missions per second, without faults")
+    parser.add_argument("--before", type=Path, help="with --speed: simulation.json of an earlier state of the project")
     given = parser.parse_args(words)
     names = given.scenarios or bundled()
     path = given.out / "benchmarks" / "simulation.json" if given.out else None
@@ -150,16 +159,17 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     if given.speed:
         found = {name: speed(name) for name in names}
         results["speed"] = {**stamp, "rates": {name: round(rate) for name, rate in found.items() if rate}}
+        if given.before:
+            results["speed before"] = json.loads(given.before.read_text())["speed"]["rates"]
         print(json.dumps(results["speed"], indent=1))
         _write(given.out, path, results)
         return 0
-    wanted = given.only.split() or [faults for faults, _ in CELLS]
-    jobs = [(name, faults, runs, given.seconds) for faults, runs in CELLS if faults in wanted for name in names]
-    for row in _played(jobs, given.jobs):
-        key = f"{row['faults']} {row['scenario']}"
-        results.setdefault("cells", {})[key] = row
+    wanted = [(faults, runs) for faults, runs in CELLS if faults in (given.only.split() or [f for f, _ in CELLS])]
+    for rows in _played([(name, wanted, given.seconds) for name in names], given.jobs):
+        for row in rows:
+            results.setdefault("cells", {})[f"{row['faults']} {row['scenario']}"] = row
+            print(json.dumps(row), flush=True)
         results["played"] = stamp
-        print(json.dumps(row), flush=True)
         _write(given.out, path, results)
     return 0
 

@@ -52,6 +52,9 @@ def sim(
         None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
     ),
     jobs: int = typer.Option(1, metavar="N", min=1, help="So many processes; the outcome is the same."),
+    scheduler: Optional[str] = typer.Option(
+        None, metavar="ADDRESS", help="Play on the workers of this Dask scheduler, as tcp://HOST:8786, not here."
+    ),
     request: SolveRequest = REQUEST,
     timeline: Optional[Path] = typer.Option(
         None, metavar="OUT", help="Draw one mission (--runs 1): a timeline OUT.svg, or OUT.html with an animation too."
@@ -66,6 +69,7 @@ def sim(
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.language import load
+    from pursue_gen.simulation.cluster import cluster, outcomes_on
     from pursue_gen.simulation.faults import FAULTS, read_faults
     from pursue_gen.simulation.make import check_until, make_case
     from pursue_gen.simulation.runs import simulate
@@ -87,7 +91,9 @@ def sim(
     if not knows:
         info("the game is too large to compute the longest plays: the worst opponent acts at random")
     with counting(runs, as_json_) as count:
-        summary = simulate(case, range(seed, seed + runs), jobs, count)
+        seeds = range(seed, seed + runs)
+        played = None if scheduler is None else outcomes_on(cluster(scheduler), case, seeds)
+        summary = simulate(case, seeds, jobs, count, played=played)
     if timeline is not None:
         _draw(case, seed, timeline)
     facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from statistics import median
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
@@ -24,8 +24,8 @@ from pursue_runtime.state import LOST, STOPPED
 ENDS = (GOAL, SAFE, STOPPED, HELD, LOST, FAILED)
 """In the order of tables."""
 
-_SHARE = 20
-"""So many missions are handed to a core at once."""
+SHARE = 20
+"""So many missions are given to a process at once."""
 
 _SPAN, _PART = 50.0, 0.6
 """Faults begin within so many time units, or within this part of the longest that a mission may take."""
@@ -85,16 +85,16 @@ class MissionRunner:
     def __init__(self, case: Case) -> None:
         self.stage: Stage = stage_of(case.scenario, case.won, case.options)
         self._settings = case.settings
-        self._remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
+        self.remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
 
     def run(self, seed: int, record: bool = False) -> Outcome:
         """One mission."""
-        return simulate_mission(self.stage, self._settings, seed, self._remaining, record)
+        return simulate_mission(self.stage, self._settings, seed, self.remaining, record)
 
 
 def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
     """The outcomes of these missions, in their order, whatever the number of jobs (processes)."""
-    shares = [list(seeds[k : k + _SHARE]) for k in range(0, len(seeds), _SHARE)]
+    shares = [list(seeds[k : k + SHARE]) for k in range(0, len(seeds), SHARE)]
     jobs = min(jobs, len(shares))
     if jobs <= 1:
         players = MissionRunner(case)
@@ -146,14 +146,14 @@ def _received(end: Connection) -> List[Outcome]:
 
 
 def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable[[int], Any] = lambda done: None,
-             shown: int = 1, remaining: bool = True) -> Summary:
+             shown: int = 1, remaining: bool = True, played: Optional[Iterable[Outcome]] = None) -> Summary:
     """Plays the missions; `progress` is called with the number of missions that are done. The first `shown`
-    failures come with their plays."""
+    failures come with their plays. `played`: the outcomes of these missions, if other machines play them."""
     times: Dict[str, List[float]] = {}
     happened: Counter[str] = Counter()
     failed: List[Outcome] = []
     count = planned = done = 0
-    for outcome in outcomes(case, seeds, jobs):
+    for outcome in outcomes(case, seeds, jobs) if played is None else played:
         times.setdefault(outcome.end, []).append(outcome.time)
         happened.update(outcome.happened)
         planned += outcome.plan > 0
