@@ -51,7 +51,7 @@ CELLS: Sequence[Tuple[str, int]] = (
 )
 """Faults as `--faults` takes them, and how many missions each scenario plays with them."""
 
-WARM, BATCH, BATCHES = 50, 100, 9
+WARM, BATCH, BATCHES = 50, 100, 5
 """Missions before the speed is measured, and in each of so many measurements."""
 
 

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_runtime.controller.reports import Report
 from pursue_runtime.resend import LAST_TIMEOUT, REPEATS, SHORTEST, StateRepeats, resend_interval, resend_timeout
 from pursue_runtime.state import HOLDING, SystemState
 
@@ -57,6 +58,16 @@ def test_a_newer_state_takes_the_place_of_the_one_before() -> None:
     repeats.on_publish(newer, 5.01)
     assert repeats.next_moment() == pytest.approx(5.03)
     assert repeats.due(5.03) is newer
+
+
+def test_a_report_of_a_robot_is_repeated_within_the_reaction_until_the_state_shows_it() -> None:
+    report = Report("bot_going_a_to_b2b", 0.1)
+    assert report.due(5.0) == "bot_going_a_to_b2b"
+    assert report.due(5.01) is None
+    assert report.next_moment() == pytest.approx(5.02)
+    assert report.due(5.021) == "bot_going_a_to_b2b"
+    report.confirmed = True
+    assert report.due(9.0) is None and report.next_moment() is None
 
 
 def test_the_interval_has_bounds() -> None:

@@ -119,6 +119,14 @@ def test_without_a_receipt_the_report_is_repeated_ever_more_slowly_until_a_state
     assert world.due(200.0, 60.0) == [] and world.next_moments() == (None, None)
 
 
+def test_a_report_is_repeated_within_the_reaction_of_the_strategy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MODEL, "reaction", 0.1)
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    moments = [k / 1000 for k in range(2000, 2100) if world.due(200.0, k / 1000)]
+    assert moments == pytest.approx([2.0, 2.02, 2.04, 2.06], abs=0.002)
+
+
 def test_news_of_others_give_the_report_more_time() -> None:
     world = simulator()
     world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
