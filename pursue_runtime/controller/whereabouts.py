@@ -105,10 +105,10 @@ class Whereabouts:
         return f"does not stand still at {place.poi}"
 
     def _has_moved(self) -> bool:
-        """Return True if the robot has moved since its arrival, by more than an arrival may be off."""
+        """Return True if the robot may have moved since its arrival, by more than an arrival may be off."""
         before, at = self._arrival, self.position
         if before is None or at is None:
-            return False
+            return at is not None  # a first position, which has nothing to be compared with
         return not _within(before, at, self._settings.end_tolerance, self._settings.end_yaw_tolerance)
 
 

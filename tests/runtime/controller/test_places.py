@@ -188,6 +188,16 @@ def test_a_position_may_take_a_while_to_come() -> None:
     assert late.wait(3.0)[:1] == [2.0] and late.words[0] == DISPLACED
 
 
+def test_a_position_that_comes_after_the_arrival_and_contradicts_it_counts() -> None:
+    robot = World(goals="action", ends="result")
+    robot.go()
+    robot.result(SUCCEEDED)
+    robot.stay()
+    assert robot.robot.is_placed(robot.now)
+    robot.at(8.0, 4.0)
+    assert robot.words[-1] == DISPLACED and not robot.robot.is_placed(robot.now)
+
+
 def test_words_alone_are_believed() -> None:
     robot = World()
     robot.stay(doing="e")
