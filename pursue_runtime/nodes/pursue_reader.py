@@ -27,9 +27,10 @@ from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, text, whole
+from pursue_runtime.reader.contents import StoreError
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
-from pursue_runtime.reader.store import KEEP, Store, StoreError
+from pursue_runtime.reader.store import KEEP, Store
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 from pursue_runtime.words import STATE

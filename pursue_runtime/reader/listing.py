@@ -7,7 +7,7 @@ import sys
 
 from pursue_runtime.data import Package
 from pursue_runtime.folders import missions_folder
-from pursue_runtime.reader.store import StoreError, table
+from pursue_runtime.reader.contents import StoreError, table
 
 
 def main(package: Package) -> int:

@@ -31,7 +31,8 @@ from pursue_runtime.data import DataError, read_data
 from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
-from pursue_runtime.reader.store import Log, Store, StoreError, StoreState, is_signed, manifest
+from pursue_runtime.reader.contents import StoreError, StoreState, is_signed, manifest
+from pursue_runtime.reader.store import Log, Store
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover
 from pursue_runtime.trusted_keys import KeyFolder

@@ -7,204 +7,37 @@ it is on the disk, so it is there completely or not at all, whenever this proces
 
 from __future__ import annotations
 
-import errno
 import fcntl
-import hashlib
 import io
-import json
 import os
 import shutil
 import zipfile
-from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tuple
+from typing import Callable, List, Optional
 
-from pursue_runtime.bounded import BadText, read_json
-from pursue_runtime.bundle import (
-    MANIFEST,
-    MISSION,
-    OWN,
-    SIGNATURE,
-    Bundle,
-    Keys,
-    Refused,
-    check_seal,
-    is_digest,
-    mission_file,
-    mission_id,
+from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, mission_file, mission_id
+from pursue_runtime.reader.contents import (
+    STATE,
+    StoreError,
+    StoreState,
+    TemporaryError,
+    find_damage,
+    inside,
+    list_digests,
+    manifest,
+    packages_of,
+    read_file,
+    read_state,
+    stored_digests,
 )
 
-STATE = "state.json"
 KEEP = 5
 """So many earlier missions are kept, unless a parameter sets another number."""
 
 _NEW = ".new-"  # what is being written; after a start it is what a dead process has left
 _FOLDER_MODE, _FILE_MODE = 0o700, 0o600
-_PASSING = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EACCES, errno.EPERM, errno.ESTALE, errno.EINTR)
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
-
-
-class StoreError(Exception):
-    """The disk does not take, or does not give, what it should; the message has the reason."""
-
-
-class TemporaryError(StoreError):
-    """What is on the disk cannot be known at the moment: nothing says that it is damaged."""
-
-
-class StoreState(NamedTuple):
-    """Which mission counts; each is a digest, or OWN.
-
-    `current` is what nodes start with; `next` takes its place when the mission under way is over; `prepared` waits for
-    its commit; `history` holds those that were current before, the newest last.
-    """
-
-    current: str = OWN
-    next: Optional[str] = None
-    prepared: Optional[str] = None
-    history: Tuple[str, ...] = ()
-
-    def named(self) -> List[str]:
-        """The missions that have to be on the disk."""
-        return [name for name in (self.current, self.next, self.prepared, *self.history) if name]
-
-    def text(self) -> bytes:
-        """As it stands in state.json."""
-        return json.dumps({"format": 1, **self._asdict()}, indent=1).encode() + b"\n"
-
-
-# Reading: changes nothing ---------------------------------------------------------------------------------------------
-
-
-def read_state(folder: str) -> Optional[StoreState]:
-    """The state on the disk, None where there is none yet. Raises StoreError where it cannot be used."""
-    path = os.path.join(folder, STATE)
-    try:
-        facts = read_json(_read(path))
-    except FileNotFoundError:
-        return None
-    except OSError as problem:
-        raise StoreError(f"cannot read {path}: {problem.strerror}") from problem
-    except BadText as problem:
-        raise StoreError(f"{path} is damaged: {problem}") from problem
-    state = _state(facts)
-    if state is None:
-        raise StoreError(f"{path} is damaged, or of another version")
-    return state
-
-
-def _state(facts: Any) -> Optional[StoreState]:
-    if not isinstance(facts, dict) or facts.get("format") != 1:
-        return None
-    current, following, prepared, history = (facts.get(name) for name in StoreState._fields)
-    history = history if isinstance(history, list) else [None]
-    some = [name for name in (following, prepared) if name is not None]
-    if not all(name == OWN or is_digest(name) for name in (current, *history, *some)):
-        return None
-    return StoreState(str(current), following, prepared, tuple(history))
-
-
-def stored_digests(folder: str) -> List[str]:
-    """The digests of the missions in the store, the oldest first."""
-    try:
-        return _list_digests(folder)
-    except OSError:
-        return []
-
-
-def _list_digests(folder: str) -> List[str]:
-    with os.scandir(folder) as entries:
-        there = [entry for entry in entries if is_digest(entry.name) and entry.is_dir(follow_symlinks=False)]
-    return [entry.name for entry in sorted(there, key=lambda entry: (entry.stat().st_mtime, entry.name))]
-
-
-def manifest(folder: str, digest: str) -> Dict[str, Any]:
-    """What a mission in the store is. Raises StoreError where its manifest is not the one that was signed."""
-    try:
-        text = _read(os.path.join(folder, digest, MANIFEST))
-    except OSError as problem:
-        raise StoreError(f"mission {mission_id(digest)} has no {MANIFEST}: {problem.strerror}") from problem
-    if hashlib.sha256(text).hexdigest() != digest:
-        raise StoreError(f"the {MANIFEST} of mission {mission_id(digest)} is damaged")
-    try:
-        facts: Dict[str, Any] = read_json(text)
-        good = facts["format"] == 1 and all(type(one) is str for one in [facts["scenario"], *facts["files"].values()])
-    except (ValueError, LookupError, TypeError, AttributeError):
-        good = False
-    if not good:
-        raise StoreError(f"mission {mission_id(digest)} is of another version")
-    return facts
-
-
-def is_signed(folder: str, digest: str, keys: Keys) -> bool:
-    """True if one of the keys has signed a mission in the store. Raises TemporaryError."""
-    try:
-        text, seal = (_read(os.path.join(folder, digest, name)) for name in (MANIFEST, SIGNATURE))
-        check_seal(text, seal, keys)
-    except (OSError, Refused):
-        return False
-    return True
-
-
-def find_damage(folder: str, digest: str) -> str:
-    """What is wrong with a mission in the store: a sentence, "" if it is whole. Raises NotNow."""
-    try:
-        facts = manifest(folder, digest)
-        place = os.path.join(folder, digest)
-        for path, expected in facts["files"].items():
-            if hashlib.sha256(_read(_inside(place, path))).hexdigest() != expected:
-                raise StoreError(f"{path} is damaged")
-        for package in _packages(facts["files"]):
-            if _read(_inside(place, f"{package}/{MISSION}")) != mission_file(digest, facts["scenario"]):
-                raise StoreError(f"{package}/{MISSION} is damaged")
-    except (StoreError, OSError) as problem:
-        if isinstance(problem, TemporaryError):
-            raise
-        return f"mission {mission_id(digest)} is not whole: {problem}"
-    return ""
-
-
-def table(folder: str, own: str) -> List[Tuple[str, str, str]]:
-    """The missions of a machine for people: short name, scenario, what it is. `own` is the workspace's scenario.
-
-    Raises StoreError.
-    """
-    state = read_state(folder) or StoreState()
-    rows = []
-    for digest in (OWN, *stored_digests(folder)):
-        roles = ((state.current, "current"), (state.next, "next, when no mission runs"), (state.prepared, "prepared"))
-        shown = [role for name, role in roles if name == digest] or ["earlier" if digest in state.history else "kept"]
-        wrong = find_damage(folder, digest) if digest else ""
-        scenario = own if not digest else "?" if wrong else str(manifest(folder, digest)["scenario"])
-        what = "the workspace's own; " if not digest else ""
-        rows.append((mission_id(digest), scenario, what + "; ".join([*shown, *([wrong] if wrong else [])])))
-    return rows
-
-
-def _read(path: str) -> bytes:
-    """Raises OSError where the file is not there or damaged, NotNow where that cannot be known."""
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError as problem:
-        if problem.errno in _PASSING:
-            raise TemporaryError(f"cannot read {path} now: {problem.strerror}") from problem
-        raise
-
-
-def _packages(files: Iterable[str]) -> List[str]:
-    return sorted({path.split("/")[0] for path in files})
-
-
-def _inside(folder: str, path: str) -> str:
-    """The place of a file in a folder. Raises StoreError for one that is elsewhere, whatever its name says."""
-    place, home = os.path.realpath(os.path.join(folder, path)), os.path.realpath(folder)
-    if not place.startswith(home + os.sep):
-        raise StoreError(f"{path!r} is not in the folder of its mission")
-    return place
-
-
-# The store ------------------------------------------------------------------------------------------------------------
 
 
 class Store:
@@ -291,7 +124,7 @@ class Store:
     def _has_seal(self, digest: str, content: bytes) -> bool:
         """True if the mission has the signature of this bundle: it may have been sent before by another desk."""
         try:
-            return _read(os.path.join(self.folder, digest, SIGNATURE)) == _signature_of(content)
+            return read_file(os.path.join(self.folder, digest, SIGNATURE)) == _signature_of(content)
         except OSError:
             return False
 
@@ -322,7 +155,7 @@ class Store:
     def _repaired(self) -> StoreState:
         """The state on the disk, without what is not there or damaged. Raises StoreError."""
         try:
-            there = [OWN, *(digest for digest in _list_digests(self.folder) if self.is_intact(digest))]
+            there = [OWN, *(digest for digest in list_digests(self.folder) if self.is_intact(digest))]
         except OSError as problem:
             raise StoreError(f"cannot read {self.folder}: {problem.strerror}") from problem
         try:
@@ -350,15 +183,15 @@ class Store:
 
     def _fill(self, new: str, bundle: Bundle, seal: bytes) -> None:
         """Writes the mission into a new folder."""
-        packages = _packages(bundle.files)
+        packages = packages_of(bundle.files)
         mark = mission_file(bundle.digest, bundle.manifest.scenario)
         files = {MANIFEST: bundle.manifest.text(), SIGNATURE: seal, **bundle.files}
         files.update((f"{package}/{MISSION}", mark) for package in packages)
         os.mkdir(new, _FOLDER_MODE)
         for package in packages:
-            os.mkdir(_inside(new, package), _FOLDER_MODE)
+            os.mkdir(inside(new, package), _FOLDER_MODE)
         for path, content in files.items():
-            _write(_inside(new, path), content)
+            _write(inside(new, path), content)
         for folder in (*(os.path.join(new, package) for package in packages), new):
             _sync_folder(folder)
 

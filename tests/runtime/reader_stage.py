@@ -15,8 +15,9 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_runtime import bundle as desk_bundle
 from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader.contents import StoreState, read_state
 from pursue_runtime.reader.reader import Reader
-from pursue_runtime.reader.store import Store, StoreState, read_state
+from pursue_runtime.reader.store import Store
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 

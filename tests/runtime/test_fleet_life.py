@@ -27,8 +27,9 @@ from pursue_runtime.data import DataError
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader import store as mission_store
+from pursue_runtime.reader.contents import find_damage
 from pursue_runtime.reader.reader import Reader
-from pursue_runtime.reader.store import Store, find_damage
+from pursue_runtime.reader.store import Store
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.reader_stage import DESK, OWN, POSES, STRATEGY

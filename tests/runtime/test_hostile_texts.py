@@ -37,8 +37,8 @@ from pursue_runtime.manager.manager import parse_status
 from pursue_runtime.missions import MANIFEST, Missions, Source
 from pursue_runtime.model import Model
 from pursue_runtime.observer.planner import _read as read_answer
+from pursue_runtime.reader.contents import StoreError, manifest, read_state
 from pursue_runtime.reader.reader import check_data
-from pursue_runtime.reader.store import StoreError, manifest, read_state
 from pursue_runtime.strategy import Strategy, parse_plan, read_cover
 from pursue_runtime.ui.page import read_request
 from pursue_runtime.ui.trace import TraceError, read_trace

@@ -23,8 +23,9 @@ from pursue_runtime.manager.background import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.reader import reader as reader_core
+from pursue_runtime.reader.contents import StoreError
 from pursue_runtime.reader.reader import Reader
-from pursue_runtime.reader.store import Store, StoreError
+from pursue_runtime.reader.store import Store
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.reader_stage import DESK

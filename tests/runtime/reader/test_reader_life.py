@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from pursue_runtime.reader import store as mission_store
+from pursue_runtime.reader.contents import find_damage
 from tests.runtime.reader_stage import OWN, STRANGER, Crash, Disk, Robot, message, mission
 
 LIVE, IDLE = ["running", "holding"], ["waiting", "won", "lost", "stopped"]
@@ -143,7 +144,7 @@ class Life(RuleBasedStateMachine):
     def what_is_current_is_whole(self) -> None:
         current = self.robot.current
         assert current == self.robot.store.state.current
-        assert current == OWN or mission_store.find_damage(self.robot.store.folder, current) == ""
+        assert current == OWN or find_damage(self.robot.store.folder, current) == ""
 
     @invariant()
     def a_mission_that_runs_is_not_exchanged(self) -> None:
@@ -158,7 +159,7 @@ class Life(RuleBasedStateMachine):
     def only_so_many_are_kept_and_each_is_whole(self) -> None:
         store = self.robot.store
         assert len(store.kept()) <= KEEP + 3 and set(store.kept()) == set(store.state.named())
-        assert all(mission_store.find_damage(store.folder, digest) == "" for digest in store.kept())
+        assert all(find_damage(store.folder, digest) == "" for digest in store.kept())
 
 
 TestLife = Life.TestCase

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import hashlib
+import json
 import os
 import stat
 from pathlib import Path
@@ -14,8 +15,10 @@ import pytest
 
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.bundle import Bundle, mission_file, unpack
+from pursue_runtime.reader import contents
 from pursue_runtime.reader import store as mission_store
-from pursue_runtime.reader.store import Store, StoreError, find_damage, table
+from pursue_runtime.reader.contents import StoreError, find_damage, table
+from pursue_runtime.reader.store import Store
 from tests.runtime.reader_stage import OWN, Crash, Disk, Mission, Robot, mission
 
 FIRST, SECOND, THIRD = mission("first"), mission("second"), mission("third")
@@ -51,7 +54,7 @@ def test_the_state_names_what_counts_and_only_its_owner_may_look(robot: Robot) -
     robot.send(FIRST)
     robot.order("prepare", SECOND.digest, SECOND.bundle)
     folder = robot.folder / "missions"
-    state = mission_store.json.loads((folder / "state.json").read_text())
+    state = json.loads((folder / "state.json").read_text())
     assert state == {"format": 1, "current": FIRST.digest, "next": None, "prepared": SECOND.digest, "history": [OWN]}
     for path in (folder, *folder.rglob("*")):
         assert stat.S_IMODE(path.stat().st_mode) & 0o077 == 0, path
@@ -250,7 +253,7 @@ def test_what_cannot_be_read_just_now_is_not_thrown_away(
             return open(path, mode)
 
         with monkeypatch.context() as patch:
-            patch.setattr(mission_store, "open", stutters, raising=False)
+            patch.setattr(contents, "open", stutters, raising=False)
             with pytest.raises(StoreError):
                 robot.start()
     robot.start()
