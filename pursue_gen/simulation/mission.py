@@ -12,7 +12,7 @@ from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
-from pursue_gen.simulation.opponents import OPPONENTS, Opponent
+from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.planner import SimulatedPlanner
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
@@ -103,7 +103,7 @@ class SimulatedMission:
         bad = stage.solution.objective.bad
         self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.fault_plan.offset)
         self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
-        self._kind = _opponent(settings.opponent, name, remaining)
+        self._kind = kind_in_mission(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)
         self._move_timer = Timer(self.events, self._act)
         self._word = ""
@@ -386,16 +386,6 @@ def _to(node: Union[ObserverNode, ControllerNode], deliver: Action) -> Action:
             deliver()
 
     return arrive
-
-
-def _opponent(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
-    """The kind of opponent in this mission; of mixed ones, the worst as often as looking ahead may cost."""
-    if kind != "mixed":
-        return kind
-    draw = random.Random(f"{seed}/kind")
-    chosen = draw.choice([k for k in OPPONENTS if k != "mixed"])
-    rare = chosen == "worst" and remaining is not None and draw.random() >= remaining.ease
-    return "random" if rare else chosen
 
 
 def _described(state: SystemState) -> str:

@@ -123,3 +123,13 @@ class Opponent:
 
     def _deed(self, option: Option, moment: float) -> OpponentMove:
         return OpponentMove(f"{option.agent}:{option.word}", moment)
+
+
+def kind_in_mission(kind: str, seed: str, remaining: Optional[Remaining]) -> str:
+    """The kind of opponent in this mission; of mixed ones, the worst as often as looking ahead may cost."""
+    if kind != "mixed":
+        return kind
+    draw = random.Random(f"{seed}/kind")
+    chosen = draw.choice([k for k in OPPONENTS if k != "mixed"])
+    rare = chosen == "worst" and remaining is not None and draw.random() >= remaining.ease
+    return "random" if rare else chosen
