@@ -46,6 +46,9 @@ JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_p
 HEARTBEAT, SILENCE = 1.0, 20.0
 """Seconds, as the observer's parameters ~heartbeat and ~silence have them."""
 
+USUAL = 1.25
+"""Reactions for which a command is due at most without faults: controllers wait a quarter at strict bounds."""
+
 RETURN = 3.0
 """Reactions that pass at most from the return of a node to the effect of a command that it has delayed."""
 
@@ -175,7 +178,7 @@ class SimulatedMission:
         """Which fault was longer than what the strategy is proven for; "" if none was."""
         judge, margin = self._judge, self._settings.margin
         causes = []
-        if judge.lateness > margin + EPSILON:
+        if judge.lateness > max(margin, USUAL * self._stage.reaction) + EPSILON:
             causes.append(f"{judge.latest} was due for {judge.lateness:.3f} time units, the margin is {margin:g}")
         causes += [f"{step} came outside the model's window" for step in judge.overdue[:1]]
         causes += [f"{name} is late" for name in sorted(mission.late - set(mission.lost))]

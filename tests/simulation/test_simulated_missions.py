@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from stages import SCENARIOS, THESIS, THIEF, missions, remaining, sabotaged, solved, stage
+from stages import SCENARIOS, THESIS, THIEF, margin, missions, remaining, sabotaged, solved, stage
 
 from pursue_gen.language import load
 from pursue_gen.proof.worst_case import worst_case
@@ -103,6 +103,15 @@ def test_what_was_too_long_is_stated_with_a_mission_that_is_not_won() -> None:
     others = [outcome for outcome in outcomes if outcome.end not in (SAFE, HELD)]
     assert others and not any(outcome.end == FAILED for outcome in outcomes)
     assert any("was due for" in outcome.cause and "the margin is" in outcome.cause for outcome in others)
+
+
+def test_a_command_as_late_as_without_faults_is_no_cause() -> None:
+    """The strategy's margin is the reaction; controllers wait a quarter of it more at strict bounds."""
+    name = "ecobot/paper_and_plastic"
+    settings = Settings("mixed", ("orders",), 200.0, margin=margin(name))
+    outcome = simulate_mission(stage(name), settings, 31, remaining(name))
+    assert (outcome.end, round(outcome.lateness, 3)) == (LOST, 0.125)
+    assert "was due for" not in outcome.cause and "outside the model's window" in outcome.cause
 
 
 def test_robots_off_their_model_are_no_wrong_commands() -> None:
