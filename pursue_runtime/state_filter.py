@@ -34,9 +34,14 @@ class StateFilter:
         self.joined = False  # a state has been OURS
         self.clock_set_back = False  # the last state was the first one of an observer whose clock was set back
         self.refused = ""
+        self.malformed = 0  # messages that were no states
         self.check: Callable[[SystemState], str] = lambda _: ""
         self._own, self._again, self._clock = own, again, clock
         self._received = clock()  # when the newest state was published, or published again
+
+    def count_malformed(self) -> None:
+        """Count a message that was no state."""
+        self.malformed += 1
 
     def classify(self, state: SystemState) -> str:
         """Return the class of the state, and keep it if it is the newest."""

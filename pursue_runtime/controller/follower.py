@@ -68,6 +68,7 @@ class Follower:
         self._missions, self._name, self._package, self._log = missions, name, package, log
         self._filter = StateFilter("", missions.own.mission, again, clock)
         self._filter.check = self._problem
+        self.count_malformed = self._filter.count_malformed
         self._source: Optional[Source] = None  # where the part was read
         self.plan: Optional[Mapping[str, Any]] = None  # the newest, of whatever mission, until it is learned
 
@@ -98,6 +99,11 @@ class Follower:
     def refused(self) -> str:
         """Return why the last state was refused, "" if it was not."""
         return self._filter.refused
+
+    @property
+    def malformed(self) -> int:
+        """Return how many messages were no states."""
+        return self._filter.malformed
 
     @property
     def newest(self) -> Optional[SystemState]:

@@ -52,7 +52,7 @@ class Controller:
             self.follower.reject(str(problem))  # the next one may be better
         self.take_up()
         self.witness = Witness(lambda: self.follower.newest)
-        states = subscribe_states(self.update_state, self.ending)
+        states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.count_malformed)
         subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
         Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost))
 
@@ -160,6 +160,7 @@ class Controller:
             values.update(scheduler.counts if scheduler else {})
             values["next_command"] = planned[1].event if planned else ""
             values["refused"] = refused = self.follower.refused
+            values["malformed"] = self.follower.malformed
         if refused:
             return Report(False, ERROR, f"refused {refused}", values)
         if trouble:

@@ -5,7 +5,7 @@ or from what this machine has received (~received); with ~again they stay for th
 from __future__ import annotations
 
 import os
-from typing import Optional
+from typing import Dict, Optional
 
 import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
@@ -46,12 +46,18 @@ class Membership:
         self.model = Model(self.source.read("model.yaml"))
         self._filter = StateFilter(self.source.mission, own.mission, self.again)
         self._filter.check = lambda state: model_problem(self.model, state)
+        self.count_malformed = self._filter.count_malformed
         self._witness = Witness(lambda: self._filter.newest)
 
     @property
     def refused(self) -> str:
         """Return why the last state was refused, "" if it was not."""
         return self._filter.refused
+
+    @property
+    def counts(self) -> Dict[str, object]:
+        """Return what was refused, for /diagnostics."""
+        return {"refused": self.refused, "malformed": self._filter.malformed}
 
     def people(self) -> Optional[Strategy]:
         """Return the part of the strategy that people carry out, where there are any. Raises DataError."""

@@ -54,6 +54,9 @@ from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
+BEGUN = "pursue/begun"
+"""A parameter beside the node: the launch in which a mission has been under way last."""
+
 CLOCK = 10.0
 """Seconds of real time for which a mission that goes on waits for simulated time."""
 
@@ -75,6 +78,7 @@ class Observer:
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
+        self.begun = rospy.get_param(BEGUN, None) == self._journal_name()
         self.witnesses = Witnesses(self.ending)
         self.witnesses.gather()
         self.source = self._source()
@@ -153,7 +157,14 @@ class Observer:
         digest = hashlib.sha256(model.encode()).hexdigest()
         header: Dict[str, object] = {"scenario": self.mission.model.scenario, "model": digest, "settings": settings}
         header.update({"mission": self.source.mission, "launch": self._journal_name()})
-        return Journal(self.mission, self._journal_path(), header, self.log_soon)
+        return Journal(self.mission, self._journal_path(), header, self.log_soon, self.begun)
+
+    def mark_begun(self) -> None:
+        """Note with the master that a mission has been under way in this launch, for an observer without a journal."""
+        try:
+            rospy.set_param(BEGUN, self._journal_name())
+        except Exception as problem:  # whatever a master that is going down answers
+            rospy.logwarn("the master does not keep the parameter %s: %s", BEGUN, problem)
 
     def now(self) -> float:
         """ROS time in seconds, but nothing comes before what is written down."""
@@ -162,7 +173,7 @@ class Observer:
     def take_up(self) -> None:
         """Take up the mission where the journal and the other nodes have it; stop it where that is unclear."""
         own, journal = self.mission.state(self.now()), self.journal
-        found = find_state(own, journal.damage, journal.after, self.witnesses.seen)
+        found = find_state(own, journal.damage, journal.after, self.witnesses.seen, self.begun)
         why = found.stop
         if found.adopt is not None:
             try:
@@ -226,6 +237,9 @@ class Observer:
         while not rospy.is_shutdown():
             time.sleep(min(1.0, self.settings.heartbeat))
             now = time.monotonic()
+            if self.mission.status in LIVE and not self.begun:
+                self.begun = True
+                start_thread("begun", self.mark_begun, self.ending)  # it may have to wait for the master
             self.check_for_another()
             for node, reported in list(self.last_report.items()):
                 is_silent = now > reported + self.settings.silence

@@ -63,7 +63,7 @@ class SimulatorNode:
                 self.subscribers.append(
                     subscribe(topic, kind, self.on_goal, self.ending, robot, queue_size=10, tcp_nodelay=True)
                 )
-        states = subscribe_states(self.on_state, self.ending)
+        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
         links = Links(states, pulses, ending=self.ending, lost=self.master_lost)
         Diagnostics(self.report, self.ending, links)
@@ -108,7 +108,8 @@ class SimulatorNode:
             observer, status, reported = self.observer, self.status, self.reported
         unconnected = sorted({each.resolved_name for each in self.subscribers if each.get_num_connections() == 0})
         values = {"mission": self.membership.source.mission, "reported": reported, "uncommanded": " ".join(unconnected)}
-        values["refused"] = refused = self.membership.refused
+        refused = self.membership.refused
+        values.update(self.membership.counts)
         if refused:
             return Report(False, ERROR, f"refused {refused}", values)
         if self.membership.trouble:

@@ -68,11 +68,14 @@ def state_of(message: Message) -> SystemState:
 
 
 def subscribe_states(
-    on_state: Callable[[SystemState, str], None], ending: Ending, topic: str = STATE
+    on_state: Callable[[SystemState, str], None],
+    ending: Ending,
+    topic: str = STATE,
+    on_malformed: Callable[[], None] = lambda: None,
 ) -> rospy.Subscriber:
     """Subscribe to the states of the mission: `on_state` gets each, and the name of the node that published it.
 
-    A message that no observer publishes is logged and changes nothing.
+    A message that no observer publishes is logged and changes nothing; `on_malformed` is called for each of them.
     """
 
     def receive(message: Message) -> None:
@@ -81,6 +84,7 @@ def subscribe_states(
             state = state_of(message)
         except ValueError as problem:
             rospy.logwarn_throttle(THROTTLE, f"not a system state, from {publisher}: {problem}")
+            on_malformed()
             return
         on_state(state, publisher)
 

@@ -98,7 +98,7 @@ class UI:
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
-        self.states = subscribe_states(self.on_state, ending)
+        self.states = subscribe_states(self.on_state, ending, on_malformed=membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
@@ -322,7 +322,7 @@ class UI:
             values: Dict[str, object] = {"phase": self.phase, "mode": self.options.mode, "missing": " ".join(missing)}
             verdict = self.mission.verdict()
             refused, trouble = self.membership.refused, self.membership.trouble
-        values.update({"mission": self.membership.source.mission, "refused": refused})
+        values.update({"mission": self.membership.source.mission, **self.membership.counts})
         trouble = f"refused {refused}" if refused else trouble
         level = ERROR if refused or (verdict and verdict[0]) else WARN if missing or trouble else OK
         return Report(self.connected() and not trouble, level, verdict[1] if verdict else trouble or self.phase, values)

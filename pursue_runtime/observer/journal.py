@@ -54,10 +54,13 @@ class Journal:
     at which the mission before this one was over, by the same launch; states of before belong to that one.
     """
 
-    def __init__(self, mission: Mission, path: str, header: Mapping[str, Any], log: Log) -> None:
+    def __init__(
+        self, mission: Mission, path: str, header: Mapping[str, Any], log: Log, begun: bool = False
+    ) -> None:
         """Replay the journal at `path` ("": no journal) into a fresh mission.
 
-        `header` tells missions apart: the journal of another `launch` is set aside.
+        `header` tells missions apart: the journal of another `launch` is set aside. `begun`: a mission has been under
+        way in this launch, so that there must be a journal.
         """
         self.last = self.after = 0.0
         self.damage = ""
@@ -69,7 +72,7 @@ class Journal:
         self._lock = threading.RLock()
         self._written = threading.Event()
         if path:
-            self._resume()
+            self._resume(begun)
 
     @property
     def is_open(self) -> bool:
@@ -137,15 +140,17 @@ class Journal:
 
     # What was found ---------------------------------------------------------------------------------------------------
 
-    def _resume(self) -> None:
+    def _resume(self, begun: bool) -> None:
         try:
             os.makedirs(os.path.dirname(self._path), exist_ok=True)
             source, found = _read(self._path)
         except OSError as problem:
             source, found = self._path, RecordsRead([], 0, f"it cannot be read: {problem}")
-            if not os.path.exists(self._path):
+            if not os.path.exists(self._path) and not begun:
                 self._log("err", f"no journal: {problem}")
                 return
+        if not source and begun:
+            source, found = self._path, RecordsRead([], 0, "it is missing")
         head = dict(found.records[0]) if found.records else {}
         self.after, entries = _moment(head.pop("after", 0.0)), found.records[1:]
         other = bool(head) and head.get("launch") != self._header.get("launch")

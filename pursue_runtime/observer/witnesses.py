@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.state import ENDED, LIVE, SystemState
+from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
 
 SAME = 1e-3
 """Seconds by which two nodes may see the reset of a clock apart: stamps and clocks are rounded in messages."""
@@ -18,11 +18,13 @@ class Finding(NamedTuple):
     stop: str = ""
 
 
-def find_state(own: SystemState, damage: str, after: float, seen: Mapping[str, SystemState]) -> Finding:
+def find_state(
+    own: SystemState, damage: str, after: float, seen: Mapping[str, SystemState], begun: bool = True
+) -> Finding:
     """Return where the mission is, from the state to which the journal leads and those that other nodes have seen last.
 
     `damage`: why the journal is not complete ("": it is); `after`: states up to that moment (seconds) are of an earlier
-    mission; `seen`: by the name of the node.
+    mission; `seen`: by the name of the node; `begun`: a mission has been under way in this launch.
     """
     why = f"the observer was restarted, and its journal is not complete ({damage})" if damage else ""
     if own.status in ENDED and not damage:
@@ -31,6 +33,8 @@ def find_state(own: SystemState, damage: str, after: float, seen: Mapping[str, S
     if not newest:
         return Finding(stop=f"{why}; no other node has seen a state of this mission" if why else "")
     nodes, (state, *others) = " and ".join(sorted(newest)), newest.values()
+    if not begun and not why and own.status == WAITING:
+        return Finding(stop=other_launch(nodes, state) if state.status in LIVE else "")
     if why and _rank(state) < _rank(own):
         return Finding(stop=f"{why}; it leads to state {own.seq}, and {nodes} know of state {state.seq} only")
     if not why and _rank(state) < _rank(own):
@@ -59,6 +63,11 @@ def contradicts(own: SystemState, after: float, state: SystemState) -> bool:
 def unknown_state(own: SystemState, node: str, state: SystemState) -> str:
     """Return the reason of a safe stop."""
     return f"{node} knows of a state {state.seq} that the observer, in state {own.seq}, does not know"
+
+
+def other_launch(node: str, state: SystemState) -> str:
+    """Return the reason of a safe stop."""
+    return f"{node} knows of a state {state.seq} of this mission, which is under way in another launch: stop that first"
 
 
 def _counts(state: SystemState, own: SystemState, after: float) -> bool:

@@ -225,6 +225,11 @@ class LaunchedMission:
                     return int(slave.getPid("/test")[2])  # type: ignore[index]
         return 0
 
+    def delete_parameter(self, name: str) -> None:
+        """Deletes a parameter of the master."""
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            assert master.deleteParam("/test", name)[0] == 1  # type: ignore[index]
+
     def kill(self, node: str, sign: signal.Signals = signal.SIGKILL) -> int:
         """Sends a signal to a node; its process."""
         process: int = self.until(lambda: self.pid(node))

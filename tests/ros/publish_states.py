@@ -29,7 +29,7 @@ def strange(state: SystemState) -> "list[SystemState]":
 rospy.init_node("strange")
 publisher = rospy.Publisher("pursue/state", SystemState, queue_size=100)
 state = rospy.wait_for_message("pursue/state", SystemState)
-while publisher.get_num_connections() < 5:
+while publisher.get_num_connections() < 6:
     time.sleep(0.05)
 for message in strange(state):
     publisher.publish(message)

@@ -103,8 +103,9 @@ def test_a_journal_that_is_lost_or_damaged_does_not_take_the_mission_back(
     assert len(kept) == len(DAMAGES) - 1, "what was damaged is set aside"
 
 
+@pytest.mark.parametrize("damage", [without_head, os.remove], ids=["damaged", "deleted"])
 def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
-    ros: Ros, scenario: Path, tmp_path: Path
+    ros: Ros, scenario: Path, tmp_path: Path, damage: Callable[[Path], None]
 ) -> None:
     with launched(ros, scenario, tmp_path, use_sim_time=True, delays="middle", speed=1, lost_after=FOR_EVER) as run:
         run.until_step("bot1_inb")
@@ -112,7 +113,7 @@ def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
         for node in NODES:
             if node != "sim_clock":
                 run.kill(node)
-        without_head(journal)
+        damage(journal)
         orders = len(run.orders())
         status = run.until_over()
         reason = run.now()["reason"]
@@ -124,7 +125,8 @@ def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
 def test_a_node_that_knows_more_stops_an_observer_that_has_lost_the_mission(
     ros: Ros, scenario: Path, tmp_path: Path
 ) -> None:
-    """One controller stands still while everything else is lost, and goes on when the observer waits for a start."""
+    """One controller stands still while everything else is lost, also what the master knows of the launch. It goes on
+    when the observer waits for a start."""
     with launched(ros, scenario, tmp_path, use_sim_time=True, delays="middle", speed=1, lost_after=FOR_EVER) as run:
         known = run.until_step("bot1_inb")
         frozen = run.kill("controller_bot1", signal.SIGSTOP)
@@ -133,6 +135,7 @@ def test_a_node_that_knows_more_stops_an_observer_that_has_lost_the_mission(
             if node not in ("sim_clock", "controller_bot1"):
                 run.kill(node)
         os.remove(journal)
+        run.delete_parameter("/pursue/begun")
         run.until(lambda: run.now().status == "waiting")
         orders = len(run.orders())
         os.kill(frozen, signal.SIGCONT)
@@ -149,7 +152,9 @@ def test_states_that_no_observer_publishes_change_nothing(ros: Ros, scenario: Pa
         processes = {node: run.pid(node) for node in NODES}
         with run.script(STRANGE_STATES) as strange:
             assert strange.wait() == 0 and "published" in strange.output(), strange.output()
-        run.until(lambda: "not a system state" in run.output() and "refused" in run.output())
+        for node in ("controller_bot1", "controllerObj", "simulator", "UI"):
+            run.until(lambda node=node: run.values(node).get("malformed") == "5")
+        assert "not a system state" in run.output() and "refused" in run.output()
         run.until_step("bot1_inb")
         assert {node: run.pid(node) for node in NODES} == processes
         run.until_over()

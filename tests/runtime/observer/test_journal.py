@@ -41,13 +41,13 @@ PLAY = [
 class Life:
     """One observer: a fresh mission, and its journal."""
 
-    def __init__(self, path: Path, header: Any = None) -> None:
+    def __init__(self, path: Path, header: Any = None, begun: bool = False) -> None:
         self.logs: List[Tuple[str, str]] = []
         log = lambda level, message: self.logs.append((level, message))
         cover = read_cover(read(COVER))
         chase = Model(read(CHASE))
         self.mission = Mission(chase, cover, log, on_uncovered="plan", controllers=["one"])
-        self.journal = Journal(self.mission, str(path), header or HEADER, log)
+        self.journal = Journal(self.mission, str(path), header or HEADER, log, begun)
 
     def play(self, *calls: Any, first: int = 0) -> List[Any]:
         """Calls, one time unit after the other; what was published."""
@@ -188,6 +188,12 @@ def test_a_journal_without_a_head_is_not_trusted(path: Path, content: bytes) -> 
     path.parent.mkdir(parents=True)
     path.write_bytes(content)
     assert Life(path).journal.damage and path.read_bytes() == content
+
+
+def test_a_journal_that_must_be_there_and_is_missing_is_like_a_damaged_one(path: Path) -> None:
+    assert Life(path, begun=True).journal.damage == "it is missing" and not path.exists()
+    Life(path)
+    assert not Life(path, begun=True).journal.damage, "of the next mission, perhaps"
 
 
 def test_brackets_with_a_right_checksum_are_no_record() -> None:

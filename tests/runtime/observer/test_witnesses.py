@@ -72,6 +72,16 @@ def test_where_a_whole_journal_and_a_witness_disagree_it_stops() -> None:
     assert "UI knows of a state 6" in found(state(6), UI=state(6, bot="b")).stop
 
 
+def test_a_mission_of_another_launch_is_not_taken_up() -> None:
+    """Somebody starts another launch, while nodes of the first one still play the mission."""
+    seen = {"controller_bot": state(5)}
+    assert find_state(FRESH, "", 0.0, seen, begun=False).adopt is None
+    assert "controller_bot knows of a state 5" in find_state(FRESH, "", 0.0, seen, begun=False).stop
+    assert find_state(FRESH, "", 0.0, {"UI": state(5, status="won")}, begun=False) == Finding()
+    for own, damage in ((state(4), ""), (FRESH, DAMAGE)):
+        assert find_state(own, damage, 0.0, seen, begun=False).adopt == state(5), "there is a journal of this launch"
+
+
 def test_an_end_counts_more_than_the_state_before_it() -> None:
     end = state(6, status="stopped")
     assert found(state(6), UI=end, simulator=state(6)).adopt == end
