@@ -10,6 +10,7 @@ import contextlib
 import json
 import os
 import threading
+import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
@@ -39,6 +40,9 @@ END = "told"
 
 FAILED = ".failed"
 """What is added to the name of a journal that could not be written any more."""
+
+DELAY = 0.01
+"""Seconds until what was written is synced: first it is published, and the next record does not wait for the disk."""
 
 MAX_JOURNALS = 20
 """So many journals of a scenario are kept."""
@@ -130,6 +134,7 @@ class Journal:
         """Sync what is written, for ever: for a thread of its own."""
         while True:
             self._written.wait()
+            time.sleep(DELAY)
             self._written.clear()
             file = self._file
             try:
