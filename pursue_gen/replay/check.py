@@ -12,7 +12,7 @@ from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
-from pursue_runtime.locations import is_end
+from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
 
 DRIFT = 0.001
@@ -291,12 +291,15 @@ class _Checker:
                     found.append(Finding(FAULT, "unsaid", state.seq, text))
                     found += self._unsaid_command(step)
                 continue
+            orders = self.orders.get(before.plan)
             if word.seq is None:
-                if word.node in controllers - {"UI"}:
+                # A controller reports where its own robots arrive: it sees move_base's results and their positions.
+                is_arrival = is_movement(edge.source) and is_end(edge.source, edge.target)
+                own_robots = orders is not None and word.node in orders.owners.get(agent, ())
+                if word.node in controllers - {"UI"} and not (is_arrival and own_robots):
                     text = f"{word.node} published {word.text}, and ends are reported by robots"
                     found.append(Finding(FAULT, "owner", state.seq, text))
                 continue
-            orders = self.orders.get(before.plan)
             if before.status == HOLDING:
                 found.append(Finding(FAULT, "held", state.seq, f"{word.text} was taken while the mission held"))
             if orders is None:

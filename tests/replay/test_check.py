@@ -149,6 +149,15 @@ def test_an_end_that_a_controller_tells_is_a_fault() -> None:
     assert kinds(found(mission(play))) == [("owner", 8)]
 
 
+def test_a_controller_reports_where_its_own_robot_arrives() -> None:
+    def reported_by(node: str) -> Findings:
+        play = tuple((at, word, node if "bot1_going_c_to_b2b" in word else known) for at, word, known in PLAY)
+        return found(mission(play))
+
+    assert reported_by("controller_bot1").kept
+    assert kinds(reported_by("controller_bot2")) == [("owner", 5)]
+
+
 def test_a_command_by_hand_is_told() -> None:
     play = tuple((at, word, "rostopic_7" if "bot1_inb@" in word else node) for at, word, node in PLAY)
     assert found(mission(play)).kept
