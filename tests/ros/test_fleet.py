@@ -201,7 +201,10 @@ def fleet(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fleet]
 
 
 def test_missions_are_sent_played_replaced_and_rolled_back(fleet: Fleet) -> None:
-    """A mission that comes while another one is played waits for its end, then all robots play the new one."""
+    """A mission that comes while another one is played waits for its end, then all robots play the new one.
+
+    bot3 has the third spot at each place: 0.8 m to the right of the given pose.
+    """
     digests = {name: fleet.desk(f"bundle {name}.pur -o {name}.pursue").split()[-1] for name in ("first", "second")}
     fleet.desk(f"send first.pursue --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["first"])
@@ -212,14 +215,14 @@ def test_missions_are_sent_played_replaced_and_rolled_back(fleet: Fleet) -> None
     until(lambda: fleet.said("The goal is reached"), fleet.made.logs)
     fleet.desk(f"send second.pursue --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["second"])
-    fleet.until_sent("bot3", "-1/0")
+    fleet.until_sent("bot3", "-1/-0.8")
     fleet.play("second")
-    fleet.until_sent("bot3", "-1/0", "7/5")
+    fleet.until_sent("bot3", "-1/-0.8", "7/4.2")
     fleet.until_sent("bot1", "1/0", "5/5")
     fleet.desk(f"send --back --to robots.yaml {WAIT}")
     assert fleet.current() == dict.fromkeys(MACHINES, digests["first"])
     fleet.play("first")
-    fleet.until_sent("bot3", "-1/0", "7/5", "-1/0")
+    fleet.until_sent("bot3", "-1/-0.8", "7/4.2", "-1/-0.8")
 
 
 def test_while_one_robot_cannot_be_reached_nothing_changes_anywhere(fleet: Fleet) -> None:
