@@ -50,9 +50,9 @@ class Element:
         raise PursueError([error(code, shortened(message), self.span, hint)])
 
 
-def shortened(message: str) -> str:
-    """The message, cut where it repeats a long text."""
-    return message if len(message) <= _MESSAGE else message[: _MESSAGE - 1] + "…"
+def shortened(text: str, most: int = _MESSAGE) -> str:
+    """The text of a message, or a part of it, cut where it repeats a long one."""
+    return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def read_markup(text: str, file: str) -> Element:

@@ -108,7 +108,7 @@ def _declarations(nta: Element) -> Tuple[List[str], List[Tuple[str, int]], List[
         elif words[0] == "int":
             variables += _integers(declaration, words[1:])
         else:
-            message = f"the declaration '{' '.join(statement.split())}' is not supported"
+            message = f"the declaration '{shortened(' '.join(statement.split()), 80)}' is not supported"
             declaration.fail("TGA002", message, "clock, int and broadcast chan are")
     seen = set()
     for name in clocks + [v for v, _ in variables] + channels:
@@ -130,7 +130,7 @@ def _integers(declaration: Element, words: List[str]) -> List[Tuple[str, int]]:
     for part in " ".join(words).split(","):
         name, *value = part.split()
         if not name.isidentifier() or (value and value[0] != "="):
-            declaration.fail("TGA002", f"the declaration 'int{part}' is not supported", "plain int variables are")
+            declaration.fail("TGA002", f"the declaration 'int{shortened(part, 80)}' is not supported", "plain int variables are")
         result.append((name, _labelled(declaration, value[1:], integer) if value else 0))
     return result
 
