@@ -130,7 +130,8 @@ def _integers(declaration: Element, words: List[str]) -> List[Tuple[str, int]]:
     for part in " ".join(words).split(","):
         name, *value = part.split()
         if not name.isidentifier() or (value and value[0] != "="):
-            declaration.fail("TGA002", f"the declaration 'int{shortened(part, 80)}' is not supported", "plain int variables are")
+            message = f"the declaration 'int{shortened(part, 80)}' is not supported"
+            declaration.fail("TGA002", message, "plain int variables are")
         result.append((name, _labelled(declaration, value[1:], integer) if value else 0))
     return result
 
