@@ -98,6 +98,7 @@ class Observer:
         self.take_up()
         self.repeats = StateRepeats(self.mission.model.reaction * self.settings.time_unit)
         self.await_clock()
+        self.witnesses.await_subscribers(self.states)
         self.publish([self.mission.state(self.now())])
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)

@@ -12,7 +12,7 @@ import rospy
 from pursue_msgs.msg import SystemState as Message
 
 from pursue_runtime.nodes.links import is_gone
-from pursue_runtime.nodes.node import Ending, publish_to_one
+from pursue_runtime.nodes.node import Ending, listeners, publish_to_one
 from pursue_runtime.nodes.state_message import message_of, subscribe_states
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.words import SEEN
@@ -22,6 +22,9 @@ PATIENCE = 5.0
 
 AGAIN = 0.1
 """Seconds of real time between two looks at which of them are still there."""
+
+CONNECTED = 1.0
+"""Seconds of real time for which it waits until these nodes receive its states."""
 
 NOTHING = SystemState(0, 0.0, {}, {}, {}, status=WAITING)
 """What a node publishes that has seen no state."""
@@ -73,6 +76,13 @@ class Witnesses:
             missing = [node for node in missing if node not in self.seen and not is_gone(node)]
         if missing:
             rospy.logwarn("no answer on %s from %s", SEEN, ", ".join(missing))
+
+    def await_subscribers(self, states: rospy.Publisher) -> None:
+        """Return when every node that has answered receives the states again, at the latest after CONNECTED: nodes and
+        recordings then miss none."""
+        deadline = time.monotonic() + CONNECTED
+        while not self._ending.called and time.monotonic() < deadline and not set(self.seen) <= set(listeners(states)):
+            time.sleep(0.01)
 
     def follow(self, on_state: Callable[[SystemState, str], None]) -> None:
         """Pass every answer to `on_state` from now on, with the node's name, and first the last one of each node."""
