@@ -11,9 +11,11 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 LONGEST = (
-    "ros/test_missions", "ros/test_faults", "ros/test_links", "ros/test_nodes", "ros/test_web", "ros/test_fleet",
-    "ros/test_robots", "ros/test_newcomer", "ros/test_install_space", "ros/test_received_missions",
-    "ros/test_recording", "ros/test_ui_node", "ros/test_benchmarks", "scenarios/test_scenarios",
+    "ros/test_missions", "ros/test_faults", "ros/test_robots", "ros/test_witness", "ros/test_links",
+    "ros/test_missions_with_blocked_ways", "ros/test_run_mission", "ros/test_nodes", "ros/test_disturbed_missions",
+    "ros/test_web", "ros/test_fleet", "ros/test_newcomer", "ros/test_install_space", "ros/test_received_missions",
+    "ros/test_recording", "ros/test_missions_with_spots", "ros/test_real_robots_launch", "ros/test_parameters",
+    "ros/test_ui_node", "ros/test_benchmarks", "scenarios/test_scenarios", "workspace/test_writer_kills",
     "simulation/test_simulated_missions", "proof/test_checker", "synthesis/test_verdicts",
     "simulation/test_simulated_command", "proof/test_invariant", "runtime/manager/test_hostile_requests",
     "synthesis/test_native", "synthesis/test_engines", "solving/test_verifytga", "lsp/test_packaging",
