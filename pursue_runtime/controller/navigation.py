@@ -76,7 +76,7 @@ class Navigation:
 
     The robot gets goals for the movement that the state shows, and gets an action only where it is known to be at the
     action's place. If it is not, that is reported; while the state lists it as `returning` it gets a goal for its
-    place. A goal that somebody else has cancelled is sent again when the state has listed the robot as `held`, and
+    place. A goal that another node has cancelled is sent again when the state has listed the robot as `held`, and
     does so no more.
     """
 

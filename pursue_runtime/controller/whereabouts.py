@@ -72,7 +72,7 @@ class Whereabouts:
         self._place, self._arrival = poi, self.position
 
     def on_departure(self) -> None:
-        """Note that the robot may be anywhere: it has a goal, of ours or of somebody else."""
+        """Note that the robot may be anywhere: it has a goal, of ours or of another node."""
         self._place, self._arrival = "", None
 
     def stands_at(self) -> float:

@@ -85,7 +85,7 @@ def blocked_reason(ways: Collection[Way]) -> str:
 
 
 def check_avoids(answer: Mapping[str, Any], ways: Collection[Way]) -> None:
-    """Raise DataError if a command of a planner's answer sends somebody along one of the ways, or cannot be read."""
+    """Raise DataError if a command of a planner's answer sends an agent along one of the ways, or cannot be read."""
     for way in ways:
         movements = {movement(*way), movement(*reversed(way))}
         try:
