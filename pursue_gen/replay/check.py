@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
+from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
-from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
+from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
-
-DRIFT = 0.001
-"""Seconds by which a clock may be beside the stamps."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +58,17 @@ class Findings:
 
 def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings:
     """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
-    checker = _Checker(record, game, tolerance)
+    moves = Moves(game.network)
+    states, late = with_beginnings(record.states, moves)
+    record = replace(record, states=tuple(states))
+    checker = _Checker(record, game, moves, tolerance)
     checker.run()
     steps = checker.steps
     said = match_words(record, [(step.before, step.state) for step in steps])
     steps = [ReplayedStep(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
-    findings = [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
+    text = "recorded {:.2f} s after it began: its first message is missing"
+    findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
+    findings += [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
         done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
@@ -89,8 +92,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
 
 
 class _Checker:
-    def __init__(self, record: MissionRecord, game: Game, tolerance: float) -> None:
-        self.moves = Moves(game.network)
+    def __init__(self, record: MissionRecord, game: Game, moves: Moves, tolerance: float) -> None:
+        self.moves = moves
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
         self.turns: List[Done] = []
@@ -104,7 +107,7 @@ class _Checker:
         self._read_orders()
         before: Optional[SystemState] = None
         for state in self._record.states:
-            if not self.moves.knows(_place(state)):
+            if not self.moves.knows(place_of(state)):
                 self._report(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
                 return
             if before is None:
@@ -140,7 +143,7 @@ class _Checker:
     def _first(self, state: SystemState) -> None:
         if state.seq > 1:
             self._report(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
-        elif _place(state) != self.moves.initial:
+        elif place_of(state) != self.moves.initial:
             self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
         self._resume(state)
         if state.seq == 1:
@@ -165,22 +168,22 @@ class _Checker:
 
     def _next(self, before: SystemState, state: SystemState) -> None:
         if before.status == WAITING:
-            if _place(state) != self.moves.initial:
+            if place_of(state) != self.moves.initial:
                 self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
             self._started(state)
             return
         if before.status in ENDED:
             self._report(FAULT, "end", state, f"the mission went on after it was {before.status}")
-        if state.stamp < before.stamp - DRIFT:
+        if state.stamp < before.stamp - EXACT:
             self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
         move = self._move(before, state)
         if move is not None:
             self.steps.append(ReplayedStep(before, state, move))
-            self._zeros.update(dict.fromkeys(after(move, _place(before))[1], state.stamp))
+            self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))
         elif self._turned(before, state):
             self.turns.append((before, state, "", False))
         elif state.discrete() != before.discrete():
-            could = ", ".join(self.moves.possible(_place(before))) or "nothing"
+            could = ", ".join(self.moves.possible(place_of(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
             changed = _change(before, state)
             self._report(FAULT, "step", state, f"{what} is no step of the model ({changed}); possible: {could}")
@@ -192,17 +195,17 @@ class _Checker:
         """The joint move that leads from one to the other, the one that fits the clocks best."""
         if not state.event:
             return None
-        place, clocks = _place(before), self._clocks_at(state)
-        found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == _place(state)]
+        place, clocks = place_of(before), self._clocks_at(state)
+        found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == place_of(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
         """True where robots whose way was blocked turn round with a new plan, as the only change."""
         changed = [name for name, here in state.locations.items() if here != before.locations[name]]
-        parts = [self.moves.way_back(_place(before), name) for name in changed]
+        parts = [self.moves.way_back(place_of(before), name) for name in changed]
         move = tuple(part for part in parts if part is not None)
-        place, resets = after(move, _place(before))
-        if not changed or len(move) < len(changed) or state.plan == before.plan or place != _place(state):
+        place, resets = after(move, place_of(before))
+        if not changed or len(move) < len(changed) or state.plan == before.plan or place != place_of(state):
             return False
         self._zeros.update(dict.fromkeys(resets, state.stamp))
         for name in changed:
@@ -217,7 +220,7 @@ class _Checker:
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
             for clock, value in self._clocks_at(state).items()
-            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= DRIFT
+            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= EXACT
         }
         if wrong:
             wrong_by = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
@@ -247,7 +250,7 @@ class _Checker:
         if last.status == WON and bad is not None and last.locations[bad[0]] == bad[1]:
             self._report(FAULT, "end", last, f"its status is won, but {bad[0]} is {bad[1]}")
         if last.status not in (*ENDED, WAITING):
-            overdue = self.moves.overdue(_place(last), self._clocks_at(last))
+            overdue = self.moves.overdue(place_of(last), self._clocks_at(last))
             for agent, late in overdue.items():
                 if late > self._tolerance:
                     text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
@@ -261,7 +264,7 @@ class _Checker:
         for step in steps:
             before, state = step.before, step.state
             clocks = _aged(before, state)
-            by, late = self.moves.untimely(step.move, _place(before), clocks)
+            by, late = self.moves.untimely(step.move, place_of(before), clocks)
             own = step.move[0][0] == (self._game.objective.bad or ("", ""))[0]
             if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
                 how = "late" if late else "early"
@@ -270,7 +273,7 @@ class _Checker:
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING:
                 continue
-            cover = orders.cover.find(_place(state))
+            cover = orders.cover.find(place_of(state))
             if not in_time((zone for zones in cover for zone in zones), state.clocks, 0.0, self._tolerance):
                 what = "at these clocks" if cover else "in this state"
                 text = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
@@ -330,7 +333,7 @@ class _Checker:
         before, state = step.before, step.state
         zones = [
             zone
-            for command in orders.commands.find(_place(before))
+            for command in orders.commands.find(place_of(before))
             if (command.agent, command.event) == (step.move[0][0], state.event)
             for zone in command.zones
         ]
@@ -340,10 +343,6 @@ class _Checker:
     def _is_reliable(self) -> str:
         """What else could be the reason for a strategy that does not fit."""
         return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
-
-
-def _place(state: SystemState) -> DiscreteState:
-    return DiscreteState(dict(state.locations), dict(state.values))
 
 
 def _aged(before: SystemState, state: SystemState) -> Dict[str, float]:

@@ -8,6 +8,7 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
+from pursue_runtime.state import SystemState
 
 Part = Tuple[str, Edge]
 """An automaton and its edge."""
@@ -21,6 +22,11 @@ class DiscreteState(NamedTuple):
 
     locations: Mapping[str, str]
     values: Mapping[str, int]
+
+
+def place_of(state: SystemState) -> DiscreteState:
+    """The discrete part of a state of a mission."""
+    return DiscreteState(dict(state.locations), dict(state.values))
 
 
 class Untimely(NamedTuple):

@@ -332,3 +332,23 @@ def test_another_scenario_is_noticed() -> None:
     made = mission()
     made.states = [state._replace(locations={"somebody": "somewhere"}) for state in made.states]
     assert kinds(found(made))[0][0] == "scenario"
+
+
+@pytest.mark.parametrize("seq", [1, 4, 6, 8])
+def test_a_state_whose_first_message_is_missing_began_where_its_clocks_say(seq: int) -> None:
+    made = mission()
+    number = next(k for k, state in enumerate(made.states) if state.seq == seq)
+    first = made.states[number]
+    passed = 0.6 * (made.states[number + 1].stamp - first.stamp)
+    clocks = {clock: value + passed for clock, value in first.clocks.items()}
+    made.states[number] = first._replace(stamp=first.stamp + passed, clocks=clocks)
+    findings = found(made)
+    assert findings.kept and findings.won and kinds(findings, NOTE) == [("recorded late", seq)]
+
+
+def test_clocks_that_do_not_fit_an_earlier_beginning_are_a_fault() -> None:
+    made = mission()
+    state = next(state for state in made.states if state.seq == 3)
+    clocks = {clock: value + 3.0 for clock, value in state.clocks.items()}
+    made.change(3, clocks=clocks)
+    assert ("clock", 3) in kinds(found(made), FAULT)
