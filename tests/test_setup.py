@@ -202,13 +202,13 @@ def test_without_apt_there_is_a_list_of_what_to_install(machine: Path) -> None:
         assert word in told.stdout
 
 
-def test_a_place_that_catkin_cannot_work_in_is_told(machine: Path) -> None:
+def test_a_place_that_catkin_cannot_work_in_is_reported(machine: Path) -> None:
     told = run(machine, "setup", name="my project")
     assert told.returncode == 6
     assert "without blanks" in told.stdout
 
 
-def test_only_what_is_missing_is_installed_and_a_failure_is_told(machine: Path) -> None:
+def test_only_what_is_missing_is_installed_and_a_failure_is_reported(machine: Path) -> None:
     fake(machine, "dpkg-query", "echo 'ii  make'; echo 'ii  python3-rospy:all'; echo 'rc  g++'")
     refuse = "case $* in *install*) echo E: no such package; exit 100; esac"
     fake(machine, "apt-get", f'echo "$@" >>{machine}/told; {refuse}')
@@ -232,7 +232,7 @@ def test_without_root_and_sudo_the_command_is_shown(machine: Path) -> None:
     assert "apt-get install --no-install-recommends" in told.stdout
 
 
-def test_a_machine_that_does_not_know_its_name_is_told_what_to_do(machine: Path) -> None:
+def test_a_machine_that_does_not_know_its_name_is_reported_what_to_do(machine: Path) -> None:
     fake(machine, "getent", '[[ $2 == localhost ]]')
     for name in ("tee", "sudo"):  # /etc/hosts cannot be written
         fake(machine, name, "exit 1")

@@ -44,7 +44,7 @@ def ward(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_mistake_is_told_as_the_page_has_it(ward: Path) -> None:
+def test_the_mistake_is_reported_as_the_page_has_it(ward: Path) -> None:
     (ward / "night_shift.pur").write_text(blocks("pursue")[0], encoding="utf-8")
     status, text = said(ward, "check", "night_shift.pur")
     assert status == 3 and blocks("text")[0] in text

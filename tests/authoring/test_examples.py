@@ -82,13 +82,13 @@ def test_what_stands_there_is_not_replaced_without_force(folder: Path) -> None:
     ("name", "hint"),
     [("one_oficer", "did you mean catch_the_thief/one_officer?"), ("xyzzy", "pursue-gen examples"), ("", "examples")],
 )
-def test_what_is_no_example_is_told(folder: Path, name: str, hint: str) -> None:
+def test_what_is_no_example_is_reported(folder: Path, name: str, hint: str) -> None:
     done = pursue("examples", name)
     assert done.status == 2 and hint in done.err
     assert list(folder.iterdir()) == []
 
 
-def test_a_name_that_two_have_is_told(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+def test_a_name_that_two_have_is_reported(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     for place in ("a", "b"):
         (folder / "own" / place).mkdir(parents=True)
         (folder / "own" / place / "same.pur").write_text(f"// {place}\n", encoding="utf-8")

@@ -165,7 +165,7 @@ def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
         ("somebody you do not control", "fetch", "fetch is taken already"),
     ],
 )
-def test_a_bad_answer_is_told_and_asked_again(question: str, answer: str, expected: str) -> None:
+def test_a_bad_answer_is_reported_and_asked_again(question: str, answer: str, expected: str) -> None:
     usual = io.StringIO()
     plain = ask_requirements(StreamDialog(io.StringIO("\n" * 30), usual), "reach", None, None)
     asked = [line for line in usual.getvalue().split("\n") if "[" in line]
@@ -278,13 +278,13 @@ def test_options_that_cannot_be_are_refused(folder: Path, options: List[str]) ->
     assert list(folder.iterdir()) == []
 
 
-def test_names_that_collide_in_the_network_are_told(folder: Path) -> None:
+def test_names_that_collide_in_the_network_are_reported(folder: Path) -> None:
     done = pursue("new", "floor", "--yes", "--places", "Pbot1,b")
     assert done.status == 3 and "PML105" in done.err
     assert list(folder.iterdir()) == []
 
 
-def test_without_a_verdict_in_time_the_scenario_is_written_and_that_is_told(
+def test_without_a_verdict_in_time_the_scenario_is_written_and_that_is_reported(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("pursue_gen.authoring.first_scenario._PATIENCE", 1e-9)

@@ -50,7 +50,7 @@ def test_a_game_that_took_too_long_says_so_and_has_dashes() -> None:
     assert set(line[2:]) == {"-"}
 
 
-def test_a_win_that_was_not_proven_in_time_is_told_from_a_proven_one() -> None:
+def test_a_win_that_was_not_proven_in_time_is_distinguished_from_a_proven_one() -> None:
     assert tables.verdict(WON) == "won"
     assert tables.verdict({**WON, "outcome": "proof"}) == "won, not proven in time"
     assert tables.verdict({**WON, "outcome": "refused"}) == "won, refused by the checker"

@@ -126,7 +126,7 @@ def test_without_a_command_it_lists_them() -> None:
 
 
 @pytest.mark.parametrize("words", [["frobnicate"], ["ws"], ["ws", FIRST, "--ends", "never"], ["check", "--frob"]])
-def test_a_wrong_command_line_is_told_on_stderr(words: List[str]) -> None:
+def test_a_wrong_command_line_is_reported_on_stderr(words: List[str]) -> None:
     told = pursue(*words)
     assert (told.status, told.out) == (2, "")
     assert "Error" in told.err
@@ -259,7 +259,7 @@ def test_check_in_json(tmp_path: Path) -> None:
     assert (finding["severity"], finding["file"], finding["line"]) == ("warning", str(file), 5)
 
 
-def test_warnings_do_not_stop_other_commands_but_are_told(tmp_path: Path) -> None:
+def test_warnings_do_not_stop_other_commands_but_are_reported(tmp_path: Path) -> None:
     file = tmp_path / "island.pur"
     text = Path(FIRST).read_text(encoding="utf-8")
     file.write_text(text.replace('poi "b"', 'poi "island"\npoi "b"'), encoding="utf-8")
@@ -319,7 +319,7 @@ def test_both_engines_can_be_asked(tmp_path: Path, engine: str) -> None:
     assert pursue("verify", FIRST, tmp_path / "plan.txt").status == 0
 
 
-def test_a_missing_native_engine_is_told() -> None:
+def test_a_missing_native_engine_is_reported() -> None:
     with mock.patch("pursue_gen.synthesis.native.engine._core", None):
         assert pursue("solve", FIRST, "-o", os.devnull).status == 0
         told = pursue("solve", FIRST, "--engine", "native")
@@ -403,32 +403,32 @@ def test_memory_is_limited_where_nobody_says_anything() -> None:
 
 
 @pytest.mark.parametrize("reaction", ["soon", "1/0", "-1", "nan", "1e-9", "1e9", "", "0.1.1"])
-def test_a_reaction_that_cannot_be_is_told(reaction: str) -> None:
+def test_a_reaction_that_cannot_be_is_reported(reaction: str) -> None:
     told = pursue("solve", FIRST, f"--reaction={reaction}")
     assert (told.status, told.out) == (2, "")
     assert "the reaction is" in told.err
 
 
 @pytest.mark.parametrize("slack", ["late", "bot1=", "=3", "bot1=-1", "1.5"])
-def test_a_slack_that_cannot_be_is_told(slack: str) -> None:
+def test_a_slack_that_cannot_be_is_reported(slack: str) -> None:
     told = pursue("solve", FIRST, f"--slack={slack}")
     assert (told.status, told.out) == (2, "")
     assert "the slack is" in told.err
 
 
-def test_a_slack_for_nobody_is_told() -> None:
+def test_a_slack_for_nobody_is_reported() -> None:
     told = pursue("solve", FIRST, "--slack=bot9=1")
     assert told.status in (2, 3)
     assert "bot9" in told.err
 
 
-def test_slack_where_the_plan_decides_the_ends_is_told() -> None:
+def test_slack_where_the_plan_decides_the_ends_is_reported() -> None:
     told = pursue("solve", FIRST, "--slack", "1", "--ends", "controllable")
     assert told.status == 2
     assert "--ends reported" in told.err
 
 
-def test_a_network_without_its_query_is_told(tmp_path: Path) -> None:
+def test_a_network_without_its_query_is_reported(tmp_path: Path) -> None:
     told = pursue("solve", tmp_path / "TGA.xml")
     assert told.status == 2
     assert "its query" in told.err
@@ -458,14 +458,14 @@ def test_verify_says_in_which_game_a_plan_wins(tmp_path: Path) -> None:
     assert pursue("verify", file, plan, "--ends", "reported").status == 4
 
 
-def test_a_plan_of_another_scenario_is_told(tmp_path: Path) -> None:
+def test_a_plan_of_another_scenario_is_reported(tmp_path: Path) -> None:
     pursue("solve", FIRST, "-o", tmp_path / "plan.txt")
     told = pursue("verify", THESIS / "scenario_2.pur", tmp_path / "plan.txt")
     assert told.status == 3
     assert f"{tmp_path}/plan.txt:" in told.err
 
 
-def test_verify_without_a_plan_is_told() -> None:
+def test_verify_without_a_plan_is_reported() -> None:
     told = pursue("verify", FIRST)
     assert told.status == 2
     assert "plan is missing" in told.err
@@ -605,7 +605,7 @@ def test_the_figures_beside_those_of_the_thesis_are_those_that_report_prints() -
 # --optimize -----------------------------------------------------------------------------------------------------------
 
 
-def test_the_least_time_is_told_and_kept(tmp_path: Path) -> None:
+def test_the_least_time_is_reported_and_kept(tmp_path: Path) -> None:
     plan = tmp_path / "plan.txt"
     outcome = pursue("solve", FIRST, "--optimize", "time", "--json", "-o", plan)
     found = json.loads(outcome.out)["time"]
@@ -630,7 +630,7 @@ def test_a_strategy_that_is_not_the_fastest_is_not_called_so() -> None:
     assert "better ones than this one may exist" in outcome.err
 
 
-def test_what_has_no_least_time_is_told(tmp_path: Path) -> None:
+def test_what_has_no_least_time_is_reported(tmp_path: Path) -> None:
     safety = tmp_path / "box.pur"
     safety.write_text(CALLED.format(deadline=5))
     outcome = pursue("solve", safety, "--optimize", "time")

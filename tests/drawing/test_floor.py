@@ -82,7 +82,7 @@ def test_a_png_is_embedded_as_it_is(tmp_path: Path) -> None:
         (GOOD, b"\x89PNG\r\n\x1a\nshort", "damaged PNG"),
     ],
 )
-def test_bad_maps_are_told_with_the_file_and_what_was_expected(
+def test_bad_maps_are_reported_with_the_file_and_what_was_expected(
     tmp_path: Path, text: str, image: bytes, told: str
 ) -> None:
     with pytest.raises(PursueError) as problem:

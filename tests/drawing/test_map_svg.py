@@ -42,7 +42,7 @@ def test_places_distances_and_agents_are_named() -> None:
     assert {"hall", "shop", "yard", "3", "17", "bot", "cat"} <= set(said)
 
 
-def test_what_happens_where_and_who_can_do_what_is_told() -> None:
+def test_what_happens_where_and_who_can_do_what_is_reported() -> None:
     said = texts(draw(SCENARIO, poses((0, 0), (3, 0), (3, 2)), False))
     assert "⚙ meet" in said
     assert any("bot: a robot" in words and "can do meet" in words for words in said)

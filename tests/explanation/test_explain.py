@@ -168,7 +168,7 @@ def told(name: str) -> str:
     return rendered[rendered.index("How it goes wrong") :].split("Not enough")[0]
 
 
-def test_a_missed_deadline_is_told_step_by_step() -> None:
+def test_a_missed_deadline_is_reported_step_by_step() -> None:
     assert told("deadline 3") == (
         "How it goes wrong, for example (times in units):\n"
         "  1.1  visitor: callBot (fetch is due by 4.1)\n"
@@ -178,11 +178,11 @@ def test_a_missed_deadline_is_told_step_by_step() -> None:
     )
 
 
-def test_an_event_that_was_to_be_avoided_is_told() -> None:
+def test_an_event_that_was_to_be_avoided_is_reported() -> None:
     assert told("shy").endswith("meet has happened, which was to be avoided\n")
 
 
-def test_agents_that_were_to_be_apart_are_told_where_they_met() -> None:
+def test_agents_that_were_to_be_apart_are_reported_where_they_met() -> None:
     assert told("apart").endswith("bot and visitor are together: both at desk\n")
 
 
@@ -193,7 +193,7 @@ def test_an_agent_that_need_not_help_is_named() -> None:
     )
 
 
-def test_a_robot_that_can_do_nothing_alone_is_told(reference_dir: Path) -> None:
+def test_a_robot_that_can_do_nothing_alone_is_reported(reference_dir: Path) -> None:
     text = (reference_dir / "WC2a" / "scenario.pur").read_text()
     last = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY)).play[-1].text
     assert last == (

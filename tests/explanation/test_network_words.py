@@ -63,7 +63,7 @@ def bound(left: Optional[str], right: Optional[str], value: int, strict: bool = 
         ),
     ],
 )  # fmt: skip
-def test_zones_are_told_as_they_are(zone: Zone, told: str) -> None:
+def test_zones_are_reported_as_they_are(zone: Zone, told: str) -> None:
     assert WORDS.when(zone) == told
 
 

@@ -329,7 +329,7 @@ reach_objective: do ring
 
 
 @pytest.mark.parametrize(("name", "text", "expected"), FILES, ids=[name for name, *_ in FILES])
-def test_what_a_beginner_is_told(name: str, text: str, expected: List[Told]) -> None:
+def test_what_a_beginner_is_reported(name: str, text: str, expected: List[Told]) -> None:
     found = check_reading(read(text, "first.pur"))
     assert [(f.code, f.span.line if f.span else 0) for f in found] == [row[:2] for row in expected]
     for finding, (_, _, hint) in zip(found, expected):

@@ -98,7 +98,7 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
 
 
 @pytest.mark.parametrize(("changes", "expected"), FAULTS, ids=[str(row[0])[:50] for row in FAULTS])
-def test_a_fault_is_told_with_its_place_and_a_way_out(
+def test_a_fault_is_reported_with_its_place_and_a_way_out(
     changes: Dict[str, str], expected: List[Tuple[str, int, str, str]]
 ) -> None:
     source = text(**changes)
@@ -121,11 +121,11 @@ def test_only_what_can_be_meant_is_a_warning() -> None:
     assert len(seen) > 25
 
 
-def test_an_empty_text_is_told_what_a_scenario_needs() -> None:
+def test_an_empty_text_is_reported_what_a_scenario_needs() -> None:
     assert [finding.code for finding in findings("")] == ["PML132", "PML130", "PML171"]
 
 
-def test_everything_is_told_at_once_in_file_order() -> None:
+def test_everything_is_reported_at_once_in_file_order() -> None:
     source = text(
         connect="connect a and b distance 0",
         event_work='event "work" location c duration 0',
@@ -135,7 +135,7 @@ def test_everything_is_told_at_once_in_file_order() -> None:
     assert [finding.code for finding in findings(source)] == ["PML140", "PML141", "PML110", "PML142", "PML110"]
 
 
-def test_a_mistake_in_a_name_is_not_told_twice_as_its_consequences() -> None:
+def test_a_mistake_in_a_name_is_not_reported_twice_as_its_consequences() -> None:
     """An event with a misspelt name in can_do is not also said to be one that nobody can do."""
     assert [finding.code for finding in findings(text(agent_bot=BOT.replace("hand", "hnd")))] == ["PML110"]
 

@@ -210,7 +210,7 @@ def test_a_mark_at_the_start_is_no_sign(tmp_path: Path) -> None:
     assert read_text(str(file)) == 'poi "a"'
 
 
-def test_an_empty_file_is_told_what_is_missing(tmp_path: Path) -> None:
+def test_an_empty_file_is_reported_what_is_missing(tmp_path: Path) -> None:
     file = tmp_path / "some.pur"
     file.write_bytes(b"")
     command = [sys.executable, "-m", "pursue_gen", "check", str(file)]

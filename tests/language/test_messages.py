@@ -75,7 +75,7 @@ SLIPS = [
 
 
 @pytest.mark.parametrize(("slip", "code", "column", "message", "hint"), SLIPS, ids=[row[0][:40] for row in SLIPS])
-def test_a_slip_is_told_with_its_place(slip: str, code: str, column: int, message: str, hint: str) -> None:
+def test_a_slip_is_reported_with_its_place(slip: str, code: str, column: int, message: str, hint: str) -> None:
     (finding,) = syntax_errors("// first line\n" + slip)
     assert finding.severity is Severity.ERROR
     assert (finding.code, finding.span and (finding.span.line, finding.span.column)) == (code, (2, column))
@@ -83,7 +83,7 @@ def test_a_slip_is_told_with_its_place(slip: str, code: str, column: int, messag
     assert hint in finding.hint
 
 
-def test_every_slip_of_a_file_is_told_at_once() -> None:
+def test_every_slip_of_a_file_is_reported_at_once() -> None:
     source = text(poi_a="poi a", event_rest='evnt "rest"', agent_bot='agent "bot" mobile location a')
     source += "objective: avoid\n"
     found = [(finding.code, finding.span and finding.span.line) for finding in syntax_errors(source)]

@@ -52,7 +52,7 @@ def test_a_reserved_word_gets_a_proposal_that_is_free() -> None:
     assert findings(text(rule=RULE.replace("order", "guard1"))) == []
 
 
-def test_a_way_to_nowhere_is_told_where_it_names_that() -> None:
+def test_a_way_to_nowhere_is_reported_where_it_names_that() -> None:
     (finding,) = findings(text(connect="connect a and bb distance 3"))
     span = finding.span
     assert finding.code == "PML110" and span is not None and (span.column, span.end_column) == (15, 17)
@@ -63,7 +63,7 @@ def test_names_that_look_alike_are_free(name: str) -> None:
     assert findings(text(rule=RULE.replace("order", name))) == []
 
 
-def test_a_name_twice_is_told_at_the_second_place() -> None:
+def test_a_name_twice_is_reported_at_the_second_place() -> None:
     (finding,) = findings(text(poi_b='poi "b"\npoi "b"'))
     assert finding.code == "PML103" and finding.span is not None and finding.span.line == 3
     assert "line 2" in finding.message

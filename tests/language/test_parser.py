@@ -141,7 +141,7 @@ def test_load_lets_warnings_pass(tmp_path: Path) -> None:
     assert [finding.code for finding in check(load(path))] == ["PML180"]
 
 
-def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
+def test_files_that_cannot_be_read_are_reported(tmp_path: Path) -> None:
     (tmp_path / "picture.pur").write_bytes(b"\xff\xd8\xff")
     for path, code in ((tmp_path / "none.pur", "PML001"), (tmp_path, "PML001"), (tmp_path / "picture.pur", "PML002")):
         with pytest.raises(PursueError) as caught:
@@ -167,17 +167,17 @@ def _survives(source: str) -> None:
 
 
 @given(st.text())
-def test_any_text_is_read_or_told_what_is_wrong(source: str) -> None:
+def test_any_text_is_read_or_reported_what_is_wrong(source: str) -> None:
     _survives(source)
 
 
 @given(st.lists(st.sampled_from(WORDS), max_size=40).map(" ".join))
-def test_any_words_of_the_language_in_any_order_are_read_or_told(source: str) -> None:
+def test_any_words_of_the_language_in_any_order_are_read_or_reported(source: str) -> None:
     _survives(source)
 
 
 @given(st.data())
-def test_a_sound_scenario_with_a_slip_is_read_or_told(data: st.DataObject) -> None:
+def test_a_sound_scenario_with_a_slip_is_read_or_reported(data: st.DataObject) -> None:
     source = text()
     start = data.draw(st.integers(0, len(source)))
     end = data.draw(st.integers(start, min(len(source), start + 12)))

@@ -62,7 +62,7 @@ def test_a_place_tells_where_robots_stand() -> None:
     assert "**bot**: a robot" in told(f"//{pose} bo", text)
 
 
-def test_an_unknown_name_is_told_as_that() -> None:
+def test_an_unknown_name_is_reported_as_that() -> None:
     assert told("do ", 'poi "a"\nreach_objective: do nothing') == "There is no event `nothing`."
 
 

@@ -32,7 +32,7 @@ def test_all_uses_are_found() -> None:
     assert [p.declares for p in places] == [True, False, False, False, False]
 
 
-def test_a_name_of_two_kinds_is_told_apart() -> None:
+def test_a_name_of_two_kinds_is_distinguished() -> None:
     text = 'poi "x"\nevent "x" location x\nagent "b" location x can_do x\n'
     document = Document.of(text, "x.pur")
     assert [p.start for p in same_name(document, at(text, 'event "'))] == [15, at(text, "can_do ")]

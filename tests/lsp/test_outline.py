@@ -45,6 +45,6 @@ def test_sections_statements_and_comments_fold() -> None:
     assert found == [(0, 1, True), (3, 4, False), (5, 6, True), (8, 9, False)]
 
 
-def test_no_fold_is_told_twice() -> None:
+def test_no_fold_is_reported_twice() -> None:
     found = folds(Document.of('rule "r":\n a before b\n', "x.pur"))
     assert [(fold.first, fold.last) for fold in found] == [(0, 1)]

@@ -134,7 +134,7 @@ def test_a_lost_game_ends_with_a_clear_sentence() -> None:
     assert "no putDownBox within 12 of newBox" in told
 
 
-def test_leaving_is_told_as_it_is() -> None:
+def test_leaving_is_reported_as_it_is() -> None:
     assert "would have reached it" in farewell(session(THIEF))
     assert "so far the robots have kept it" in farewell(session("work_cell/work_cell"))
     assert "could not have been sure" in farewell(session("cage"))
@@ -193,7 +193,7 @@ def test_the_end_of_input_ends_it() -> None:
     assert "You have left at 0" in done.stdout
 
 
-def test_who_asks_for_the_other_side_is_told_why_not() -> None:
+def test_who_asks_for_the_other_side_is_reported_why_not() -> None:
     done = run(THIEF, "", "--as", "robots")
     assert done.returncode == 2
     assert "you can only play the others" in done.stderr

@@ -118,7 +118,7 @@ def test_what_is_planned_for_later_happens_then_and_not_before() -> None:
     assert table.plans == ()
 
 
-def test_who_did_what_is_told() -> None:
+def test_who_did_what_is_reported() -> None:
     played = world("thesis/scenario_1", 1)
     table = beginning(played.setup)
     while not table.over:

@@ -135,7 +135,7 @@ def test_a_failure_says_where() -> None:
     assert report.play == ("then: bot.a x=1 y=1",)
 
 
-def test_an_unknown_discrete_state_fails_and_the_play_to_it_is_told() -> None:
+def test_an_unknown_discrete_state_fails_and_the_play_to_it_is_reported() -> None:
     net = network(automaton("bot", "a b win", edge("a", "b", "x>1", "step!"), edge("b", "win")))
     report = checked(net, REACH, block(net, "a", ["x<=1"], ("x>1", moves(net, ("bot", 0)))))
     assert kind(report) == "no block"
@@ -355,7 +355,7 @@ def test_unused_parts_are_pruned() -> None:
     assert verify(STRAIGHT, REACH, less).ok
 
 
-def test_networks_and_strategies_that_cannot_be_read_are_told() -> None:
+def test_networks_and_strategies_that_cannot_be_read_are_reported() -> None:
     plan = Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),))
     hears = network(automaton("bot", "a win", edge("a", "win", "x>1", "go?")))
     lower = network(automaton("bot", "a:x>=0 win", edge("a", "win")))

@@ -73,7 +73,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_what_cannot_be_used_is_told(kind: str) -> None:
+def test_what_cannot_be_used_is_reported(kind: str) -> None:
     request, message = BAD[kind]
     with pytest.raises(PursueError) as caught:
         replan(request)  # type: ignore[arg-type]

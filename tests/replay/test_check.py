@@ -121,7 +121,7 @@ def test_heartbeats_are_nothing_new() -> None:
     assert found(made).kept
 
 
-def test_what_was_said_twice_late_or_in_vain_is_told_and_harms_nothing() -> None:
+def test_what_was_said_twice_late_or_in_vain_is_reported_and_harms_nothing() -> None:
     made = mission()
     made.say(made.states[3].stamp + 0.5, "bot1:bot1_c2b@2", "controller_bot1")
     made.say(made.states[5].stamp + 0.1, "bot1_going_c_to_b2b", "simulator")
@@ -158,7 +158,7 @@ def test_a_controller_reports_where_its_own_robot_arrives() -> None:
     assert kinds(reported_by("controller_bot2")) == [("owner", 5)]
 
 
-def test_a_command_by_hand_is_told() -> None:
+def test_a_command_by_hand_is_reported() -> None:
     play = tuple((at, word, "rostopic_7" if "bot1_inb@" in word else node) for at, word, node in PLAY)
     assert found(mission(play)).kept
     hurried = tuple((11.02 if "bot1_inb@" in word else at, word, node) for at, word, node in play)
@@ -237,7 +237,7 @@ def test_two_robots_may_be_sent_to_different_spots_of_one_place_but_each_always_
     assert "goal" in {kind for kind, _ in kinds(found(made))}
 
 
-def test_what_was_not_read_makes_no_goal_missing_but_is_told() -> None:
+def test_what_was_not_read_makes_no_goal_missing_but_is_reported() -> None:
     made = mission()
     made.heard = [message for message in made.heard if message[1] != "/bot2/move_base_simple/goal"]
     assert kinds(found(made, problems=("it is cut",))) == [("recording", 0)]
@@ -286,7 +286,7 @@ def held(made: Mission, before: int, plan: int = 0, lost: Tuple[str, ...] = ()) 
     made.heard = heard
 
 
-def test_holds_and_lost_agents_are_told() -> None:
+def test_holds_and_lost_agents_are_reported() -> None:
     made = mission()
     held(made, 6, lost=("bot2",))
     findings = found(made)

@@ -84,7 +84,7 @@ def test_nodes_publish_and_hear_what_their_code_names(
     assert {t.name for t in some if node in t.subscribers} & fixed == calls(files, package, script, "Subscriber")
 
 
-def test_each_robot_is_told_by_its_own_controller_and_heard_by_the_simulator(some: "tuple[Topic, ...]") -> None:
+def test_each_robot_is_reported_by_its_own_controller_and_received_by_the_simulator(some: "tuple[Topic, ...]") -> None:
     for robot in ("polBot1", "polBot2"):
         own = [topic for topic in some if topic.name.startswith(f"/{robot}/")]
         assert {topic.name for topic in own} == {f"/{robot}/move_base_simple/goal", f"/{robot}/pursue/actions"}

@@ -59,7 +59,7 @@ def test_every_situation_can_be_reached_from_the_start_and_the_goal_too(data: St
     assert any(situation.goal for situation in data.situations)
 
 
-def test_who_is_told_by_whom_is_the_partition(won: Solution) -> None:
+def test_who_is_reported_by_whom_is_the_partition(won: Solution) -> None:
     owners = strategy_data_of(CATCH, won, "all").controllers
     subs = partition(won.strategy, won.network, CATCH.agents, reach_obj="all")
     assert owners["reachObj"] == ("controller_polBot1", "controller_polBot2")

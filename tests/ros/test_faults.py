@@ -130,7 +130,7 @@ def test_where_each_node_is_killed_in_turn_every_step_is_taken_once_and_in_order
     assert run.crashes() == [], run.output()
 
 
-def test_a_command_that_nobody_heard_is_said_until_it_is_answered(ros: Ros, scenario: Path, tmp_path: Path) -> None:
+def test_a_command_that_nobody_received_is_said_until_it_is_answered(ros: Ros, scenario: Path, tmp_path: Path) -> None:
     """The observer is away when the first commands come, for longer than until they are said for the second time."""
     with launched(ros, scenario, tmp_path, use_sim_time=True, speed=3, delays="middle") as run:
         run.until_step("reachObj_going_initial_location2unlocked")

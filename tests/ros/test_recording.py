@@ -69,6 +69,6 @@ def test_a_given_path_is_kept_and_no_file_is_overwritten(theft: Path) -> None:
     assert replayed(theft / "my mission-2.bag")["kept"]
 
 
-def test_the_robot_is_told_what_wins_the_mission_at_once(theft: Path) -> None:
+def test_the_robot_is_reported_what_wins_the_mission_at_once(theft: Path) -> None:
     told = replayed(theft / "my mission-2.bag")
     assert (told["kept"], told["won"]) == (True, True), told["verdict"]

@@ -65,7 +65,7 @@ def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_missio
         assert robots.heard("bot1") == ["goal b", "goal b"]
 
 
-def test_a_robot_that_connects_late_is_told_and_is_called_back_when_its_controller_is_interrupted(
+def test_a_robot_that_connects_late_is_reported_and_is_called_back_when_its_controller_is_interrupted(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
     locations = {"bot1": "going_c_to_b", "bot2": "c", "rule1": "rule1_initial_location", "reachObj": "unlocked"}

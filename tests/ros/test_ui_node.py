@@ -94,7 +94,7 @@ def test_a_wrong_trace_is_refused_with_its_place(package: Path, where: Dict[str,
     assert f"{trace}:2: step 2" in done.stderr
 
 
-def test_without_tornado_there_is_no_page_and_the_reason_is_told(
+def test_without_tornado_there_is_no_page_and_the_reason_is_reported(
     package: Path, where: Dict[str, str], tmp_path: Path
 ) -> None:
     (tmp_path / "tornado").mkdir()
@@ -116,7 +116,7 @@ def test_what_is_typed_and_is_no_text_does_not_end_the_mission(package: Path, wh
     assert b"Not ready after 2 s" in done.stdout and b"failed" not in done.stdout + done.stderr
 
 
-def test_a_taken_port_is_told(package: Path, where: Dict[str, str]) -> None:
+def test_a_taken_port_is_reported(package: Path, where: Dict[str, str]) -> None:
     pytest.importorskip("tornado")
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -128,7 +128,7 @@ def test_a_taken_port_is_told(package: Path, where: Dict[str, str]) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_the_address_of_the_page_is_told(package: Path, where: Dict[str, str]) -> None:
+def test_the_address_of_the_page_is_reported(package: Path, where: Dict[str, str]) -> None:
     pytest.importorskip("tornado")
     done = run(package, where, "--web", "--port", "0", "--host", "0.0.0.0", "--wait", "0.5", "__name:=shown")
     assert done.returncode == 1, done.stderr

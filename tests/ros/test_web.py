@@ -131,7 +131,7 @@ def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros
         assert page.complaints == []
 
 
-def test_a_person_is_told_what_to_do_and_says_when_it_is_done(ros: Ros, tmp_path: Path) -> None:
+def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path: Path) -> None:
     """Nobody else reports what the person does; their word goes by the plan, in the middle of its window."""
     text = (SCENARIOS / "thesis/scenario_1.pur").read_text(encoding="utf-8")
     scenario = parse(text.replace('"bot2" controllable', '"bot2" human controllable'), "ward.pur", "ward")

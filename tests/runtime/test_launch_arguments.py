@@ -197,7 +197,7 @@ def test_a_robot_takes_missions_and_plays_its_part_of_them(launch: Any) -> None:
     assert all(node.respawn for node in found.nodes.values())
 
 
-def test_a_robot_passes_on_what_it_is_told(packages: Path) -> None:
+def test_a_robot_passes_on_what_it_is_reported(packages: Path) -> None:
     """What robot.launch declares and does not use itself is an argument of mission.launch, and goes there by name."""
     folder = packages / "scenario_1_bringup" / "launch"
     robot, mission = ((folder / name).read_text() for name in ("robot.launch", "mission.launch"))

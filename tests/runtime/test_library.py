@@ -115,7 +115,7 @@ def test_the_decimals_of_a_message_do_not_break_an_equality() -> None:
 @pytest.mark.parametrize(
     "text", ["", "Cx", "Cx < ", "1 < 2", "Cx - Cy < Cz", "1 < Cx <= 2", "Cx = 3", "Cx < 1 || Cy < 1"]
 )
-def test_what_is_no_zone_is_told(text: str) -> None:
+def test_what_is_no_zone_is_reported(text: str) -> None:
     with pytest.raises(DataError):
         parse_zone(text)
 
@@ -261,13 +261,13 @@ def test_a_state_without_commands_has_no_next_one() -> None:
     assert strategy.next_command(state(bot1="a"), now=10.0) is None
 
 
-def test_a_strategy_with_something_amiss_is_told() -> None:
+def test_a_strategy_with_something_amiss_is_reported() -> None:
     for broken in (STRATEGY.replace("Cx < 6", "Cx ~ 6"), STRATEGY.replace("do:", "doo:"), "format: 1\nstrategy: []"):
         with pytest.raises(DataError):
             Strategy(read(broken))
 
 
-def test_a_file_of_another_format_is_told(tmp_path: Path) -> None:
+def test_a_file_of_another_format_is_reported(tmp_path: Path) -> None:
     (tmp_path / "strategy.yaml").write_text("format: 2")
     with pytest.raises(DataError, match=r"strategy\.yaml has format 2, and pursue_runtime [\d.]+ reads format 1: put"):
         read_data(str(tmp_path / "strategy.yaml"))

@@ -27,7 +27,7 @@ def test_who_speaks_is_left_alone() -> None:
     assert peers.silent(500.0) == [] == peers.due()
 
 
-def test_who_was_silent_gets_new_connections_even_if_heard_again_before() -> None:
+def test_who_was_silent_gets_new_connections_even_if_received_again_before() -> None:
     peers = Peers(silence=3.0)
     count = spoken(peers, until=10.0)
     peers.update({"/bot": count}, 11.5)

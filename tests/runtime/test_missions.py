@@ -275,7 +275,7 @@ class Real:
 
 
 @pytest.mark.parametrize(("mission", "seq"), [(B, 0), (B, 7), (A, 0)])
-def test_an_observer_whose_clock_was_set_back_is_heard_again_after_a_minute(mission: str, seq: int) -> None:
+def test_an_observer_whose_clock_was_set_back_is_received_again_after_a_minute(mission: str, seq: int) -> None:
     real = Real()
     node = StateFilter(A, A, False, real)
     assert node.classify(state(40, 5000.0, status="won")) == "ours"
@@ -287,7 +287,7 @@ def test_an_observer_whose_clock_was_set_back_is_heard_again_after_a_minute(miss
     assert heard == ["old"] * 59 + ["ours" if mission == A else "other"] * 4
 
 
-def test_while_the_observer_is_heard_no_state_is_too_old_to_be_delayed() -> None:
+def test_while_the_observer_is_received_no_state_is_too_old_to_be_delayed() -> None:
     """Also where its clock was set back while nothing happens: what it says is known then."""
     real = Real()
     node = StateFilter(B, A, False, real)

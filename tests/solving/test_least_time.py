@@ -159,7 +159,7 @@ def test_a_lost_game_stays_lost() -> None:
     assert problem.value.exit_status == 4
 
 
-def test_what_is_told_without_time_is_true(reference_dir: Path) -> None:
+def test_what_is_reported_without_time_is_true(reference_dir: Path) -> None:
     network, objective = _published(reference_dir, "CT1")
     won = solution(network, objective, IDEAL)
     first = guaranteed(won)

@@ -221,7 +221,7 @@ def test_a_strategy_that_does_not_win_is_refused(game: Game, strategy: Strategy,
     assert "cannot be met" not in told(problem)
 
 
-def test_a_strategy_that_stands_no_delay_is_told(game: Game, strategy: Strategy, tool: Tool) -> None:
+def test_a_strategy_that_stands_no_delay_is_reported(game: Game, strategy: Strategy, tool: Tool) -> None:
     problem = failure(game, tool(replaying(winning(game, strategy))), reaction=Fraction(1, 10))
     assert problem.exit_status == 4
     assert "wins only where commands take effect at once, not up to 0.1 time units later" in told(problem)
@@ -253,7 +253,7 @@ FAILURES = {
 
 
 @pytest.mark.parametrize("name", FAILURES)
-def test_every_failure_is_told_with_the_tools_own_words(game: Game, tool: Tool, name: str) -> None:
+def test_every_failure_is_reported_with_the_tools_own_words(game: Game, tool: Tool, name: str) -> None:
     output, end, status, message = FAILURES[name]
     program = tool(f"{replaying(output)}\n{end}")
     problem = failure(game, program)
@@ -360,7 +360,7 @@ def free_at_last(lock: Path) -> None:
 # It is not there -----------------------------------------------------------------------------------------------------
 
 
-def test_an_absent_tool_is_told(game: Game, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_absent_tool_is_reported(game: Game, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(PursueError) as caught:
         run_verifytga(*game)
@@ -370,7 +370,7 @@ def test_an_absent_tool_is_told(game: Game, monkeypatch: pytest.MonkeyPatch, tmp
 
 
 @pytest.mark.parametrize("what, words", [("nothing", "there is no"), ("folder", "is a folder"), ("text", "chmod +x")])
-def test_a_path_that_is_no_program_is_told(game: Game, tmp_path: Path, what: str, words: str) -> None:
+def test_a_path_that_is_no_program_is_reported(game: Game, tmp_path: Path, what: str, words: str) -> None:
     path = tmp_path / "verifytga"
     if what == "folder":
         path.mkdir()
@@ -382,7 +382,7 @@ def test_a_path_that_is_no_program_is_told(game: Game, tmp_path: Path, what: str
     assert words in told(caught.value) and str(path) in told(caught.value)
 
 
-def test_a_program_for_another_machine_is_told(game: Game, tmp_path: Path) -> None:
+def test_a_program_for_another_machine_is_reported(game: Game, tmp_path: Path) -> None:
     path = tmp_path / "verifytga"
     path.write_bytes(b"\x7fELF" + bytes(60))
     path.chmod(0o755)
@@ -517,7 +517,7 @@ def test_a_strategy_that_does_not_win_is_no_verdict(game: Game, strategy: Strate
         ("ws", "--solver", "verifytga", "--plan", "plan.txt"),
     ],
 )
-def test_options_that_contradict_each_other_are_told(called: Path, options: Tuple[str, ...]) -> None:
+def test_options_that_contradict_each_other_are_reported(called: Path, options: Tuple[str, ...]) -> None:
     done = pursue(options[0], called, *options[1:])
     assert (done.returncode, done.stdout) == (2, "")
     assert "--solver" in done.stderr

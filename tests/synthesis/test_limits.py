@@ -97,7 +97,7 @@ def test_limits_that_are_not_hit_change_nothing(game: Game, engine: str) -> None
 
 
 @engines
-def test_the_progress_is_told(game: Game, engine: str, eager: None) -> None:
+def test_the_progress_is_reported(game: Game, engine: str, eager: None) -> None:
     heard: List[Progress] = []
     solve(*game, engine=engine, progress=heard.append)
     assert heard
@@ -106,13 +106,13 @@ def test_the_progress_is_told(game: Game, engine: str, eager: None) -> None:
 
 
 @engines
-def test_ctrl_c_while_the_progress_is_told_ends_an_engine(game: Game, engine: str) -> None:
+def test_ctrl_c_while_the_progress_is_reported_ends_an_engine(game: Game, engine: str) -> None:
     with pytest.raises(KeyboardInterrupt):
         solve(*game, engine=engine, progress=mock.Mock(side_effect=KeyboardInterrupt))
 
 
 @engines
-def test_of_a_large_game_it_is_told_how_far_it_got(engine: str) -> None:
+def test_of_a_large_game_it_is_reported_how_far_it_got(engine: str) -> None:
     scenario = parse(many_walkers(), "crowd.pur")
     for seconds in (0.5, 5.0, 50.0):  # on a busy machine the time may be over before much is done
         with pytest.raises(PursueError) as failure:
@@ -161,7 +161,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])
-def test_memory_that_is_not_given_is_told_as_a_limit(game: Game, engine: str) -> None:
+def test_memory_that_is_not_given_is_reported_as_a_limit(game: Game, engine: str) -> None:
     core = mock.Mock(solve=mock.Mock(side_effect=MemoryError), LimitReached=ZeroDivisionError)
     with mock.patch.object(native, "_core", core), mock.patch.object(reference, "_assign", side_effect=MemoryError):
         with pytest.raises(PursueError) as failure:

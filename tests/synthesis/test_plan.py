@@ -263,7 +263,7 @@ def test_text_without_a_strategy(text: str, message: str) -> None:
         ("bot2.b->bot2.going_b_to_a", "bot2.a->bot2.going_a_to_b", 12, "no edge"),
     ],
 )
-def test_damage_is_told_with_its_line(old: str, new: str, line: int, message: str) -> None:
+def test_damage_is_reported_with_its_line(old: str, new: str, line: int, message: str) -> None:
     assert PLAN.count(old) >= 1
     problem = fails(PLAN.replace(old, new, 1))
     assert message in problem.diagnostics[0].message

@@ -131,7 +131,7 @@ def test_a_start_is_won_as_far_as_all_its_points_are(engine: str) -> None:
     assert won(*_between("x", Fraction(4), Fraction(4)), Constraint(None, "y", Fraction(-900), False))
 
 
-def test_a_start_that_cannot_be_is_told_by_engine_and_checker() -> None:
+def test_a_start_that_cannot_be_is_reported_by_engine_and_checker() -> None:
     network = replace(_wait_for(3, 4), start=(*_between("x", Fraction(2), Fraction(1)),))
     with pytest.raises(PursueError, match="at the start"):
         compile_game(network, GOAL)
@@ -158,7 +158,7 @@ def test_times_to_the_goal_count_from_the_start() -> None:
     assert least_time(compile_game(begun, GOAL)) == 1
 
 
-def test_uppaal_cannot_be_told_where_clocks_start() -> None:
+def test_uppaal_cannot_be_reported_where_clocks_start() -> None:
     begun = replace(_wait_for(3, 9), start=_between("x", Fraction(2), Fraction(2)))
     with pytest.raises(PursueError, match="do not start at 0"):
         write_network(begun, GOAL)

@@ -26,7 +26,7 @@ def test_digits_of_both_pois() -> None:
     assert (codes.going("p1", "p2"), codes.doing("p2"), codes.doing("p14")) == (-12, -22, -1414)
 
 
-def test_a_collision_is_told_and_avoided() -> None:
+def test_a_collision_is_reported_and_avoided() -> None:
     codes = numbered(11, [(2, 3), (1, 11)])
     assert codes.note is not None
     assert codes.note.severity is Severity.WARNING
@@ -53,7 +53,7 @@ def test_no_number_is_too_small_for_uppaal() -> None:
         )
     )
 )
-def test_positions_are_told_apart(case: Tuple[int, List[Tuple[int, int]]]) -> None:
+def test_positions_are_distinguished(case: Tuple[int, List[Tuple[int, int]]]) -> None:
     count, pairs = case
     codes = numbered(count, pairs)
     numbers = [*codes.pois.values(), *codes.ways.values()]

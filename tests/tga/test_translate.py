@@ -103,7 +103,7 @@ def test_names_that_would_stand_for_two_things_are_an_error() -> None:
     assert "anna_a2b" in raised.value.diagnostics[0].message
 
 
-def test_a_collaborative_event_without_anyone_else_is_left_out_and_told() -> None:
+def test_a_collaborative_event_without_anyone_else_is_left_out_and_reported() -> None:
     text = TWO.replace("location b reacts_to meet", "location b")
     text = text.replace("can_do meet, rest", "can_do meet, rest reacts_to meet")
     lonely = scenario(text)

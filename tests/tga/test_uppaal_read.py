@@ -137,7 +137,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("old", "new", "code", "message"), FAULTS)
-def test_what_a_network_cannot_hold_is_told_with_its_place(old: str, new: str, code: str, message: str) -> None:
+def test_what_a_network_cannot_hold_is_reported_with_its_place(old: str, new: str, code: str, message: str) -> None:
     assert old in SLOPPY
     count = SLOPPY.count(old) if old == "</template>" else 1
     with pytest.raises(PursueError) as raised:
@@ -159,7 +159,7 @@ def test_the_place_of_a_label_is_its_line() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "hello", "<html></html>", "<nta></nta>"])
-def test_other_files_are_told(text: str) -> None:
+def test_other_files_are_reported(text: str) -> None:
     with pytest.raises(PursueError) as raised:
         read_network(text, "page.html")
     assert raised.value.diagnostics[0].code == "TGA001"
@@ -311,7 +311,7 @@ def test_queries(text: str, objective: Objective) -> None:
         "control: A<> x",
     ],
 )
-def test_other_queries_are_told(text: str) -> None:
+def test_other_queries_are_reported(text: str) -> None:
     with pytest.raises(PursueError) as raised:
         read_query(text, "TCTL.q")
     (found,) = raised.value.diagnostics

@@ -212,12 +212,12 @@ def test_a_bundle_is_shown_and_checked(keys: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"junk", b"PK\5\6" + bytes(18), b"\xff" * 100])
-def test_what_is_no_bundle_is_told(content: bytes) -> None:
+def test_what_is_no_bundle_is_reported(content: bytes) -> None:
     Path("x.dat").write_bytes(content)
     told(pursue("bundle", "--check", "x.dat"), 2, "TRN014", "x.dat")
 
 
-def test_a_bundle_that_was_changed_is_told() -> None:
+def test_a_bundle_that_was_changed_is_reported() -> None:
     pursue("bundle", THIEF)
     with zipfile.ZipFile("catch_the_thief.pursue") as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
@@ -332,7 +332,7 @@ def test_computed_poses_are_not_taken_for_measured_ones() -> None:
         (POSES, "poses: \x00\n", "1:1", "not YAML"),
     ],
 )
-def test_a_wrong_file_of_poses_is_told_with_its_place(before: str, after: str, place: str, word: str) -> None:
+def test_a_wrong_file_of_poses_is_reported_with_its_place(before: str, after: str, place: str, word: str) -> None:
     text = POSES.replace(before, after)
     assert text != POSES
     Path("lab.yaml").write_text(text)

@@ -115,7 +115,7 @@ def test_who_says_nothing_is_given_up() -> None:
     assert asked(b"", pause=1.0, times=100, timeout=0.2) == "no answer in time"
 
 
-def test_a_reader_that_is_silent_is_told() -> None:
+def test_a_reader_that_is_silent_is_reported() -> None:
     assert asked(http(b'{"reader": false, "robot": "bot1"}', "503 X")) == "its pursue_reader is silent"
     assert asked(http(b'{"ok": false, "code": "no_keys", "message": "no key"}', "503 X")) == "no key"
     assert asked(http(b'{"ok": false, "code": "no_keys"}', "503 X")) == "refuses: no_keys"
@@ -141,7 +141,7 @@ def test_who_takes_no_bundle_is_given_up() -> None:
     assert problem.value.sent
 
 
-def test_an_answer_before_the_bundle_was_taken_is_heard() -> None:
+def test_an_answer_before_the_bundle_was_taken_is_received() -> None:
     refusal = json.dumps({"ok": False, "code": "too_large", "message": "too large", "status": None}).encode()
     heard: List[int] = []
     with saying(http(refusal, "413 Payload Too Large"), pause=PATIENCE) as port:
@@ -224,7 +224,7 @@ def test_with_tls_the_name_of_the_machine_counts(tmp_path: Path) -> None:
         health(place)
 
 
-def test_with_tls_who_does_not_speak_it_is_told() -> None:
+def test_with_tls_who_does_not_speak_it_is_reported() -> None:
     with serving([FakeRobot("bot1")]) as (place,), pytest.raises(Unreached) as problem:
         health(replace(place, tls=True, timeout=0.5))  # it may wait for the end of what it takes for a line
     assert not problem.value.sent

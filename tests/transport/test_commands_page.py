@@ -24,7 +24,7 @@ def options(command: Any) -> Iterator[Tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("name", ["keys", "bundle", "send", "ws"])
-def test_every_option_is_told(name: str) -> None:
+def test_every_option_is_reported(name: str) -> None:
     whole: Any = get_command(app)
     told = list(options(whole.commands[name]))
     assert len(told) > 2

@@ -118,7 +118,7 @@ def test_a_key_is_not_replaced_unasked(home: Path) -> None:
     assert sorted(file.name for file in home.iterdir()) == ["lab.key", "lab.pub"]
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     assert code_of(lambda: new_key("lab", tmp_path / "file" / "keys")) == "CLI003"
 
@@ -148,7 +148,7 @@ def wrong_keys() -> Dict[str, bytes]:
 
 
 @pytest.mark.parametrize("what", wrong_keys())
-def test_what_is_no_private_key_is_told(home: Path, what: str) -> None:
+def test_what_is_no_private_key_is_reported(home: Path, what: str) -> None:
     content = wrong_keys()[what]
     home.mkdir(parents=True)
     (home / "lab.key").write_bytes(content)
@@ -204,7 +204,7 @@ def test_the_list_of_keys(home: Path, tmp_path: Path) -> None:
     assert "warning TRN008" in told.err and "broken.pub" in told.err
 
 
-def test_a_key_that_is_not_there_is_told() -> None:
+def test_a_key_that_is_not_there_is_reported() -> None:
     told = pursue("keys", "show", "lab")
     assert (told.status, told.out) == (2, "") and "TRN002" in told.err
 
@@ -224,7 +224,7 @@ def without_cryptography(*words: object) -> "subprocess.CompletedProcess[str]":
 @pytest.mark.parametrize(
     "words", [["keys", "new", "lab"], ["keys", "list"], ["keys", "show", "lab"], ["bundle", "floor.pur"]]
 )
-def test_without_cryptography_it_is_told_what_to_install(words: List[str], home: Path) -> None:
+def test_without_cryptography_it_is_reported_what_to_install(words: List[str], home: Path) -> None:
     done = without_cryptography(*words)
     assert (done.returncode, done.stdout) == (6, "")
     assert "TRN001" in done.stderr and "pip install cryptography" in done.stderr and "Traceback" not in done.stderr

@@ -98,7 +98,7 @@ def test_addresses_are_written_as_people_write_them() -> None:
         ("bot1.local}", "bot1.local", "TRN021", 4, 3, "is not YAML"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told_with_its_place(
+def test_what_is_wrong_is_reported_with_its_place(
     folder: Path, before: str, after: str, code: str, line: int, column: int, words: str
 ) -> None:
     assert before in GOOD
@@ -107,7 +107,7 @@ def test_what_is_wrong_is_told_with_its_place(
     assert words in found[0][3]
 
 
-def test_all_findings_are_told_at_once(folder: Path) -> None:
+def test_all_findings_are_reported_at_once(folder: Path) -> None:
     text = GOOD.replace("13001", "0").replace("2.5", "0").replace("localhost", "a b")
     assert [line for _, line, _, _ in sorted(findings(folder, text), key=lambda one: one[1])] == [4, 5, 6]
 
@@ -118,13 +118,13 @@ def test_a_file_without_robots_shows_how_one_looks(folder: Path, text: str) -> N
 
 
 @pytest.mark.parametrize("text", ["[" * 5000, "format: 1\x07", "a: &a [*a]", "<<: 1", "? [1]\n: 2", "!!python/none x"])
-def test_strange_yaml_is_told_too(folder: Path, text: str) -> None:
+def test_strange_yaml_is_reported_too(folder: Path, text: str) -> None:
     with pytest.raises(PursueError) as problem:
         read(folder, text)
     assert problem.value.exit_status == 2
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(PursueError) as problem:
         read_robots(tmp_path / "robots.yaml")
     assert problem.value.diagnostics[0].code == "CLI001"

@@ -141,7 +141,7 @@ def test_robots_that_differ_have_a_status_of_their_own(send: Any, robots: List[F
     assert [robot["now"] and robot["now"]["current"] for robot in facts["robots"]] == [None, *[facts["mission"]] * 2]
 
 
-def test_a_package_that_no_robot_has_is_told_before_anything_is_sent(send: Any, robots: List[FakeRobot]) -> None:
+def test_a_package_that_no_robot_has_is_reported_before_anything_is_sent(send: Any, robots: List[FakeRobot]) -> None:
     robots[1].packages = ["observer"]
     status, _, err = send("catch.pursue")
     assert status == 7
@@ -150,7 +150,7 @@ def test_a_package_that_no_robot_has_is_told_before_anything_is_sent(send: Any, 
     assert all(set(robot.requests) == {"health"} for robot in robots)
 
 
-def test_a_bundle_that_is_too_large_is_told_before_anything_is_sent(send: Any, robots: List[FakeRobot]) -> None:
+def test_a_bundle_that_is_too_large_is_reported_before_anything_is_sent(send: Any, robots: List[FakeRobot]) -> None:
     robots[1].limit = 1000
     status, _, err = send("catch.pursue")
     assert status == 7
@@ -292,7 +292,7 @@ def test_waiting_ends_with_the_mission_under_way(send: Any, robots: List[FakeRob
         (("catch.pursue", "--key", "nobody"), "TRN002"),
     ],
 )
-def test_what_does_not_go_together_is_told(
+def test_what_does_not_go_together_is_reported(
     send: Any, robots: List[FakeRobot], words: Sequence[str], hint: str
 ) -> None:
     status, _, err = send(*words)

@@ -62,7 +62,7 @@ def test_all_robots_change_and_the_observer_is_the_last() -> None:
     assert [row.after.current for row in result.rows if row.after] == [NEW] * 3
 
 
-def test_progress_is_told_up_to_the_last_byte() -> None:
+def test_progress_is_reported_up_to_the_last_byte() -> None:
     robots = fleet()
     reports: List[Tuple[str, int, int]] = []
     with serving(robots) as places:
@@ -87,7 +87,7 @@ def test_one_that_cannot_be_reached_leaves_all_as_they_were() -> None:
     assert result.rows[2].after is None
 
 
-def test_a_port_without_a_server_is_told_as_refused() -> None:
+def test_a_port_without_a_server_is_reported_as_refused() -> None:
     robots = fleet()
     with contextlib.ExitStack() as held:
         places = []
@@ -185,7 +185,7 @@ def test_an_order_that_was_turned_away_has_changed_nothing_but_one_that_takes_lo
     assert result.rows[2].outcome.startswith("nothing changed; still has it prepared" if known else "not known")
 
 
-def test_it_is_told_exactly_where_going_back_fails() -> None:
+def test_it_is_reported_exactly_where_going_back_fails() -> None:
     robots = fleet()
     robots[0].fault = only("commit", REFUSED)
     committed = [False]

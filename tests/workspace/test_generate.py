@@ -365,7 +365,7 @@ def test_a_trace_is_something_that_can_happen() -> None:
 
 
 @pytest.mark.parametrize("name", ["2fast", "my scenario", "a-b", "ä", ""])
-def test_a_name_that_no_package_can_have_is_told(name: str) -> None:
+def test_a_name_that_no_package_can_have_is_reported(name: str) -> None:
     scenario, network, objective, strategy = world("thesis/scenario_1")
     with pytest.raises(PursueError) as caught:
         generate(dataclasses.replace(scenario, name=name), network, objective, strategy, Options())
@@ -373,7 +373,7 @@ def test_a_name_that_no_package_can_have_is_told(name: str) -> None:
     assert finding.code == "WSP005" and "rename" in finding.hint
 
 
-def test_two_packages_of_one_name_are_told() -> None:
+def test_two_packages_of_one_name_are_reported() -> None:
     scenario, network, objective, strategy = world("thesis/scenario_1")
     renamed = dataclasses.replace(scenario, name="controller_bot1")
     there = generate(renamed, network, objective, strategy, Options())

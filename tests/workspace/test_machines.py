@@ -62,7 +62,7 @@ def test_without_a_master_the_rest_stays_where_it_is_launched() -> None:
     assert machines.of("observer").host == "localhost" and "the machine that launches" in finding.message
 
 
-def test_who_says_everything_is_told_nothing() -> None:
+def test_who_says_everything_is_reported_nothing() -> None:
     text = f"format: 1\nmachines: {{b: {{nodes: [{', '.join(NODES)}]}}}}"
     assert parse_machines(text, "m", NODES)[1] == ()
 
@@ -89,13 +89,13 @@ def test_who_says_everything_is_told_nothing() -> None:
         ("", ("TRN040", 1, 1), "format: 1"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place_and_a_way_out(text: str, found: Tuple[str, int, int], hint: str) -> None:
+def test_what_is_wrong_is_reported_with_place_and_a_way_out(text: str, found: Tuple[str, int, int], hint: str) -> None:
     (finding,) = wrong(text)
     assert place(finding) == found
     assert hint in finding.hint
 
 
-def test_everything_that_is_wrong_is_told_at_once_in_order() -> None:
+def test_everything_that_is_wrong_is_reported_at_once_in_order() -> None:
     text = GOOD.replace("observer", "observr").replace("user", "usr").replace("base.local\n", "-x\n")
     assert [place(finding)[1] for finding in wrong(text)] == [2, 4, 5]
 

@@ -156,7 +156,7 @@ def test_a_failure_is_repeated_until_the_robot_counts_as_lost() -> None:
     assert world.wait(20.0) == [] and world.words == [BLOCKED] * 3
 
 
-def test_a_failure_that_is_heard_twice_is_one() -> None:
+def test_a_failure_that_is_received_twice_is_one() -> None:
     world = World(ends="result", retries=1)
     world.go()
     world.result(ABORTED)
@@ -166,7 +166,7 @@ def test_a_failure_that_is_heard_twice_is_one() -> None:
     assert world.words == [] and len(world.goals) == 2
 
 
-def test_failures_of_a_robot_that_tells_its_ends_itself_are_heard_with_action_goals() -> None:
+def test_failures_of_a_robot_that_tells_its_ends_itself_are_received_with_action_goals() -> None:
     world = World(goals="action")
     world.go()
     world.result(SUCCEEDED)
@@ -341,7 +341,7 @@ def test_a_robot_that_failed_and_is_brought_there_is_there() -> None:
     assert world.words == [BLOCKED, END]
 
 
-def test_success_elsewhere_is_told_as_a_warning() -> None:
+def test_success_elsewhere_is_reported_as_a_warning() -> None:
     world = World(goals="action", ends="pose")
     world.go()
     world.at(3.0, 3.0)

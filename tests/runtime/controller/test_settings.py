@@ -36,7 +36,7 @@ def test_a_robots_own_settings_win_over_the_nodes() -> None:
         ({"simulated": True, "bot1": {"goals": "action"}}, "bot1, which is simulated"),
     ],
 )
-def test_settings_that_cannot_be_are_told(given_here: Any, message: str) -> None:
+def test_settings_that_cannot_be_are_reported(given_here: Any, message: str) -> None:
     with pytest.raises(DataError) as told:
         read_settings("bot1", given_here)
     assert message in str(told.value)

@@ -59,7 +59,7 @@ def lines(there: socket.socket, count: int) -> List[Dict[str, Any]]:
         return [json.loads(file.readline()) for _ in range(count)]
 
 
-def test_every_subscriber_hears_every_message_in_a_line_of_its_own(stage: Callable[..., Stage]) -> None:
+def test_every_subscriber_receives_every_message_in_a_line_of_its_own(stage: Callable[..., Stage]) -> None:
     here = stage()
     listeners = [here.connect() for _ in range(3)]
     here.wait(3)
@@ -72,7 +72,7 @@ def test_every_subscriber_hears_every_message_in_a_line_of_its_own(stage: Callab
         ]
 
 
-def test_a_newcomer_hears_the_last_of_latched_topics_and_nothing_else_of_the_past(stage: Callable[..., Stage]) -> None:
+def test_a_newcomer_receives_the_last_of_latched_topics_and_no_other_message(stage: Callable[..., Stage]) -> None:
     here = stage()
     here.send("state", "1", latched=True)
     here.send("state", "2", latched=True)

@@ -143,7 +143,7 @@ def test_a_key_that_is_replaced_by_one_of_the_same_size_is_read_again(tmp_path: 
         assert list(folder.keys()) == [mission_bundle.fingerprint(Desk(seed).key.public_key())]
 
 
-def test_files_that_hold_no_key_are_told(tmp_path: Path) -> None:
+def test_files_that_hold_no_key_are_reported(tmp_path: Path) -> None:
     Desk().trusted_by(tmp_path)
     (tmp_path / "junk.pub").write_bytes(b"\xff")
     folder = KeyFolder(str(tmp_path))
@@ -236,7 +236,7 @@ def test_topics_are_named_with_commas_between() -> None:
 @pytest.mark.parametrize("host, loopback", [
     ("127.0.0.1", True), ("localhost", True), ("::1", True), ("0.0.0.0", False), ("", False), ("robot", False),
 ])
-def test_loopback_is_told_from_other_addresses(host: str, loopback: bool) -> None:
+def test_loopback_is_distinguished_from_other_addresses(host: str, loopback: bool) -> None:
     assert is_loopback(host) is loopback
 
 

@@ -106,7 +106,7 @@ def test_an_order_counts_once(serve: Serve) -> None:
     assert len(robot.reader.messages) == 1
 
 
-def test_what_the_reader_refuses_is_told(serve: Serve) -> None:
+def test_what_the_reader_refuses_is_reported(serve: Serve) -> None:
     robot, desk = serve(), Desk()
     robot.reader.verdict = {"ok": False, "code": "bad_bundle", "message": "not right"}
     told = send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64))
@@ -121,7 +121,7 @@ def test_a_large_mission_arrives_whole(serve: Serve) -> None:
     assert base64.b64decode(robot.reader.messages[0]["bundle"]) == content
 
 
-def test_a_client_that_asks_first_is_told_to_go_on(serve: Serve) -> None:
+def test_a_client_that_asks_first_gets_a_continue(serve: Serve) -> None:
     robot, desk = serve(), Desk()
     order = desk.order(robot.reader.ticket, body=b"abc")
     with connected(robot.port) as there:
@@ -388,7 +388,7 @@ def test_with_a_certificate_it_speaks_tls_only_and_no_old_one(serve: Serve, tmp_
     assert "errors" not in robot.record.counts(), robot.lines
 
 
-def test_a_certificate_that_cannot_be_used_is_told_with_what_to_do(tmp_path: Path) -> None:
+def test_a_certificate_that_cannot_be_used_is_reported_with_what_to_do(tmp_path: Path) -> None:
     assert tls("", "") is None
     cert, key = certificate(tmp_path)
     locked = tmp_path / "locked"
@@ -403,14 +403,14 @@ def test_a_certificate_that_cannot_be_used_is_told_with_what_to_do(tmp_path: Pat
 
 # Beginning and end
 
-def test_a_port_that_is_taken_is_told_with_what_to_do(serve: Serve) -> None:
+def test_a_port_that_is_taken_is_reported_with_what_to_do(serve: Serve) -> None:
     robot = serve()
     with pytest.raises(ServerError, match=f"port {robot.port}.*choose another ~port"):
         bind("127.0.0.1", robot.port, "~port")
 
 
 @pytest.mark.parametrize("host, port", [("192.0.2.1", 0), ("no such host", 0), ("x" * 300, 0), ("127.0.0.1", 70000)])
-def test_an_address_that_is_not_ours_is_told(host: str, port: int) -> None:
+def test_an_address_that_is_not_ours_is_reported(host: str, port: int) -> None:
     with pytest.raises(ServerError, match="choose another"):
         bind(host, port, "~port")
 

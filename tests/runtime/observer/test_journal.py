@@ -130,7 +130,7 @@ def test_what_changes_nothing_is_not_written(path: Path) -> None:
     assert path.stat().st_size == size
 
 
-def test_a_line_is_written_before_anybody_hears_of_the_state(path: Path) -> None:
+def test_a_line_is_written_before_anybody_receives_of_the_state(path: Path) -> None:
     life = Life(path)
     states = life.play(("hear", "_start_"))
     assert read_records(str(path)).records[-1]["seq"] == states[-1].seq
@@ -297,7 +297,7 @@ def test_a_journal_of_this_launch_and_another_model_is_not_trusted(path: Path) -
     assert "another model" in Life(path, {**HEADER, "model": "2"}).journal.damage
 
 
-def test_an_end_that_was_not_told_is_told_again_and_then_it_is_over(path: Path) -> None:
+def test_an_end_that_was_not_reported_is_reported_again_and_then_it_is_over(path: Path) -> None:
     Life(path).play(("hear", "_start_"), ("hear", "_stop_"))
     again = Life(path)
     assert again.mission.status == "stopped"

@@ -205,7 +205,7 @@ def test_what_cannot_be_changes_nothing_and_says_what_could(chase: Journey) -> N
     assert "bot_a2b, catch, thief_leaves" in chase.logs[-1][1]
 
 
-def test_an_end_that_is_told_twice_counts_once(chase: Journey) -> None:
+def test_an_end_that_is_reported_twice_counts_once(chase: Journey) -> None:
     chase.hear("bot_a2b", 102.0)
     assert chase.hear("bot_going_a_to_b2b", 105.5).seq == 3
     assert chase.hear("bot_going_a_to_b2b", 105.5) is None
@@ -253,7 +253,7 @@ def test_finish_ends_a_mission_that_only_has_to_be_safe() -> None:
     assert journey.hear("Finish!", 3.0).status == "won"
 
 
-def test_a_robot_that_is_late_is_told_once_and_may_still_arrive(chase: Journey) -> None:
+def test_a_robot_that_is_late_is_reported_once_and_may_still_arrive(chase: Journey) -> None:
     chase.hear("bot_a2b", 102.0)
     moment = chase.mission.next_moment(102.0)
     assert moment == pytest.approx(106.1)
@@ -322,14 +322,14 @@ def test_clocks_may_be_beside_a_zone_by_the_tolerance_and_no_more() -> None:
         assert journey.hear("bot_a2b", moment).status == status
 
 
-def test_it_can_be_told_to_go_on_without_cover() -> None:
+def test_it_may_go_on_without_cover() -> None:
     journey = Journey(cover=COVER, on_uncovered="warn")
     journey.hear("_start_", 0.0)
     assert journey.hear("bot_a2b", 1.5).status == "running"
     assert journey.mission.counts["uncovered"] == 1
 
 
-def test_a_model_with_something_amiss_is_told() -> None:
+def test_a_model_with_something_amiss_is_reported() -> None:
     for broken in (CHASE.replace("initial: a", "initial: z"), CHASE.replace("Cbot > 1", "Cbot ~ 1"), "format: 1"):
         with pytest.raises(DataError):
             Model(read(broken))

@@ -159,7 +159,7 @@ def test_wherever_it_is_killed_there_is_a_whole_mission(tmp_path: Path, monkeypa
     raise AssertionError("it never comes to an end")
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(StoreError, match="cannot keep missions in .*file"):
         Store(str(tmp_path / "file" / "missions"), 5, lambda level, text: None)

@@ -36,14 +36,14 @@ def test_a_robot_stays_until_its_goal_comes() -> None:
     assert world.due(115.0, 3.0) == [ARRIVAL]
 
 
-def test_a_goal_may_be_heard_before_the_state() -> None:
+def test_a_goal_may_be_received_before_the_state() -> None:
     world = simulator()
     world.on_goal("bot", 105.0)
     world.on_state(leaves(), real=1.0)
     assert world.next_moments()[0] == pytest.approx(114.45)
 
 
-def test_the_clock_may_be_behind_when_a_goal_is_heard() -> None:
+def test_the_clock_may_be_behind_when_a_goal_is_received() -> None:
     """In fast simulated time a busy node hears of the time late; its robot must not stay for ever."""
     world = simulator()
     world.on_goal("bot", 104.0)

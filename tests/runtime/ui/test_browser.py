@@ -271,7 +271,7 @@ def test_what_is_possible_in_a_while_becomes_possible(page: Browser, show: Calla
 
 
 @pytest.mark.parametrize("status", ["won", "lost", "stopped"])
-def test_the_end_is_told_and_nothing_can_be_pressed(page: Browser, show: Callable[..., Node], status: str) -> None:
+def test_the_end_is_reported_and_nothing_can_be_pressed(page: Browser, show: Callable[..., Node], status: str) -> None:
     node = show(*everybody())
     node.verdict = (status != "won", "So it ends.")
     node.show(5, 40.0, status=status)

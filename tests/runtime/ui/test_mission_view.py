@@ -175,7 +175,7 @@ def test_no_order_after_its_zone() -> None:
     assert told.next_moments(110.0) == (None, None)
 
 
-def test_people_are_told_in_words_once_it_is_taken() -> None:
+def test_people_are_reported_in_words_once_it_is_taken() -> None:
     walker = Model(model_data(mover("nurse", "human", 9)))
     told = MissionView(walker, IdleEnvironment())
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
@@ -185,7 +185,7 @@ def test_people_are_told_in_words_once_it_is_taken() -> None:
     assert [line.strip() for line in lines] == ["13.5  nurse_going_a_to_b2b"]
 
 
-def test_people_are_told_what_to_do_where() -> None:
+def test_people_get_instructions_where() -> None:
     told = mission()
     told.on_state(at(1, 100.0, event="_start_"), 100.0)
     lines = told.on_state(at(2, 103.0, event="screw", agent="nurse", nurse="doing_screw_in_s"), 103.0)
@@ -194,7 +194,7 @@ def test_people_are_told_what_to_do_where() -> None:
 
 # What happens
 
-def test_a_state_that_is_published_again_is_told_once() -> None:
+def test_a_state_that_is_published_again_is_reported_once() -> None:
     told = mission()
     assert told.on_state(at(1, 100.0, event="_start_"), 100.0)
     assert told.on_state(at(1, 102.0, event="_start_"), 102.0) == []
@@ -219,7 +219,7 @@ def test_the_time_of_the_start_is_found_after_a_restart() -> None:
     ("stopped", "no strategy in this state", 1, "stopped, after 31.5 time units: no strategy in this state"),
     ("stopped", "", 1, "_stop_"),
 ])
-def test_the_end_and_its_reason_are_told(status: str, reason: str, code: int, says: str) -> None:
+def test_the_end_and_its_reason_are_reported(status: str, reason: str, code: int, says: str) -> None:
     told = mission()
     told.on_state(at(1, 100.0, event="_start_"), 100.0)
     assert told.verdict() is None
@@ -285,7 +285,7 @@ def test_the_menu_lists_by_number() -> None:
 
 # What people report
 
-def test_people_report_the_end_of_what_they_are_told() -> None:
+def test_people_report_the_end_of_what_they_are_reported() -> None:
     crew = Model(model_data(mover("nurse", "human", 9), worker("cook", "human"), worker("boy", "agent")))
     busy = state(crew, 3, 100.0, {}, nurse="going_a_to_b", cook="doing_screw_in_s", boy="doing_screw_in_s")
     people = reporters(crew, False, {})

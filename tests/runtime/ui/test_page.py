@@ -74,7 +74,7 @@ def test_a_map_is_read_and_a_wrong_one_refused() -> None:
 
 # Who does what
 
-def test_a_movement_is_told_with_its_ends_and_the_window_of_its_arrival() -> None:
+def test_a_movement_is_reported_with_its_ends_and_the_window_of_its_arrival() -> None:
     seen = view(page(), at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b"), at=20.0)
     bot = agent(seen, "bot")
     assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "from a to b")
@@ -83,13 +83,13 @@ def test_a_movement_is_told_with_its_ends_and_the_window_of_its_arrival() -> Non
     assert arrival["label"] == "arrive at b" and 27.0 < arrival["opens"] < 27.1 and arrival["closes"] == 28.0
 
 
-def test_an_action_is_told_where_it_is_done() -> None:
+def test_an_action_is_reported_where_it_is_done() -> None:
     nurse = agent(view(page(), at(3, 120.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=20.0), "nurse")
     assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "screw, at s")
     assert (nurse["low"], nurse["high"]) == (22.0, 23.0)
 
 
-def test_whoever_stands_is_told_with_what_may_come_and_when() -> None:
+def test_whoever_stands_is_reported_with_what_may_come_and_when() -> None:
     seen = view(page(), at(1, 100.0, clock=0.0), at=0.0)
     thief = agent(seen, "thief")
     assert (thief["doing"], thief["since"]) == ("at a", None)
@@ -128,7 +128,7 @@ def test_before_the_first_state_everybody_is_at_the_start() -> None:
     assert agent(seen, "thief")["place"] == "a"
 
 
-def test_people_are_told_what_to_do_and_when_it_is_planned_to_be_done() -> None:
+def test_people_get_instructions_and_when_it_is_planned_to_be_done() -> None:
     shown = page(reporters=("nurse",))
     (task,) = view(shown, at(3, 100.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=7.0)["tasks"]
     assert (task["agent"], task["text"], task["word"]) == ("nurse", "do screw, at s", "nurse:screwDONE")
@@ -158,7 +158,7 @@ def test_the_log_tells_events_in_words_each_once() -> None:
 
 
 @pytest.mark.parametrize("event", ["_start_", ""])
-def test_the_start_is_told_once_however_the_observer_says_it(event: str) -> None:
+def test_the_start_is_reported_once_however_the_observer_says_it(event: str) -> None:
     shown = page()
     shown.on_state(at(0, 99.0, status="waiting"), 0.0)
     for stamp in (100.0, 101.0):

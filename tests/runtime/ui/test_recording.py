@@ -48,7 +48,7 @@ def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
         reserve_file("", str(tmp_path))
 
 
-def test_it_is_complete_when_it_hears_everybody() -> None:
+def test_it_is_complete_when_it_receives_everybody() -> None:
     nodes, publishers = ["observer", "bot"], {"/e": {"/observer", "/bot"}, "/s": {"/observer"}, "/p": set()}
     assert missing_connections(nodes, publishers, {"/e": 2, "/s": 1}) == ""
     assert missing_connections(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"

@@ -50,7 +50,7 @@ def test_a_wrong_trace_is_refused_with_its_place(text: str, place: str, expected
     assert expected in message
 
 
-def test_all_faults_are_told_at_once() -> None:
+def test_all_faults_are_reported_at_once() -> None:
     assert len(faults("- {at: x, do: screw}\n- {at: 1, do: nothing}\n").splitlines()) == 2
 
 

@@ -170,7 +170,7 @@ def test_any_other_address_gets_one(serve: Serve) -> None:
     assert refused(web) == 401
 
 
-def test_a_given_token_is_not_told(serve: Serve) -> None:
+def test_a_given_token_is_not_reported(serve: Serve) -> None:
     assert TOKEN not in serve("0.0.0.0", TOKEN).url
 
 
@@ -282,7 +282,7 @@ def test_what_is_no_request_of_ours_does_no_harm(serve: Serve, junk: bytes) -> N
     assert get(web).status == 200
 
 
-def test_every_page_hears_what_happens_and_what_time_it_is(serve: Serve, node: Node) -> None:
+def test_every_page_receives_what_happens_and_what_time_it_is(serve: Serve, node: Node) -> None:
     web = serve()
     node.now = 12.5
 
@@ -343,14 +343,14 @@ def test_the_last_word_goes_out_before_the_end(serve: Serve) -> None:
 
 # What cannot be served
 
-def test_a_port_that_is_taken_is_told_with_what_to_do(serve: Serve) -> None:
+def test_a_port_that_is_taken_is_reported_with_what_to_do(serve: Serve) -> None:
     web = serve()
     with pytest.raises(WebError, match=f"port {web.port}.*choose another --port"):
         serve(port=web.port)
 
 
 @pytest.mark.parametrize("host", ["192.0.2.1", "no such host", "", "\x00", "x" * 300])
-def test_an_address_that_is_not_ours_is_told(serve: Serve, host: str) -> None:
+def test_an_address_that_is_not_ours_is_reported(serve: Serve, host: str) -> None:
     if host == "":
         assert serve(host).token, "everywhere: with a token"
         return
@@ -362,5 +362,5 @@ def test_an_address_that_is_not_ours_is_told(serve: Serve, host: str) -> None:
     ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.9.9.9", True), ("0.0.0.0", False), ("::", False),
     ("", False), ("10.0.0.1", False), ("robot", False), ("localhost.example", False),
 ])
-def test_loopback_is_told_from_other_addresses(host: str, loopback: bool) -> None:
+def test_loopback_is_distinguished_from_other_addresses(host: str, loopback: bool) -> None:
     assert is_loopback(host) is loopback
