@@ -89,12 +89,11 @@ class Controller:
         scheduler = self.follower.scheduler
         if scheduler is not None:
             orders = scheduler.on_state(state, rospy.get_time())
-            self.exegg.follow(state)  # before any command: a robot that is not in its place is reported first
+            # Before any command: a robot that is not in its place is reported first.
+            self.exegg.follow(state, [*orders, *scheduler.joined])
             if scheduler.is_new:  # else the alarm stays as it is
                 self.wake()
             self.learned()
-            for order in [*orders, *scheduler.joined]:
-                self.exegg.exeggute(*order)
             receipt = scheduler.repeated_receipt()
             if receipt:
                 self.exegg.announce(format_word(receipt))

@@ -6,13 +6,14 @@ import contextlib
 import threading
 import time
 from functools import partial
-from typing import Dict, List, Mapping
+from typing import Dict, List, Mapping, Sequence
 
 import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.controller.goal import Answer, Movement
 from pursue_runtime.controller.navigation import Navigation, View
+from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.locations import is_action, is_movement, movement
@@ -87,8 +88,8 @@ class Exeggutor:
         """The nodes that are subscribed to what is published here."""
         return listeners(self._events)
 
-    def follow(self, state: SystemState) -> None:
-        """Handle a state: drop orders that are over, and reports that the state shows."""
+    def follow(self, state: SystemState, begun: Sequence[StartedActivity] = ()) -> None:
+        """Handle a state: drop orders that are over, and reports that the state shows; order what has `begun`."""
         with self._lock:
             before, self._status = self._status, state.status
             for name, robot in self._robots.items():
@@ -98,7 +99,11 @@ class Exeggutor:
                 robot.reaction = self._reaction * state.unit
                 robot.on_state(view, rospy.get_time())
                 self._links[name].keep(view.location, robot.is_open, robot.goal)
-            self._act()
+            for activity in begun:
+                self._exeggute(*activity)
+                self._act()
+            if not begun:
+                self._act()
 
     def _view(self, name: str, state: SystemState) -> View:
         """What the state says about this robot."""
@@ -118,8 +123,8 @@ class Exeggutor:
         with self._lock:
             return [f"{name} {robot.trouble}" for name, robot in self._robots.items() if robot.trouble]
 
-    def exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
-        """The agent begins `trigger`, from `origin` to `target`: order its robot to do so."""
+    def _exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
+        """Take that the agent begins `trigger`, from `origin` to `target`, as an order for its robot."""
         if agent not in self._robots:
             return  # an objective has no robot
         if is_movement(target) and target != origin:
@@ -127,13 +132,9 @@ class Exeggutor:
             if way is None:
                 rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
                 return
-            with self._lock:
-                self._robots[agent].start(way, rospy.get_time())
-                self._act()
+            self._robots[agent].start(way, rospy.get_time())
         elif target == origin or is_action(target):
-            with self._lock:
-                self._robots[agent].act(trigger, target if target != origin else "")
-                self._act()
+            self._robots[agent].act(trigger, target if target != origin else "")
 
     # From the robots --------------------------------------------------------------------------------------------------
 

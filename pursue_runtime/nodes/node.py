@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import queue
 import signal
@@ -126,6 +127,7 @@ class Alarm:
         self._changed = threading.Condition()
         self._moment: Optional[float] = None
         self._deadline: Optional[float] = None
+        self._wakes = -math.inf  # when the thread wakes by itself, on the monotonic clock; -inf: it is awake
         self._simulated: Optional[float] = None
         if not rospy.rostime.is_wallclock():
             self._simulated = rospy.get_time()
@@ -140,7 +142,9 @@ class Alarm:
         with self._changed:
             self._moment = moment
             self._deadline = None if patience is None else time.monotonic() + patience
-            self._changed.notify()
+            wait = self._wait()
+            if wait is not None and time.monotonic() + wait < self._wakes:  # else a reaction would wait for the thread
+                self._changed.notify()
 
     def _tick(self, message: Clock) -> None:
         with self._changed:
@@ -153,8 +157,10 @@ class Alarm:
             with self._changed:
                 wait = self._wait()
                 while wait is None or wait > 0.0:
+                    self._wakes = time.monotonic() + (math.inf if wait is None else wait)
                     self._changed.wait(wait)
                     wait = self._wait()
+                self._wakes = -math.inf
                 self._moment = self._deadline = None
             self._action()
 
