@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Dict, FrozenSet, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
@@ -79,6 +80,7 @@ def wrong(message: str, expected: str) -> PursueError:
     return PursueError([error("RPL001", f"the request cannot be used: {message}", hint=f"expected {expected}")], 2)
 
 
+@lru_cache(maxsize=4)  # simulated missions look for many plans of one scenario
 def _scenario(name: str, text: str) -> Scenario:
     reading = read(text, f"{name}.pur", name)
     findings = check_reading(reading)
