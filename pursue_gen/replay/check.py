@@ -8,6 +8,7 @@ from typing import Dict, List, Mapping, Optional, Tuple
 from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
+from pursue_gen.replay.gaps import with_missing
 from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
@@ -59,7 +60,8 @@ class Findings:
 def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings:
     """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
     moves = Moves(game.network)
-    states, late = with_beginnings(record.states, moves)
+    known = {state.seq for state in record.states}
+    states, late = with_beginnings(with_missing(record.states, record.words, moves), moves)
     record = replace(record, states=tuple(states))
     checker = _Checker(record, game, moves, tolerance)
     checker.run()
@@ -68,6 +70,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     steps = [ReplayedStep(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
     text = "recorded {:.2f} s after it began: its first message is missing"
     findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
+    text = "not recorded: the words that were recorded lead to it"
+    findings += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
     findings += [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:

@@ -86,10 +86,26 @@ def test_an_impossible_step_is_a_fault() -> None:
     assert ("step", 5) in kinds(found(made), FAULT)
 
 
-def test_a_missing_state_is_a_fault() -> None:
+@pytest.mark.parametrize("missing", [(4,), (5,), (2, 3, 4), (6, 7), (9,)])
+def test_missing_states_follow_from_the_words(missing: Tuple[int, ...]) -> None:
     made = mission()
-    made.states = [state for state in made.states if state.seq != 4]
-    assert ("gap", 5) in kinds(found(made), FAULT)
+    made.states = [state for state in made.states if state.seq not in missing]
+    findings = found(made)
+    assert findings.kept and findings.won, findings.findings
+    assert kinds(findings, NOTE) == [("not recorded", seq) for seq in missing]
+
+
+def test_missing_states_to_which_no_words_lead_are_a_fault() -> None:
+    made = mission()
+    made.states = [state for state in made.states if state.seq != 5]
+    made.heard = [entry for entry in made.heard if entry[3] != "bot1_going_c_to_b2b"]
+    assert ("gap", 6) in kinds(found(made), FAULT)
+
+
+def test_a_wrong_command_in_a_gap_is_a_fault() -> None:
+    made = play_with(11.02, "bot1_inb")
+    made.states = [state for state in made.states if state.seq not in (6, 7)]
+    assert ("command", 7) in kinds(found(made), FAULT)
 
 
 def test_states_in_the_order_of_receipt_are_sorted() -> None:

@@ -1,0 +1,112 @@
+"""States that a recording lacks, found by the words that were recorded.
+
+A node may be killed when it has published states that the recorder did not receive. The words between the states that
+were recorded say what happened meanwhile, and the clocks of the later state when.
+"""
+
+from __future__ import annotations
+
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_gen.replay.beginnings import EXACT
+from pursue_gen.replay.moves import DiscreteState, Moves, after, place_of
+from pursue_gen.replay.record import RecordedWord
+from pursue_runtime.state import LIVE, RUNNING, SystemState
+
+AROUND = 0.25
+"""Seconds by which the recorder's clock may be beside the observer's."""
+
+LONGEST = 5
+"""The most states that are looked for in one gap."""
+
+
+class _Step(NamedTuple):
+    """A step of a play: its word, where it leads, and the clocks that it resets."""
+
+    word: RecordedWord
+    agent: str
+    place: DiscreteState
+    resets: Tuple[str, ...]
+
+
+def with_missing(states: Sequence[SystemState], words: Sequence[RecordedWord], moves: Moves) -> Sequence[SystemState]:
+    """Add the states that are missing between two others, where the recorded words lead from one to the other."""
+    found: List[SystemState] = []
+    for state in states:
+        if found and found[-1].seq + 1 < state.seq <= found[-1].seq + LONGEST + 1:
+            found += _missing(found[-1], state, words, moves)
+        found.append(state)
+    return found
+
+
+def _missing(
+    before: SystemState, state: SystemState, words: Sequence[RecordedWord], moves: Moves
+) -> List[SystemState]:
+    """The states between these two; none where no play of the words fits."""
+    if before.status not in LIVE or before.plan != state.plan or not moves.knows(place_of(before)):
+        return []
+    between = [word for word in words if before.stamp - AROUND <= word.at <= state.stamp + AROUND and word.event]
+    for steps in _plays(place_of(before), before.seq, state, between, moves):
+        made = _states(before, state, steps)
+        if made:
+            return made
+    return []
+
+
+def _plays(
+    place: DiscreteState, seq: int, state: SystemState, words: Sequence[RecordedWord], moves: Moves
+) -> Iterator[List[_Step]]:
+    """The plays of these words, in their order, that lead from the place of this number to the state."""
+    if seq == state.seq:
+        if place == place_of(state):
+            yield []
+        return
+    for number, word in enumerate(words):
+        if word.seq not in (None, seq) or (seq + 1 == state.seq and word.event != state.event):
+            continue
+        for move in moves.of(place, word.event, word.agent):
+            there, resets = after(move, place)
+            for others in _plays(there, seq + 1, state, words[number + 1 :], moves):
+                yield [_Step(word, move[0][0], there, resets), *others]
+
+
+def _states(before: SystemState, state: SystemState, steps: Sequence[_Step]) -> List[SystemState]:
+    """The states on the way of a play, but the last; none where its clocks are not those of the state."""
+    zeros = {clock: before.stamp - value * before.unit for clock, value in before.clocks.items()}
+    ends = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
+    last = {clock: number for number, step in enumerate(steps) for clock in step.resets}
+    if any(abs(zeros[clock] - ends.get(clock, zero)) > EXACT for clock, zero in zeros.items() if clock not in last):
+        return []
+    known = [_moment([ends[clock] for clock in step.resets if last[clock] == n]) for n, step in enumerate(steps)]
+    if None in known:
+        return []
+    made: List[SystemState] = []
+    moment = before.stamp
+    for number, step in enumerate(steps):
+        latest = min([each for each in known[number:] if each], default=state.stamp)
+        moment = known[number] or min(max(moment, step.word.at), latest)
+        if latest < moment - EXACT or (made and moment < made[-1].stamp - EXACT) or moment < before.stamp - EXACT:
+            return []
+        zeros.update(dict.fromkeys(step.resets, moment))
+        made.append(
+            before._replace(
+                seq=before.seq + number + 1,
+                stamp=moment,
+                locations=dict(step.place.locations),
+                values=dict(step.place.values),
+                clocks={clock: (moment - zero) / state.unit for clock, zero in zeros.items()},
+                event=step.word.event,
+                agent=step.agent,
+                status=RUNNING,
+                reason="",
+                commanded=step.word.seq is not None,
+            )
+        )
+    return made[:-1]
+
+
+def _moment(resets: Sequence[float]) -> Optional[float]:
+    """The one moment at which clocks were reset; 0 where none was, None where they do not agree."""
+    if not resets:
+        return 0.0
+    return min(resets) if max(resets) - min(resets) <= EXACT else None
