@@ -18,9 +18,10 @@ EXAMPLES = "scenarios"
 
 EXTENSIONS = {
     "pursue_gen.synthesis.native._core": "pursue_gen/synthesis/native/module.cpp",
+    "pursue_gen.proof.native._proof": "pursue_gen/proof/native/module.cpp",
     "pursue_gen.zones.native._zones": "pursue_gen/zones/native/module.cpp",
 }
-"""The native solver, and its zone library for tests."""
+"""The native solver, the native checker, and their zone library for tests."""
 
 
 def native_modules() -> List[Any]:
@@ -49,9 +50,9 @@ def native_modules() -> List[Any]:
 def excuse(reason: object) -> None:
     """Why there is no native solver, and what to do."""
     print(
-        f"pursue-gen: the native solver was not built ({reason}).\n"
+        f"pursue-gen: the native solver and checker were not built ({reason}).\n"
         "pursue-gen: install a C++17 compiler (Debian: g++ python3-dev) and install again; until then the slower\n"
-        "pursue-gen: Python solver serves.",
+        "pursue-gen: Python ones serve.",
         file=sys.stderr,
     )
 

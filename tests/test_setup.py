@@ -9,7 +9,7 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
-from typing import Dict, Sequence
+from typing import Dict, Optional, Sequence
 from xml.etree import ElementTree
 
 import pytest
@@ -259,7 +259,7 @@ def test_set_up_again_does_nothing(tmp_path: Path) -> None:
 
 @pytest.fixture
 def ci(tmp_path: Path) -> Path:
-    """The project without its native engine, and a `./run` that only notes what it is called for."""
+    """The project without its native engine and checker, and a `./run` that only notes what it is called for."""
     folder = source(tmp_path)
     (folder / ".venv" / "bin").mkdir(parents=True)
     fake(folder / ".venv" / "bin", "python", f'exec {sys.executable} "$@"')
@@ -267,15 +267,19 @@ def ci(tmp_path: Path) -> Path:
     return folder
 
 
-def test_ci_fails_where_the_native_engine_was_not_built(ci: Path) -> None:
+@pytest.mark.parametrize("built", [None, "synthesis/native/_core.py", "proof/native/_proof.py"])
+def test_ci_fails_where_native_engine_or_checker_was_not_built(ci: Path, built: Optional[str]) -> None:
+    if built is not None:
+        (ci / "pursue_gen" / built).touch()
     done = called([ci / ".ci" / "run"], ci, {**os.environ, "PYTHONPATH": str(ci)})
     assert done.returncode == 1
-    assert "The native engine was not built" in done.stdout and "Traceback" not in done.stdout
+    assert "Native engine or checker was not built" in done.stdout and "Traceback" not in done.stdout
     assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup"]
 
 
-def test_ci_goes_on_to_the_tests_where_the_native_engine_was_built(ci: Path) -> None:
-    (ci / "pursue_gen" / "synthesis" / "native" / "_core.py").touch()  # as good as built: it can be imported
+def test_ci_goes_on_to_the_tests_where_they_were_built(ci: Path) -> None:
+    for built in ("synthesis/native/_core.py", "proof/native/_proof.py"):
+        (ci / "pursue_gen" / built).touch()  # as good as built: it can be imported
     done = called([ci / ".ci" / "run"], ci, {**os.environ, "PYTHONPATH": str(ci)})
     assert done.returncode == 0, done.stdout
     assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup", "test", "sanitize"]

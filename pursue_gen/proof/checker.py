@@ -2,29 +2,24 @@
 
 The closed loop of network and strategy is explored symbolically from the start. Nothing here is shared with the solver
 but the zone library: network and strategy are read anew (`moves`: joint moves; `delays`: waiting and acting;
-`closed_loop`: the two together; `extrapolation`: of zones; `invariant`: all that a strategy covers, at once). See the
-design of the game for the rules.
+`closed_loop`: the two together; `extrapolation`: of zones; `search`: plays; `invariant`: all that a strategy covers, at
+once). `native` has the same in C++. See the design of the game for the rules.
 """
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import reduce
-from typing import Callable, Deque, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.proof.closed_loop import ClosedLoop, Entry, in_words, sample
-from pursue_gen.proof.delays import Broken
-from pursue_gen.proof.extrapolation import MaxConstants
-from pursue_gen.proof.invariant import is_invariant
-from pursue_gen.proof.moves import Arena, JointMove, State
-from pursue_gen.proof.zones import with_neighbours
+from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
+from pursue_gen.proof.moves import Arena
+from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.search import Depth, Found, Searches
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.zones.dbm import Dbm
 
 LIMIT = 300_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000."""
@@ -37,9 +32,6 @@ _EXACT = 3_000
 
 _MANY_ZONES = 8
 """So many zones of a discrete state become their hull, which adds plays; where one of those fails, they do not."""
-
-_OFTEN = 8
-"""A discrete state that is so often on one play of a reach game is searched for a loop that only clocks hide."""
 
 
 @dataclass(frozen=True)
@@ -88,19 +80,20 @@ def verify(
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
     loop = ClosedLoop(network, objective, strategy, reaction, ranks, arenas=arenas)
+    searches = searches_of(loop)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         walked = _played if loop.rules.must_end else _safe
-        report = walked(loop, False, False, limit, monitor)
+        report = walked(searches, False, False, limit, monitor)
         if prompt and not report.ok:
-            report = _played(loop, True, False, limit, monitor)
+            report = _played(searches, True, False, limit, monitor)
         if report.ok or ranks is not None:
             return report
         # It may fail only because zones are extrapolated: search again without that, and show a play that is real.
-        exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
+        exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
     except MemoryError:
         raise monitor.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
@@ -138,141 +131,26 @@ def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int
     return found
 
 
-def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
     """What becomes of all plays when the strategy is played so; `exact`: zones are not extrapolated."""
-    loop.rules, loop.used = replace(loop.rules, prompt=prompt), set()
-    search = _check_ends if loop.rules.must_end and loop.ranks is None else _check_all
-    return search(loop, (loop.arena.initial, loop.arena.start), exact, limit, monitor)
+    depth = Depth(prompt, exact, limit, _MANY_ZONES)
+    if searches.loop.rules.must_end and searches.loop.ranks is None:
+        return _report(searches.loop.arena, searches.ends(depth, monitor))
+    return _report(searches.loop.arena, searches.everything(depth, monitor))
 
 
-def _safe(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _safe(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
     """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers."""
-    size = _size(loop.strategy)
+    size = _size(searches.loop.strategy)
     if size <= _LARGE:
-        report = _played(loop, prompt, exact, min(limit, _SOON), monitor)
+        report = _played(searches, prompt, exact, min(limit, _SOON), monitor)
         if limit <= _SOON or not report.reason.startswith("limit"):
             return report
     if size <= limit:
-        loop.rules, loop.used = replace(loop.rules, prompt=False), set()
-        zones = is_invariant(loop, monitor)
-        if zones is not None:
-            return Report(True, "", (), frozenset(loop.used), zones)
-    return _played(loop, prompt, exact, limit, monitor)
-
-
-def _check_all(
-    loop: ClosedLoop, start: Entry, exact: bool, limit: int, monitor: LimitMonitor, many: Optional[int] = _MANY_ZONES
-) -> Report:
-    """Everything that is reachable, breadth first; `many` zones of a discrete state (None: never) become one."""
-    hulled = False
-    found: List[Tuple[Entry, int, Optional[JointMove]]] = [(start, -1, None)]
-    passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
-    pending: Deque[int] = deque([0])
-
-    def steps_to(n: int) -> List[JointMove]:
-        steps: List[JointMove] = []
-        while n >= 0:
-            _, n, move = found[n]
-            steps += [] if move is None else [move]
-        return steps[::-1]
-
-    while pending:
-        monitor.check(len(found), len(pending))
-        n = pending.popleft()
-        (state, zone), _, _ = found[n]
-        if not any(other is zone for other in passed[state]):
-            continue
-        try:
-            successors = loop.successors((state, zone))
-        except Broken as broken:
-            if hulled:
-                loop.used = set()
-                return _check_all(loop, start, exact, limit, monitor, None)
-            return _failed(loop, broken.reason, steps_to(n), state, broken.zone, len(found))
-        for move, (target, after) in successors:
-            after = after if exact else loop.max_constants.extrapolate(after, target)
-            known = passed.setdefault(target, [])
-            if any(other.includes(after) for other in known):
-                continue
-            if len(found) >= limit:
-                return _failed(loop, _out_of(limit), steps_to(n) + [move], target, after, len(found))
-            if not exact:
-                if many is not None and len(known) >= many:
-                    after, hulled = reduce(Dbm.hull, known, after), True
-                else:
-                    after = with_neighbours(after, known)
-            known[:] = [other for other in known if not after.includes(other)] + [after]
-            found.append(((target, after), n, move))
-            pending.append(len(found) - 1)
-    return Report(True, "", (), frozenset(loop.used), len(found))
-
-
-@dataclass
-class _PathEntry:
-    """An entry on the current play, with the entries after it that are still to be proven."""
-
-    entry: Entry
-    move: Optional[JointMove]
-    left: List[Tuple[JointMove, Entry]]
-
-
-def _check_ends(loop: ClosedLoop, start: Entry, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
-    """Depth first: an entry is proven when all that may follow it are, so every play ends in the goal."""
-    proven: Dict[State, List[Dbm]] = {}
-    open_zones: Dict[State, List[Dbm]] = {}
-    path: List[_PathEntry] = []
-    states = 0
-    coming: Optional[Tuple[Optional[JointMove], Entry]] = (None, start)
-
-    def failed(reason: str, move: Optional[JointMove], state: State, zone: Dbm) -> Report:
-        steps = [step.move for step in path if step.move is not None] + ([] if move is None else [move])
-        return _failed(loop, reason, steps, state, zone, states)
-
-    while coming is not None or path:
-        monitor.check(states, len(path))
-        if coming is None:
-            step = path[-1]
-            if step.left:
-                coming = step.left.pop()
-            else:
-                path.pop()
-                state, zone = step.entry
-                open_zones[state].pop()
-                known = proven.setdefault(state, [])
-                known[:] = [other for other in known if not zone.includes(other)] + [zone]
-            continue
-        move, (state, zone) = coming
-        coming = None
-        zone = zone if exact else loop.max_constants.extrapolate(zone, state)
-        if loop.won(state) or any(other.includes(zone) for other in proven.get(state, ())):
-            continue
-        on_path = open_zones.setdefault(state, [])
-        if _comes_back(on_path, zone, loop.max_constants, state):
-            return failed("for ever: a play comes back to where it was and need not reach the goal", move, state, zone)
-        if states >= limit:
-            return failed(_out_of(limit), move, state, zone)
-        states += 1
-        try:
-            successors = loop.successors((state, zone))
-        except Broken as broken:
-            return failed(broken.reason, move, state, broken.zone)
-        on_path.append(zone)
-        path.append(_PathEntry((state, zone), move, successors))
-    return Report(True, "", (), frozenset(loop.used), states)
-
-
-def _comes_back(on_path: Sequence[Dbm], zone: Dbm, max_constants: MaxConstants, state: State) -> bool:
-    """True if a play may go round for ever.
-
-    With exact zones each point of the zone has a predecessor in the earlier one on the path. When the zone includes
-    that one, there are plays of every length, and so endless ones; likewise if it changes only in what no guard sees.
-    """
-    if any(zone.includes(other) for other in on_path):
-        return True
-    if len(on_path) < _OFTEN:
-        return False
-    widened = max_constants.extrapolate(zone, state)
-    return any(widened == max_constants.extrapolate(other, state) for other in on_path)
+        found = searches.covered(monitor)
+        if found is not None:
+            return _report(searches.loop.arena, found)
+    return _played(searches, prompt, exact, limit, monitor)
 
 
 def _size(strategy: Strategy) -> int:
@@ -280,17 +158,14 @@ def _size(strategy: Strategy) -> int:
     return sum(len(b.wait) + sum(len(c.zones) for c in b.commands) for b in strategy.blocks)
 
 
-def _failed(
-    loop: ClosedLoop, reason: str, steps: Iterable[JointMove], state: State, zone: Dbm, states: int
-) -> Report:
-    """A failure, with the play that leads to it."""
-    network, point = loop.arena.network, sample(zone)
-    places = [f"{automaton.name}.{location}" for automaton, location in zip(network.automata, state[0])]
-    places += [f"{name}={value}" for (name, _), value in zip(network.variables, state[1])]
-    places += [f"{name}={point[x - 1] / loop.arena.scale}" for name, x in loop.arena.clock.items()]
-    play = (*map(in_words, steps), "then: " + " ".join(places))
-    return Report(False, reason, play, frozenset(loop.used), states)
-
-
-def _out_of(limit: int) -> str:
-    return f"limit: not decided within {limit} symbolic states"
+def _report(arena: Arena, found: Found) -> Report:
+    """The outcome of a search, and of a failure the play that leads to it."""
+    failure = found.failure
+    if failure is None:
+        return Report(True, "", (), found.used, found.states)
+    network, point = arena.network, sample(failure.zone)
+    places = [f"{automaton.name}.{location}" for automaton, location in zip(network.automata, failure.state[0])]
+    places += [f"{name}={value}" for (name, _), value in zip(network.variables, failure.state[1])]
+    places += [f"{name}={point[x - 1] / arena.scale}" for name, x in arena.clock.items()]
+    play = (*map(in_words, failure.play), "then: " + " ".join(places))
+    return Report(False, failure.reason, play, found.used, found.states)

@@ -7,11 +7,12 @@ from functools import cached_property
 from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.proof import reasons
 from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
 from pursue_gen.proof.extrapolation import Described, MaxConstants
 from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
 from pursue_gen.zones.scale import common_denominator
@@ -47,12 +48,17 @@ class ClosedLoop:
         self.bad = None if objective.kind is Kind.REACH else _place(network, objective.bad)
         self.used: Set[ZoneKey] = set()
         self.ranks = None if objective.kind is Kind.SAFETY else ranks
-        self._blocks: Dict[State, List[int]] = {}
-        for b, block in enumerate(strategy.blocks):
+        self._advice: Dict[State, Advice] = {}
+
+    @cached_property
+    def _blocks(self) -> Dict[State, List[int]]:
+        """The blocks of each discrete state."""
+        found: Dict[State, List[int]] = {}
+        for b, block in enumerate(self.strategy.blocks):
             state = self.arena.state_of(block.state)
             if state is not None:
-                self._blocks.setdefault(state, []).append(b)
-        self._advice: Dict[State, Advice] = {}
+                found.setdefault(state, []).append(b)
+        return found
 
     @cached_property
     def max_constants(self) -> MaxConstants:
@@ -73,16 +79,16 @@ class ClosedLoop:
         if self.won(state):
             return []
         if self.lost(state):
-            raise Broken("bad: the location that must be avoided is reached", zone)
+            raise Broken(reasons.BAD, zone)
         if state not in self._blocks:
-            raise Broken("no block: the strategy does not know this discrete state", zone)
+            raise Broken(reasons.NO_BLOCK, zone)
         if self.ranks is None:
             return self._steps(state, zone)
         steps: List[Tuple[JointMove, Entry]] = []
         for rank, part in self._ranked(state, zone):
             for move, (target, after) in self._steps(state, part):
                 if not self.won(target) and not self._is_lower(target, after, rank):
-                    raise Broken(f"no progress: {in_words(move)} leads no nearer to the goal", part)
+                    raise Broken(reasons.NO_PROGRESS.format(in_words(move.moves)), part)
                 steps.append((move, (target, after)))
         return steps
 
@@ -206,8 +212,8 @@ def _joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointM
         if move.moves[:1] == command.moves[:1] and _same(move.moves[1:], command.moves[1:]):
             if move.controllable:
                 return move, ""
-            return None, "not controllable: the command takes an edge of the environment"
-    return None, "not a joint move: not exactly the sender and all who receive, or the integers do not allow it"
+            return None, reasons.NOT_CONTROLLABLE
+    return None, reasons.NO_JOINT_MOVE
 
 
 def _same(some: Sequence[object], others: Sequence[object]) -> bool:
@@ -237,12 +243,12 @@ def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:
     return common_denominator([reaction, *(c.bound for c in constraints)])
 
 
-def in_words(move: JointMove) -> str:
-    """The move as a step of a play: who, the event, the edges."""
-    who = "controller" if move.controllable else "environment"
-    sync = move.moves[0].edge.sync
+def in_words(moves: Sequence[Move]) -> str:
+    """The moves that are made together, as a step of a play: who, the event, the edges."""
+    who = "controller" if all(move.edge.controllable for move in moves) else "environment"
+    sync = moves[0].edge.sync
     event = "tau" if sync is None else sync.channel
-    edges = (f"{m.automaton}.{m.edge.source} -> {m.automaton}.{m.edge.target}" for m in move.moves)
+    edges = (f"{m.automaton}.{m.edge.source} -> {m.automaton}.{m.edge.target}" for m in moves)
     return f"{who}: {event} ({', '.join(edges)})"
 
 

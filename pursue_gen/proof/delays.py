@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
+from pursue_gen.proof import reasons
 from pursue_gen.proof.moves import JointMove, Situation
 from pursue_gen.proof.zones import merged, outside, without
 from pursue_gen.synthesis.strategy import ZoneKey
@@ -157,7 +158,7 @@ def _wait(
         waited = without(waited, common.up())
     uncovered = [part for zone in waited for part in outside(zone, advice.waits)]
     if uncovered:
-        raise Broken("not covered: the strategy does not say what to do here", uncovered[0])
+        raise Broken(reasons.NOT_COVERED, uncovered[0])
     for k, common in met:
         if any(zone.includes(common) for zone in decided.get(k, ())):
             continue
@@ -220,8 +221,9 @@ def _soon_after(zone: Dbm) -> Dbm:
 def _before_news(zone: Dbm, situation: Situation) -> List[Dbm]:
     """The points of the zone before a new move becomes possible to the environment."""
     result = [zone]
-    for enabled in {move.enabled for move in situation.moves if not move.controllable and move.enabled is not None}:
-        common = zone.intersect(enabled)
+    enabled = (move.enabled for move in situation.moves if not move.controllable and move.enabled is not None)
+    for new in dict.fromkeys(enabled):
+        common = zone.intersect(new)
         if common is not None:
             for before in zone.minus(common.up()):
                 later = before.up().intersect(common)
@@ -243,9 +245,9 @@ def _check_end(
         for common in met:
             never = without(never, common.down())
         if never and strict:
-            raise Broken("time is blocked: it cannot reach the end of a strict invariant", never[0])
+            raise Broken(reasons.NO_END, never[0])
         if never:
-            raise Broken("waits for ever: no command comes and nothing obliges anyone to move", never[0])
+            raise Broken(reasons.WAITS_FOR_EVER, never[0])
 
 
 def _check_obliged(points: Dbm, situation: Situation, must_end: bool) -> None:
@@ -267,7 +269,7 @@ def _check_obliged(points: Dbm, situation: Situation, must_end: bool) -> None:
                 if common is not None:
                     rest = without(rest, common)
         if rest:
-            raise Broken("time is blocked: an invariant ends, no command comes and its owner cannot move", rest[0])
+            raise Broken(reasons.BLOCKED, rest[0])
 
 
 def _flight(zone: Dbm, situation: Situation, rules: Rules) -> Dbm:
@@ -286,7 +288,7 @@ def _flight(zone: Dbm, situation: Situation, rules: Rules) -> Dbm:
     try:
         _check_obliged(within, situation, rules.must_end)
     except Broken as broken:
-        raise Broken(_TOO_LATE, broken.zone) from None
+        raise Broken(reasons.TOO_LATE, broken.zone) from None
     return within
 
 
@@ -316,13 +318,9 @@ def _check_decided(act: Act, zones: Sequence[Dbm], disputed: Sequence[Dbm]) -> N
         for waited in disputed:
             both = waited.intersect(zone)
             if both is not None:
-                raise Broken("contradiction: the strategy says both to wait and to act here", both)
+                raise Broken(reasons.CONTRADICTION, both)
         if act.move is not None and act.move.enabled is not None and not act.move.enabled.includes(zone):
-            raise Broken(_NOT_ENABLED, zone.minus(act.move.enabled)[0])
-
-
-_NOT_ENABLED = "not enabled: the command's guard or an invariant does not hold here"
-_TOO_LATE = "may come too late: the command is no longer enabled when it takes effect here"
+            raise Broken(reasons.NOT_ENABLED, zone.minus(act.move.enabled)[0])
 
 
 def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
@@ -330,9 +328,9 @@ def _effects(act: Act, points: Dbm) -> List[Tuple[JointMove, Dbm]]:
     if act.move is None:
         raise Broken(act.fault, points)
     if act.move.enabled is None:
-        raise Broken(_NOT_ENABLED, points)
+        raise Broken(reasons.NOT_ENABLED, points)
     if not act.move.enabled.includes(points):
-        raise Broken(_TOO_LATE, points.minus(act.move.enabled)[0])
+        raise Broken(reasons.TOO_LATE, points.minus(act.move.enabled)[0])
     return [(act.move, points)]
 
 

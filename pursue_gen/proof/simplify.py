@@ -13,10 +13,14 @@ A play that comes to a new point would have met none of the strategy's zones bef
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
+from pursue_gen.proof.native import simplify as native
+from pursue_gen.proof.native.tables import NotHeld
+from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
@@ -128,14 +132,25 @@ class _Units:
 
 
 def simplified(
-    network: Network, strategy: Strategy, reaction: Fraction, ranks: Optional[Mapping[ZoneKey, int]] = None
+    network: Network,
+    strategy: Strategy,
+    reaction: Fraction,
+    ranks: Optional[Mapping[ZoneKey, int]] = None,
+    limits: Limits = NO_LIMITS,
 ) -> Strategy:
     """The strategy, proven for the network and the reaction, in fewer zones and bounds.
 
-    `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank.
+    `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank. Raises
+    PursueError with exit status 5 at a limit.
     """
+    monitor = LimitMonitor(limits, phase=PROVING)
+    with suppress(NotHeld):
+        return native.simplified(network, strategy, reaction, ranks, monitor)
     units = _Units(network, strategy, reaction)
-    blocks = (_simplified_block(units, b, block, ranks or {}) for b, block in enumerate(strategy.blocks))
+    blocks: List[Block] = []
+    for b, block in enumerate(strategy.blocks):
+        monitor.check(b, len(strategy.blocks) - b)
+        blocks.append(_simplified_block(units, b, block, ranks or {}))
     return replace(strategy, blocks=tuple(blocks))
 
 
@@ -218,12 +233,12 @@ def _worth(bound: Bound) -> Tuple[int, int, int]:
 def _drop(place: _Place, action: Action) -> None:
     """No zone of the action that the others cover."""
     parts = place.parts[action]
-    for part in list(reversed(parts)):
-        rest = [other.zone for other in parts if other is not part]
+    for k in reversed(range(len(parts))):
+        zone, rest = parts[k].zone, [other.zone for n, other in enumerate(parts) if n != k]
         # A command is decided before time leaves the zone in which it was met: only a zone in one other is idle.
-        idle = _covered(part.zone, rest) if action == WAIT else any(other.includes(part.zone) for other in rest)
+        idle = _covered(zone, rest) if action == WAIT else any(other.includes(zone) for other in rest)
         if idle:
-            parts.remove(part)
+            del parts[k]
 
 
 def _covered(zone: Dbm, others: Sequence[Dbm]) -> bool:

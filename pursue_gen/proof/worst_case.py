@@ -6,20 +6,16 @@ counts from the start and is never reset. The result is the latest time at which
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import replace
 from fractions import Fraction
-from typing import Deque, Dict, List, Optional
+from typing import Optional
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.proof.closed_loop import ClosedLoop, Entry
-from pursue_gen.proof.delays import Broken
-from pursue_gen.proof.moves import State
-from pursue_gen.proof.zones import with_neighbours
+from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.native.search import searches_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
-from pursue_gen.zones.dbm import INF, Dbm, constant
 
 INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units."""
@@ -94,39 +90,7 @@ def worst_case(
     loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
     count = loop.arena.clock[counting_clock(game) or ""]
     try:
-        latest = _latest(loop, count, limit, LimitMonitor(limits))
-    except (Broken, PursueError):
+        latest = searches_of(loop).latest(count, limit, LimitMonitor(limits))
+    except PursueError:
         return None
     return None if latest is None else Fraction(latest, loop.arena.scale)
-
-
-def _latest(loop: ClosedLoop, count: int, limit: int, monitor: LimitMonitor) -> Optional[int]:
-    """The largest value of the counting clock at the goal, breadth first."""
-    latest = 0
-    start: Entry = (loop.arena.initial, loop.arena.start)
-    passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
-    pending: Deque[Entry] = deque([start])
-    met = 1
-    while pending:
-        state, zone = pending.popleft()
-        if not any(other is zone for other in passed[state]):
-            continue
-        if loop.won(state):
-            bound = zone.m[count * zone.dim]
-            if bound >= INF:
-                return None
-            latest = max(latest, constant(bound))
-            continue
-        monitor.check(met, len(pending))
-        for _, (target, after) in loop.successors((state, zone)):
-            after = loop.max_constants.extrapolate(after, target)
-            known = passed.setdefault(target, [])
-            if any(other.includes(after) for other in known):
-                continue
-            met += 1
-            if met > limit:
-                return None
-            after = with_neighbours(after, known)
-            known[:] = [other for other in known if not after.includes(other)] + [after]
-            pending.append((target, after))
-    return latest

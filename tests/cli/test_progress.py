@@ -28,10 +28,14 @@ IMPATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = line._REDR
 PATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = 1e9"
 SLOW_CHECKER = """
 import time
-from pursue_gen.proof.closed_loop import ClosedLoop
-quick, pauses = ClosedLoop.successors, iter([300])  # it is told of before its first step
-ClosedLoop.successors = lambda self, entry: time.sleep(next(pauses, 0)) or quick(self, entry)
+from pursue_gen.synthesis.limits import PROVING, LimitMonitor
+quick = LimitMonitor.check
+def slow(self, states, waiting):
+    quick(self, states, waiting)
+    time.sleep(300 if self._phase == PROVING else 0)
+LimitMonitor.check = slow
 """
+CHECKERS = {"native": "", "python": "from pursue_gen.proof.native import tables; tables._proof = None"}
 
 needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 engines = pytest.mark.parametrize("engine", [pytest.param("native", marks=needs_native), "python"])
@@ -163,9 +167,11 @@ def test_ctrl_c_ends_the_solver(large: Path, engine: str) -> None:
     assert "Traceback" not in told.err
 
 
-def test_ctrl_c_ends_the_checker(tmp_path: Path) -> None:
+@pytest.mark.parametrize("checker", CHECKERS)
+def test_ctrl_c_ends_the_checker(tmp_path: Path, checker: str) -> None:
     plan = tmp_path / "plan.txt"
-    told = on_terminal("solve", FIRST, "-o", plan, changed=IMPATIENT + SLOW_CHECKER, until="\rproving: ")
+    changed = "\n".join((IMPATIENT, SLOW_CHECKER, CHECKERS[checker]))
+    told = on_terminal("solve", FIRST, "-o", plan, changed=changed, until="\rproving: ")
     assert told.status == 130
     assert told.err.endswith(f"{ERASE}interrupted\n")
     assert "Traceback" not in told.err

@@ -16,7 +16,11 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.search import Depth
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import solve
@@ -328,21 +332,18 @@ def test_limits_and_strategies_of_the_other_side() -> None:
 
 
 @pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-def test_where_the_hull_of_many_zones_fails_they_are_checked_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_the_hull_of_many_zones_fails_they_are_checked_one_by_one() -> None:
     scenario = parse(clean_by_robots(1), "cleaning.pur", "cleaning")
     net, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
     reaction = Fraction(1, 10)
     strategy = solve(net, objective, reaction).strategy
     assert strategy is not None
-    check_all, calls = checker._check_all, []
-
-    def at_once(*arguments: object) -> Report:
-        calls.append(len(arguments))
-        return check_all(*arguments, *[1][len(arguments) - 5 :])
-
-    monkeypatch.setattr(checker, "_check_all", at_once)
-    assert verify(net, objective, strategy, reaction).ok
-    assert calls == [5, 6]
+    searches = searches_of(ClosedLoop(net, objective, strategy, reaction, None))
+    at_once, one_by_one = (
+        searches.everything(Depth(False, False, checker.LIMIT, many), LimitMonitor()) for many in (1, 0)
+    )
+    assert one_by_one.states > len({b for b, _, _ in one_by_one.used}), "some discrete state has several zones"
+    assert at_once == one_by_one and at_once.failure is None
 
 
 def test_unused_parts_are_pruned() -> None:

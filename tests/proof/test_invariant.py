@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.invariant import is_invariant
+from pursue_gen.proof.native.search import searches_of
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
@@ -31,7 +31,8 @@ needs_native = pytest.mark.skipif(not native.available(), reason="the native eng
 
 
 def covered(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> bool:
-    return is_invariant(ClosedLoop(network, objective, strategy, reaction, None), LimitMonitor()) is not None
+    loop = ClosedLoop(network, objective, strategy, reaction, None)
+    return searches_of(loop).covered(LimitMonitor()) is not None
 
 
 @settings(max_examples=200)

@@ -19,7 +19,7 @@ using wide_t = std::int32_t;  // bounds as the tables of a game hold them
 
 // No bound. Two finite bounds add up without overflow, and INF plus a finite bound stays above zero.
 template <class R>
-constexpr R INF = static_cast<R>(R{1} << (sizeof(R) == 2 ? 14 : 29));
+constexpr R INF = static_cast<R>(R{1} << (sizeof(R) == 2 ? 14 : sizeof(R) == 4 ? 29 : 60));
 
 constexpr int LE_ZERO = 1;
 
@@ -143,7 +143,7 @@ template <class Z>
 bool clearly_disjoint(const Z& a, const Z& b) {
     for (int i = 0; i < Z::size; ++i)
         for (int j = 0; j < Z::size; ++j) {
-            const int p = a.at(i, j), q = b.at(j, i);
+            const typename Z::raw_t p = a.at(i, j), q = b.at(j, i);
             if (p + q - ((p | q) & 1) < LE_ZERO) return true;
         }
     return false;

@@ -75,8 +75,8 @@ void insert(Federation<Z>& fed, const Z& zone) {
 template <class Z>
 bool joins(const Z& a, const Z& b) {
     const auto gap = [&](int i, int j, int k, int l) {
-        const int p = complement(a.at(i, j)), q = complement(b.at(k, l));
-        const int r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
+        const typename Z::raw_t p = complement(a.at(i, j)), q = complement(b.at(k, l));
+        const typename Z::raw_t r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
         return (p >> 1) + (q >> 1) + (r >> 1) + (s >> 1) + (p & q & r & s & 1) > 0;
     };
     std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];

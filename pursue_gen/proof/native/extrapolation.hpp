@@ -1,0 +1,112 @@
+// The largest constants that the rest of a play compares each clock with (the twin of proof/extrapolation.py).
+#pragma once
+
+#include <set>
+
+#include "proof/native/closed_loop.hpp"
+
+namespace pursue::proof {
+
+// The largest constants of every discrete state that moves of the loop lead to from the initial one; -1: none.
+template <class Z>
+class MaxConstants {
+  public:
+    using R = typename Z::raw_t;
+
+    MaxConstants(ClosedLoop<Z>& loop, int start) : loop_(loop) {
+        explore(start);
+        spread();
+    }
+
+    // The zone and all points that the rest of the play cannot tell from it, within the state's invariant.
+    Z extrapolate(const Z& zone, int state) const {
+        const std::vector<std::int64_t>& largest = largest_.at(state);
+        const int dim = loop_.arena.dim;
+        Z larger = zone;
+        for (int x = 1; x < dim; ++x)
+            if (largest[x] < 0) free_clock(larger, x);
+        bool changed = false;
+        for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) {
+                if (i == j) continue;
+                R& bound = larger.at(i, j);
+                const std::int64_t high = 2 * std::max<std::int64_t>(0, largest[i]) + 1;
+                const std::int64_t low = -2 * std::max<std::int64_t>(0, largest[j]);
+                if (bound < INF<R> && bound > high) {
+                    bound = INF<R>;
+                    changed = true;
+                } else if (bound < low) {
+                    bound = static_cast<R>(low);
+                    changed = true;
+                }
+            }
+        if (changed) {
+            free_padding(larger, dim);
+            close(larger);
+        }
+        const Situation<Z>& situation = loop_.arena.situation(state);
+        return situation.possible && intersect(larger, situation.invariant) ? larger : zone;
+    }
+
+  private:
+    void explore(int start) {
+        std::deque<int> pending{start};
+        largest_[start] = none();
+        while (!pending.empty()) {
+            loop_.watch.tick();
+            const int state = pending.front();
+            pending.pop_front();
+            std::vector<std::int64_t> here = largest_[state];
+            const auto note = [&](int x, std::int64_t constant) {
+                here[x] = std::max(here[x], constant + loop_.rules.reaction);
+            };
+            for (const auto& bound : loop_.arena.situation(state).bounds) note(bound.clock, bound.raw >> 1);
+            loop_.describe(
+                state,
+                [&](const JointMove<Z>& move) {
+                    for (const Bound& bound : loop_.arena.network().edges[move.edges[0]].guard)
+                        note(bound.i ? bound.i : bound.j, std::abs(static_cast<std::int64_t>(loop_.arena.scaled(bound.raw)) >> 1));
+                    if (largest_.try_emplace(move.target, none()).second) pending.push_back(move.target);
+                    before_[move.target].insert({state, move.resets});
+                },
+                note);
+            largest_[state] = here;
+        }
+    }
+
+    // What a clock is compared with in a state counts before it, but for clocks that the step into it resets.
+    void spread() {
+        std::deque<int> pending;
+        std::set<int> queued;
+        for (const auto& [state, largest] : largest_) {
+            pending.push_back(state);
+            queued.insert(state);
+        }
+        while (!pending.empty()) {
+            loop_.watch.tick();
+            const int state = pending.front();
+            pending.pop_front();
+            queued.erase(state);
+            const std::vector<std::int64_t>& here = largest_[state];
+            for (const auto& [earlier, resets] : before_[state]) {
+                if (earlier == state) continue;
+                std::vector<std::int64_t>& there = largest_[earlier];
+                bool changed = false;
+                for (int x = 1; x < loop_.arena.dim; ++x)
+                    if (here[x] > there[x] && std::find(resets.begin(), resets.end(), x) == resets.end()) {
+                        there[x] = here[x];
+                        changed = true;
+                    }
+                if (changed && queued.insert(earlier).second) pending.push_back(earlier);
+            }
+        }
+    }
+
+    std::vector<std::int64_t> none() const { return std::vector<std::int64_t>(loop_.arena.dim, -1); }
+
+    ClosedLoop<Z>& loop_;
+    std::unordered_map<int, std::vector<std::int64_t>> largest_;
+    std::unordered_map<int, std::set<std::pair<int, std::vector<int>>>> before_;
+};
+
+}  // namespace pursue::proof

@@ -1,0 +1,293 @@
+// The Python face of the native checker: tables of a network and a strategy, and what is done with them (see loop.py).
+#include <pybind11/functional.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "proof/native/search.hpp"
+#include "proof/native/simplify.hpp"
+
+namespace py = pybind11;
+using namespace pursue;
+using namespace pursue::proof;
+
+namespace {
+
+// What the Python side writes for no bound.
+constexpr std::int64_t UNBOUNDED = std::int64_t{1} << 62;
+
+std::vector<Bound> read_bounds(const py::handle& list) {
+    std::vector<Bound> out;
+    for (const auto& [i, j, raw] : list.cast<std::vector<std::tuple<int, int, std::int64_t>>>()) out.push_back({i, j, raw});
+    return out;
+}
+
+std::vector<Test> read_tests(const py::handle& list) {
+    std::vector<Test> out;
+    for (const auto& [variable, value] : list.cast<std::vector<std::pair<int, int>>>()) out.push_back({variable, value});
+    return out;
+}
+
+Network read_network(const py::dict& in) {
+    Network out;
+    out.dim = in["clocks"].cast<int>() + 1;
+    out.initial = in["initial"].cast<Discrete>();
+    for (const auto& a : in["automata"]) {
+        Automaton automaton;
+        for (const auto& location : a["invariants"]) automaton.invariants.push_back(read_bounds(location));
+        automaton.leaving = a["leaving"].cast<std::vector<std::vector<int>>>();
+        out.automata.push_back(std::move(automaton));
+    }
+    for (const auto& e : in["edges"]) {
+        Edge edge;
+        edge.kind = e["kind"].cast<int>();
+        edge.source = e["source"].cast<int>();
+        edge.target = e["target"].cast<int>();
+        edge.guard = read_bounds(e["guard"]);
+        for (const auto& clause : e["clauses"]) edge.clauses.push_back(read_tests(clause));
+        edge.channel = e["channel"].cast<int>();
+        edge.sends = e["sends"].cast<bool>();
+        edge.assign = read_tests(e["assign"]);
+        edge.resets = e["resets"].cast<std::vector<int>>();
+        edge.controllable = e["controllable"].cast<bool>();
+        out.edges.push_back(std::move(edge));
+    }
+    return out;
+}
+
+Strategy read_strategy(const py::list& blocks, const py::list& constraints) {
+    Strategy out;
+    out.constraints = read_bounds(constraints);
+    int first = 0;
+    for (const auto& item : blocks) {
+        const auto parts = item.cast<py::tuple>();
+        BlockTable block;
+        block.first = first;
+        block.wait = parts[1].cast<std::vector<ZoneTable>>();
+        first += static_cast<int>(block.wait.size());
+        for (const auto& each : parts[2]) {
+            auto [move, zones] = each.cast<std::pair<std::vector<int>, std::vector<ZoneTable>>>();
+            first += static_cast<int>(zones.size());
+            block.commands.push_back({std::move(move), std::move(zones)});
+        }
+        if (!parts[0].is_none()) {  // none: not a discrete state of this network
+            block.state = parts[0].cast<Discrete>();
+            out.of_state[block.state].push_back(static_cast<int>(out.blocks.size()));
+        }
+        out.blocks.push_back(std::move(block));
+    }
+    return out;
+}
+
+// Gives Python a chance to end the work: signals, limits. It runs without the interpreter's lock.
+Watch watching(const py::function& poll) {
+    return Watch([&poll](std::size_t states, std::size_t waiting) {
+        const py::gil_scoped_acquire locked;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        poll(states, waiting);
+    });
+}
+
+// Calls f with a zone type that has room for the clocks: with 32-bit bounds, and where those do not do, 64-bit ones.
+template <class F>
+auto with_zones(int dim, F f) {
+    try {
+        if (dim <= 4) return f(Dbm<4, std::int32_t>{});
+        if (dim <= 8) return f(Dbm<8, std::int32_t>{});
+        if (dim <= 16) return f(Dbm<16, std::int32_t>{});
+    } catch (const std::overflow_error&) {
+    }
+    if (dim <= 8) return f(Dbm<8, std::int64_t>{});
+    if (dim <= 16) return f(Dbm<16, std::int64_t>{});
+    if (dim <= 40) return f(Dbm<40, std::int64_t>{});
+    throw std::overflow_error("more than 39 clocks");
+}
+
+template <class Z>
+Z read_zone(const std::vector<std::int64_t>& matrix, int dim) {
+    Z zone = universe<Z>();
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            const std::int64_t raw = matrix[i * dim + j];
+            if (raw < UNBOUNDED && (raw >= INF<typename Z::raw_t> || raw <= -INF<typename Z::raw_t>))
+                throw std::overflow_error("the start is too large");
+            zone.at(i, j) = raw >= UNBOUNDED ? INF<typename Z::raw_t> : static_cast<typename Z::raw_t>(raw);
+        }
+    free_padding(zone, dim);
+    return zone;
+}
+
+template <class Z>
+std::vector<std::int64_t> matrix(const Z& zone, int dim) {
+    std::vector<std::int64_t> out;
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            const auto raw = zone.at(i, j);
+            out.push_back(raw >= INF<typename Z::raw_t> ? UNBOUNDED : static_cast<std::int64_t>(raw));
+        }
+    return out;
+}
+
+Place read_place(const py::handle& pair) {
+    if (pair.is_none()) return {};
+    const auto [automaton, location] = pair.cast<std::pair<int, int>>();
+    return {automaton, location};
+}
+
+// What a search has to do, and how.
+struct Task {
+    std::string search;
+    std::int64_t factor;
+    Rules rules;
+    Place goal, bad;
+    std::vector<std::int64_t> start;
+    bool exact;
+    std::size_t limit, many;
+    int clock;
+    std::optional<Ranks> ranks;
+};
+
+Task read_task(const py::dict& in) {
+    return {in["search"].cast<std::string>(),
+            in["factor"].cast<std::int64_t>(),
+            {in["reaction"].cast<int>(), in["prompt"].cast<bool>(), in["must_end"].cast<bool>(), in["instant"].cast<int>()},
+            read_place(in["goal"]),
+            read_place(in["bad"]),
+            in["start"].cast<std::vector<std::int64_t>>(),
+            in["exact"].cast<bool>(),
+            in["limit"].cast<std::size_t>(),
+            in["many"].cast<std::size_t>(),
+            in["clock"].cast<int>(),
+            in["ranks"].cast<std::optional<Ranks>>()};
+}
+
+// What a search found out, free of the type of zones.
+struct Result {
+    std::size_t states = 0;
+    std::vector<int> used;
+    std::optional<std::int64_t> number;  // of an invariant's zones, or the latest time
+    int fault = -1;
+    std::vector<std::vector<int>> steps;
+    std::vector<int> step;  // the one that makes no progress
+    Discrete state;
+    std::vector<std::int64_t> zone;
+};
+
+template <class Z>
+Result searched(const Tables& tables, const Task& task, Watch& watch) {
+    const int dim = tables.network.dim;
+    if (task.rules.reaction > Arena<Z>::most / 2 || task.rules.instant > Arena<Z>::most / 2)
+        throw std::overflow_error("the reaction is too long");
+    ClosedLoop<Z> loop(tables, task.factor, task.rules, task.goal, task.bad, task.ranks ? &*task.ranks : nullptr, watch);
+    Search<Z> search(loop, read_zone<Z>(task.start, dim), task.exact, task.limit);
+    Result out;
+    if (task.search == "invariant") {
+        if (const auto zones = search.invariant()) out.number = static_cast<std::int64_t>(*zones);
+    } else if (task.search == "latest") {
+        try {
+            out.number = search.latest(task.clock);
+        } catch (const Broken<Z>& broken) {
+            out.fault = static_cast<int>(broken.fault);
+        }
+    } else {
+        const Outcome<Z> found = task.search == "ends" ? search.ends() : search.all(task.many);
+        out.states = found.states;
+        for (const auto* step : found.steps) out.steps.push_back(step->edges);
+        if (found.failure) {
+            out.fault = static_cast<int>(found.failure->fault);
+            out.state = loop.arena.state(found.state);
+            out.zone = matrix(found.failure->zone, dim);
+            if (found.failure->move) out.step = found.failure->move->edges;
+        }
+    }
+    for (std::size_t key = 0; key < loop.used.size(); ++key)
+        if (loop.used[key]) out.used.push_back(static_cast<int>(key));
+    return out;
+}
+
+py::dict search(const Tables& tables, const py::dict& in, const py::function& poll) {
+    const Task task = read_task(in);
+    Watch watch = watching(poll);
+    Result found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = with_zones(tables.network.dim, [&](auto z) { return searched<decltype(z)>(tables, task, watch); });
+    }
+    py::dict out;
+    out["states"] = found.states;
+    out["used"] = found.used;
+    out["number"] = found.number;
+    out["fault"] = found.fault;
+    out["steps"] = found.steps;
+    out["step"] = found.step;
+    out["state"] = found.state;
+    out["zone"] = found.zone;
+    return out;
+}
+
+// Of each block the zones of each action, to wait first, as bounds; an empty list where the block stays as it is.
+using Smaller = std::vector<std::vector<std::vector<std::vector<std::tuple<int, int, std::int64_t>>>>>;
+
+template <class Z>
+Smaller simplified(const Tables& tables, std::int64_t factor, int late, const std::optional<Ranks>& ranks, Watch& watch) {
+    const int dim = tables.network.dim;
+    const Arena<Z> arena(tables.network, factor);
+    if (late > Arena<Z>::most / 2) throw std::overflow_error("the reaction is too long");
+    Smaller out;
+    for (const BlockTable& block : tables.strategy.blocks) {
+        watch.tick();
+        auto& smaller = out.emplace_back();
+        Z invariant = universe<Z>();
+        bool possible = true;
+        for (std::size_t a = 0; a < tables.network.automata.size(); ++a)
+            possible = possible && arena.take(invariant, tables.network.automata[a].invariants[block.state[a]]);
+        if (!possible) continue;
+        BlockZones<Z> zones(invariant, late, block.commands.size() + 1, dim, watch);
+        int key = block.first;
+        const auto add = [&](std::size_t action, const std::vector<ZoneTable>& some) {
+            for (const ZoneTable& table : some) {
+                Z zone = invariant;
+                std::vector<Bound> bounds;
+                for (int c : table) bounds.push_back(tables.strategy.constraints[c]);
+                if (arena.take(zone, bounds)) zones.add(action, zone, ranks ? (*ranks)[key] : BlockZones<Z>::unknown);
+                ++key;
+            }
+        };
+        add(0, block.wait);
+        for (std::size_t k = 0; k < block.commands.size(); ++k) add(k + 1, block.commands[k].zones);
+        zones.simplify();
+        for (const auto& parts : zones.parts) {
+            auto& action = smaller.emplace_back();
+            for (const auto& part : parts) {
+                auto& bounds = action.emplace_back();
+                for (const Bound& b : part.bounds) bounds.emplace_back(b.i, b.j, b.raw);
+            }
+        }
+    }
+    return out;
+}
+
+py::object simplify(const Tables& tables, std::int64_t factor, int late, const std::optional<Ranks>& ranks,
+                    const py::function& poll) {
+    Watch watch = watching(poll);
+    Smaller found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = with_zones(tables.network.dim,
+                           [&](auto z) { return simplified<decltype(z)>(tables, factor, late, ranks, watch); });
+    }
+    return py::cast(found);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_proof, module) {
+    module.doc() = "The native checker of strategies.";
+    py::class_<Tables>(module, "Tables", "A network and a strategy, as tables.py makes them.")
+        .def(py::init([](const py::dict& network, const py::list& blocks, const py::list& constraints) {
+            return Tables{read_network(network), read_strategy(blocks, constraints)};
+        }));
+    module.def("search", &search, py::arg("tables"), py::arg("task"), py::arg("poll"),
+               "Searches the closed loop. Raises OverflowError where the times do not fit, and what `poll` raises.");
+    module.def("simplify", &simplify, py::arg("tables"), py::arg("factor"), py::arg("late"), py::arg("ranks"),
+               py::arg("poll"), "The strategy's zones, simplified. Raises as `search`.");
+}

@@ -1,0 +1,256 @@
+"""A network and a strategy as the integer tables of the native checker (see tables.hpp)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+from pursue_gen.synthesis.limits import LimitMonitor
+from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
+from pursue_gen.tga.network import ClockBound, Edge, Network
+from pursue_gen.zones.scale import common_denominator
+
+try:
+    from pursue_gen.proof.native import _proof
+except ImportError:  # no compiler when the package was installed: the checker in Python serves
+    _proof = None  # type: ignore[assignment]
+
+_CLOCKS, _MOST, _VALUES = 39, 1 << 50, 1 << 31
+"""The bounds of the native checker: clocks, constants in the tables, values of variables."""
+
+MOST_FACTOR, MOST_DELAY, MOST_RANK = 1 << 40, 1 << 30, 1 << 62
+"""What the tables' constants may be multiplied by, and scaled delays and ranks, at most."""
+
+Bound = Tuple[int, int, int]
+"""Two clocks (0: none) and the raw bound of their difference."""
+
+Smaller = List[List[List[List[Bound]]]]
+
+
+class NotHeld(Exception):
+    """The tables cannot hold this network or strategy."""
+
+
+@dataclass(frozen=True)
+class Tables:
+    """The tables, with constants multiplied by `scale`.
+
+    `firsts`: the number of the first zone of each block, in the order in which the tables number zones; then that of
+    all zones. `whole`: every block is for a discrete state of the network. `edges`: the network's, by their numbers.
+    """
+
+    native: Any
+    network: Network
+    strategy: Strategy
+    scale: int
+    firsts: Tuple[int, ...]
+    whole: bool
+    edges: Tuple[Move, ...]
+
+    def search(self, task: Dict[str, Any], monitor: LimitMonitor) -> Dict[str, Any]:
+        """The result of a search through the closed loop. Raises OverflowError for times that are too large."""
+        return _proof.search(self.native, task, monitor.check)
+
+    def simplify(self, factor: int, late: int, ranks: Optional[Sequence[int]], monitor: LimitMonitor) -> Smaller:
+        """Of each block the zones of each action, to wait first, as bounds in a scale that is `factor` times finer.
+
+        Empty where the block's invariant holds nowhere. Raises OverflowError for times that are too large.
+        """
+        return _proof.simplify(self.native, factor, late, ranks, monitor.check)
+
+    def numbers(self, values: Mapping[ZoneKey, int], default: int) -> List[int]:
+        """The values of all zones, in the tables' order."""
+        return [values.get(key, default) for b in range(len(self.strategy.blocks)) for key in self._keys(b)]
+
+    def keys(self, numbers: Sequence[int]) -> List[ZoneKey]:
+        """Where the zones with these numbers, which rise, stand in the strategy."""
+        found: List[ZoneKey] = []
+        b = -1
+        keys: List[ZoneKey] = []
+        for number in numbers:
+            while number >= self.firsts[b + 1]:
+                b += 1
+                keys = []
+            keys = keys or self._keys(b)
+            found.append(keys[number - self.firsts[b]])
+        return found
+
+    def _keys(self, b: int) -> List[ZoneKey]:
+        block = self.strategy.blocks[b]
+        parts: List[Tuple[Union[str, int], int]] = [("wait", len(block.wait))]
+        parts += [(k, len(command.zones)) for k, command in enumerate(block.commands)]
+        return [(b, part, n) for part, count in parts for n in range(count)]
+
+
+def available() -> bool:
+    """True if the native checker was built with the package."""
+    return _proof is not None
+
+
+_latest: List[Tables] = []
+"""The tables that were made last: one strategy is checked several times in a row."""
+
+
+def tables_of(network: Network, strategy: Strategy) -> Tables:
+    """The tables. Raises NotHeld where the native checker is not built or they cannot hold it."""
+    if not available():
+        raise NotHeld
+    for tables in _latest:
+        if tables.network is network and tables.strategy is strategy:
+            return tables
+    try:
+        made = _Maker(network).tables(strategy)
+    except (KeyError, ValueError):  # names that the network does not have: Python says what is wrong, where it matters
+        raise NotHeld from None
+    _latest[:] = [made]
+    return made
+
+
+class _Maker:
+    """Names to numbers. Raises KeyError for unknown ones."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        self.clocks: Dict[Optional[str], int] = {None: 0, **{name: k + 1 for k, name in enumerate(network.clocks)}}
+        self.variables = {name: k for k, (name, _) in enumerate(network.variables)}
+        self.locations = [{place.name: n for n, place in enumerate(a.locations)} for a in network.automata]
+        self.places = [
+            {(a.name, name): n for name, n in names.items()} for a, names in zip(network.automata, self.locations)
+        ]
+        self.channels: Dict[str, int] = {}
+        self.kinds: Dict[Tuple[str, Edge], int] = {}
+        self.known: Dict[Tuple[str, int], int] = {}  # the kinds by the identity of edges: most are the network's own
+
+    def tables(self, strategy: Strategy) -> Tables:
+        """All tables."""
+        network = self.network
+        if len(network.clocks) > _CLOCKS:
+            raise NotHeld
+        numbers: Dict[int, int] = {}
+        constraints: List[Constraint] = []
+
+        def zones(some: Sequence[Zone]) -> List[List[int]]:
+            result = []
+            for zone in some:
+                table = []
+                for constraint in zone:
+                    number = numbers.get(id(constraint))
+                    if number is None:
+                        number = numbers[id(constraint)] = len(constraints)
+                        constraints.append(constraint)
+                    table.append(number)
+                result.append(table)
+            return result
+
+        edges = self._edges()
+        blocks = [
+            (
+                self._state(block.state),
+                zones(block.wait),
+                [(list(map(self._kind, command.moves)), zones(command.zones)) for command in block.commands],
+            )
+            for block in strategy.blocks
+        ]
+        scale = common_denominator(c.bound for c in (*network.start, *constraints))
+        bounds = [self._constraint(constraint, scale) for constraint in constraints]
+        firsts = [0]
+        for _, wait, commands in blocks:
+            firsts.append(firsts[-1] + len(wait) + sum(len(some) for _, some in commands))
+        native = _proof.Tables(self._network(edges, scale), blocks, bounds)
+        whole = all(state is not None for state, _, _ in blocks)
+        named = tuple(Move(network.automata[k].name, edge) for k, edge in edges)
+        return Tables(native, network, strategy, scale, tuple(firsts), whole, named)
+
+    def _state(self, state: DiscreteState) -> Optional[List[int]]:
+        network = self.network
+        if len(state.locations) != len(network.automata) or len(state.values) != len(network.variables):
+            return None
+        places = [names.get(place) for names, place in zip(self.places, state.locations)]
+        if None in places or any(name != own for (name, _), (own, _) in zip(state.values, network.variables)):
+            return None
+        values = [value for _, value in state.values]
+        return None if any(not _fits(value) for value in values) else [*(n for n in places if n is not None), *values]
+
+    def _edges(self) -> List[Tuple[int, Edge]]:
+        found: List[Tuple[int, Edge]] = []
+        for k, automaton in enumerate(self.network.automata):
+            for edge in automaton.edges:
+                kind = self.kinds.setdefault((automaton.name, edge), len(found))
+                self.known[automaton.name, id(edge)] = kind
+                found.append((k, edge))
+        return found
+
+    def _kind(self, move: Move) -> int:
+        known = self.known.get((move.automaton, id(move.edge)))
+        return self.kinds.get((move.automaton, move.edge), -1) if known is None else known
+
+    def _network(self, edges: Sequence[Tuple[int, Edge]], scale: int) -> Dict[str, Any]:
+        automata = []
+        for k, automaton in enumerate(self.network.automata):
+            leaving: List[List[int]] = [[] for _ in automaton.locations]
+            for n, (owner, edge) in enumerate(edges):
+                if owner == k:
+                    leaving[self.locations[k][edge.source]].append(n)
+            invariants = [self._bounds(place.invariant, scale) for place in automaton.locations]
+            automata.append({"invariants": invariants, "leaving": leaving})
+        initial = [names[a.initial] for a, names in zip(self.network.automata, self.locations)]
+        return {
+            "clocks": len(self.network.clocks),
+            "initial": initial + [_held(value) for _, value in self.network.variables],
+            "automata": automata,
+            "edges": [self._edge(k, edge, scale) for k, edge in edges],
+        }
+
+    def _edge(self, k: int, edge: Edge, scale: int) -> Dict[str, Any]:
+        sync = edge.sync
+        return {
+            "kind": self.known[self.network.automata[k].name, id(edge)],
+            "source": self.locations[k][edge.source],
+            "target": self.locations[k][edge.target],
+            "guard": self._bounds(edge.guard.clocks, scale),
+            "clauses": [
+                [(self.variables[test.variable], _held(test.value)) for test in clause]
+                for clause in edge.guard.integers
+            ],
+            "channel": -1 if sync is None else self.channels.setdefault(sync.channel, len(self.channels)),
+            "sends": sync is None or sync.sends,
+            "assign": [(self.variables[name], _held(value)) for name, value in edge.assign],
+            "resets": [self.clocks[name] for name in edge.resets],
+            "controllable": edge.controllable,
+        }
+
+    def _bounds(self, bounds: Sequence[ClockBound], scale: int) -> List[Bound]:
+        found: List[Bound] = []
+        for bound in bounds:
+            x, constant = self.clocks[bound.clock], Fraction(bound.bound)
+            if bound.op not in ("<", "<=", "==", ">", ">="):
+                raise NotHeld
+            if bound.op in ("<", "<=", "=="):
+                found.append((x, 0, _raw(constant, scale, bound.op == "<")))
+            if bound.op in (">", ">=", "=="):
+                found.append((0, x, _raw(-constant, scale, bound.op == ">")))
+        return found
+
+    def _constraint(self, constraint: Constraint, scale: int) -> Bound:
+        i, j = self.clocks[constraint.left], self.clocks[constraint.right]
+        if i == j:
+            raise NotHeld
+        return i, j, _raw(constraint.bound, scale, constraint.strict)
+
+
+def _raw(bound: Fraction, scale: int, strict: bool) -> int:
+    constant = bound.numerator * (scale // bound.denominator)
+    if abs(constant) >= _MOST:
+        raise NotHeld
+    return 2 * constant + (not strict)
+
+
+def _fits(value: int) -> bool:
+    return -_VALUES <= value < _VALUES
+
+
+def _held(value: int) -> int:
+    if not _fits(value):
+        raise NotHeld
+    return value
