@@ -15,7 +15,7 @@ from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
-from pursue_gen.zones.scale import common_denominator
+from pursue_gen.zones.scale import common_denominator, least_common_multiple
 
 INSTANTS = 4
 """Into so many parts a time unit is cut when instants just after another are explored (see `delays`)."""
@@ -239,8 +239,7 @@ def _zones_of(block: Block) -> Iterator[Zone]:
 
 def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:
     """What all bounds have to be multiplied by to be integers."""
-    constraints = [*network.start, *(c for block in strategy.blocks for zone in _zones_of(block) for c in zone)]
-    return common_denominator([reaction, *(c.bound for c in constraints)])
+    return least_common_multiple([strategy.scale, common_denominator([reaction, *(c.bound for c in network.start)])])
 
 
 def in_words(moves: Sequence[Move]) -> str:

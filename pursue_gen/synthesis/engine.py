@@ -29,9 +29,10 @@ class Outcome:
     """Who wins, and how.
 
     `won`: the controller wins from every position at the start. `blocks`: its strategy, empty where it loses: one block
-    per discrete state, canonical zones in the game's scale, pairwise disjoint; commands stand in the order in which
-    their zones were won. `ranks` (of a reach game, where the engine keeps them): per block and zone a number that every
-    step of the game lowers, across discrete states. `seconds`: what exploring and deciding took.
+    for each discrete state that a play by it can come to (others may have one), canonical zones in the game's scale,
+    pairwise disjoint; commands stand in the order in which their zones were won. `ranks` (of a reach game, where the
+    engine keeps them): per block and zone a number that every step of the game lowers, across discrete states.
+    `seconds`: what exploring and deciding took.
     """
 
     won: bool

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
@@ -29,6 +30,10 @@ Action = Optional[Tuple[int, ...]]
 
 RawBlock = Tuple[Tuple[int, ...], Tuple[int, ...], Sequence[Tuple[Tuple[int, ...], Action]]]
 """A discrete state's part of a strategy as engines hand it over: locations, values, (matrix of a zone, action)s."""
+
+
+Leaving = Tuple[Sequence[int], Mapping[int, Sequence[int]]]
+"""The edges that leave a location: those that send or move by themselves, and by their channel those that receive."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +100,18 @@ class Game:
     def dim(self) -> int:
         """The dimension of the zones: the clocks and the constant 0."""
         return len(self.clocks) + 1
+
+    @cached_property
+    def leaving(self) -> Tuple[Tuple[Leaving, ...], ...]:
+        """The edges that leave each location of each automaton."""
+        found: List[List[Tuple[List[int], Dict[int, List[int]]]]] = []
+        for automaton in self.automata:
+            found.append([([], {}) for _ in automaton.locations])
+            for k in automaton.edges:
+                edge = self.edges[k]
+                senders, receivers = found[-1][edge.source]
+                (senders if edge.sends else receivers.setdefault(edge.channel, [])).append(k)
+        return tuple(tuple(locations) for locations in found)
 
 
 @dataclass(frozen=True)
@@ -325,33 +342,29 @@ def joint_moves(game: Game, state: State) -> Iterator[JointMove]:
 
     One sending (or tau) edge, and of every other automaton with an enabled receiving edge exactly one of those.
     """
-    for number, automaton in enumerate(game.automata):
-        for k in automaton.edges:
+    here = [game.leaving[number][location] for number, location in enumerate(state.locations)]
+    for number, (senders, _) in enumerate(here):
+        for k in senders:
             edge = game.edges[k]
-            if edge.sends and _enabled(edge, state):
-                for receivers in product(*_receivers(game, state, edge)):
+            if _enabled(edge, state):
+                for receivers in product(*_receivers(game, state, here, edge)):
                     yield _joint_move(game, state, number, (k, *receivers))
 
 
-def _receivers(game: Game, state: State, sender: GameEdge) -> List[List[int]]:
+def _receivers(game: Game, state: State, here: Sequence[Leaving], sender: GameEdge) -> List[List[int]]:
     if sender.channel == NO_CHANNEL:
         return []
     choices = (
-        [
-            k
-            for k in automaton.edges
-            if game.edges[k].channel == sender.channel and not game.edges[k].sends and _enabled(game.edges[k], state)
-        ]
-        for number, automaton in enumerate(game.automata)
+        [k for k in receivers.get(sender.channel, ()) if _enabled(game.edges[k], state)]
+        for number, (_, receivers) in enumerate(here)
         if number != sender.automaton
     )
     return [edges for edges in choices if edges]
 
 
 def _enabled(edge: GameEdge, state: State) -> bool:
-    return state.locations[edge.automaton] == edge.source and all(
-        any(state.values[variable] == value for variable, value in clause) for clause in edge.clauses
-    )
+    """True if the integer guard of an edge from here holds."""
+    return all(any(state.values[variable] == value for variable, value in clause) for clause in edge.clauses)
 
 
 def _joint_move(game: Game, state: State, owner: int, numbers: Tuple[int, ...]) -> JointMove:

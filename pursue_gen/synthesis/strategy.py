@@ -6,10 +6,12 @@ All bounds are exact (Fraction, in time units): a reaction delay of 1/10 gives b
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
+from pursue_gen.zones.scale import common_denominator
 
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""
@@ -54,6 +56,12 @@ class Strategy:
 
     blocks: Tuple[Block, ...]
     counter: bool = False
+
+    @cached_property
+    def scale(self) -> int:
+        """The least scale in which all of its bounds are integers."""
+        zones = (zone for b in self.blocks for zones in (b.wait, *(c.zones for c in b.commands)) for zone in zones)
+        return common_denominator(constraint.bound for zone in zones for constraint in zone)
 
 
 ZoneKey = Tuple[int, Union[str, int], int]

@@ -37,9 +37,9 @@ def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict
     return found
 
 
-def followed(game: Game, blocks: Iterable[RawBlock]) -> Tuple[RawBlock, ...]:
-    """The blocks of the discrete states that a play by the strategy can come to (whatever the clocks)."""
-    by_state: Dict[State, RawBlock] = {State(tuple(block[0]), tuple(block[1])): block for block in blocks}
+def followed(game: Game, blocks: Sequence[RawBlock]) -> List[int]:
+    """The numbers of the blocks whose discrete states a play by the strategy can come to (whatever the clocks)."""
+    by_state = {State(tuple(block[0]), tuple(block[1])): number for number, block in enumerate(blocks)}
     start = initial_state(game)
     met: Set[State] = {start}
     waiting: Deque[State] = deque([start])
@@ -47,12 +47,12 @@ def followed(game: Game, blocks: Iterable[RawBlock]) -> Tuple[RawBlock, ...]:
         state = waiting.popleft()
         if is_goal(game, state) or is_bad(game, state) or state not in by_state:
             continue
-        commanded = {tuple(action) for _, action in by_state[state][2] if action is not None}
+        commanded = {tuple(action) for _, action in blocks[by_state[state]][2] if action is not None}
         for move in joint_moves(game, state):
             if move.target not in met and (not move.controllable or move.edges in commanded):
                 met.add(move.target)
                 waiting.append(move.target)
-    return tuple(block for state, block in by_state.items() if state in met)
+    return [number for state, number in by_state.items() if state in met]
 
 
 def _block(game: Game, block: RawBlock, known: Dict[Bound, Constraint]) -> Block:
@@ -103,7 +103,13 @@ def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
     class, and between the first ones a bound is left out where a way round is as tight.
     """
     rows = [matrix[i * dim : i * dim + dim] for i in range(dim)]
-    first = [min(j for j in range(i + 1) if j == i or _fixed(rows, i, j)) for i in range(dim)]
+    first = list(range(dim))
+    for i, row in enumerate(rows):
+        for j in range(i):
+            # The difference of the two clocks is one number: each bound is `<=` and they add up to `<= 0`.
+            if row[j] + rows[j][i] == 2 and row[j] & 1:
+                first[i] = j
+                break
     heads = [i for i in range(dim) if first[i] == i]
     from_zero = {first[k] for k in range(1, dim) if rows[0][k] == LE_ZERO}
     kept: List[Bound] = []
@@ -123,8 +129,3 @@ def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
                 else:
                     kept.append((i, j, bound))
     return kept
-
-
-def _fixed(rows: Sequence[Sequence[int]], i: int, j: int) -> bool:
-    """True if the difference of the two clocks is one number: each bound is `<=` and they add up to `<= 0`."""
-    return rows[i][j] + rows[j][i] == 2 and bool(rows[i][j] & 1)

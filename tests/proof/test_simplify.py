@@ -215,3 +215,9 @@ def test_the_strategy_for_the_box_has_the_least_size(reference_dir) -> None:
     network, objective = published(reference_dir, "WC1")
     strategy = solution(network, objective, IDEAL).strategy
     assert (len(strategy.blocks), sum(len(one.commands) for one in strategy.blocks)) == (10, 6)
+
+
+def test_of_two_zones_that_say_the_same_one_stays() -> None:
+    twice = block(NET, "a", [""], ("x>1|x>1", GO))  # contradictory, so the two do not become one
+    (command,) = small(twice).blocks[0].commands
+    assert len(command.zones) == 1

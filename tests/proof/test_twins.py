@@ -239,3 +239,15 @@ def test_what_does_not_fit_together_is_refused_by_both_with_the_same_words(one: 
         expected = outcome()
     found = outcome()
     assert found == expected and not (isinstance(found, Report) and found.ok)
+
+
+def test_where_the_native_searches_cannot_be_done_python_does_them() -> None:
+    plan = Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),))
+    many = replace(STRAIGHT, clocks=(*STRAIGHT.clocks, *(f"z{k}" for k in range(38))))
+    with in_python():
+        expected = verify(many, REACH, plan)
+    with pytest.raises(AssertionError, match="in Python"), natively():
+        verify(many, REACH, plan)
+    assert verify(many, REACH, plan) == expected and expected.ok
+    most = replace(STRAIGHT, clocks=(*STRAIGHT.clocks, *(f"z{k}" for k in range(37))))
+    assert both(lambda: verify(most, REACH, plan)).ok

@@ -31,7 +31,7 @@ def test_the_thesis_scenarios_are_won_and_few_states_are_looked_at(number: str, 
     assert outcome.won
     # Scenario 4 has 69,741 discrete states in the default game.
     assert outcome.counts.discrete_states < 150
-    strategy = to_strategy(game, followed(game, outcome.blocks))
+    strategy = to_strategy(game, [outcome.blocks[k] for k in followed(game, outcome.blocks)])
     played = ends_reported(network, {}) if default else network
     report = verify(played, scenario_objective(scenario), strategy, DEFAULT if default else Fraction(0))
     assert report.ok, report.reason

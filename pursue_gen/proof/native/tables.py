@@ -9,7 +9,6 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import ClockBound, Edge, Network
-from pursue_gen.zones.scale import common_denominator
 
 try:
     from pursue_gen.proof.native import _proof
@@ -19,7 +18,7 @@ except ImportError:  # no compiler when the package was installed: the checker i
 _CLOCKS, _MOST, _VALUES = 39, 1 << 50, 1 << 31
 """The bounds of the native checker: clocks, constants in the tables, values of variables."""
 
-MOST_FACTOR, MOST_DELAY, MOST_RANK = 1 << 40, 1 << 30, 1 << 62
+MOST_FACTOR, MOST_DELAY, MOST_RANK = 1 << 40, (1 << 30) - 1, 1 << 62
 """What the tables' constants may be multiplied by, and scaled delays and ranks, at most."""
 
 Bound = Tuple[int, int, int]
@@ -152,7 +151,7 @@ class _Maker:
             )
             for block in strategy.blocks
         ]
-        scale = common_denominator(c.bound for c in (*network.start, *constraints))
+        scale = strategy.scale
         bounds = [self._constraint(constraint, scale) for constraint in constraints]
         firsts = [0]
         for _, wait, commands in blocks:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Dict, List, Optional, Tuple
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
+from pursue_gen.synthesis.strategy_from import followed
 from pursue_gen.zones.dbm import INF
 
 try:
@@ -19,6 +20,9 @@ except ImportError:  # no compiler when the package was installed: the Python re
 
 _CLOCKS, _NO_BOUND, _VALUES = 39, 1 << 29, 1 << 31
 """The bounds of module.cpp: clocks, raw bounds, values of variables."""
+
+_UNBOUNDED = {1 << 30: INF}
+"""How module.cpp writes no bound, and what that is here."""
 
 
 def available() -> bool:
@@ -73,11 +77,14 @@ class NativeEngine(Engine):
 
 def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
     count = len(game.automata)
+    states = result["states"]
+    commanded = [(tuple(d[:count]), tuple(d[count:]), [((), edges) for _, edges, _ in pieces]) for d, pieces in states]
+    states = [states[k] for k in followed(game, commanded)]  # few of those that are won, and the others cost most
     blocks: List[RawBlock] = [
         (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))
-        for d, pieces in result["states"]
+        for d, pieces in states
     ]
-    ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in result["states"])
+    ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in states)
     counts = Counts(
         discrete_states=result["discrete_states"],
         zones=result["zones"],
@@ -89,7 +96,7 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
 
 def _matrix(bounds: bytes) -> Tuple[int, ...]:
     found = array("i", bounds)
-    return tuple(INF if bound >= _NO_BOUND else bound for bound in found) if max(found) >= _NO_BOUND else tuple(found)
+    return tuple(map(_UNBOUNDED.get, found, found))
 
 
 def _action(edges: Any) -> Action:
