@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
@@ -13,12 +14,20 @@ from pursue_gen.zones.dbm import INF, LE_ZERO, constant, is_strict
 Matrix = Tuple[int, ...]
 
 
+@dataclass(frozen=True)
+class _Known:
+    """Constraints by their bounds, zones by their matrices: few of them stand in very many places."""
+
+    constraints: Dict[Bound, Constraint]
+    zones: Dict[Matrix, Zone]
+
+
 def to_strategy(game: Game, blocks: Iterable[RawBlock]) -> Strategy:
     """The strategy of a game from an engine's blocks, in their order; zones of one action are gathered.
 
     Each zone's matrix must be canonical (raw bounds, scaled as the game's; INF or more: no bound).
     """
-    known: Dict[Bound, Constraint] = {}
+    known = _Known({}, {})
     return Strategy(tuple(_block(game, block, known) for block in blocks))
 
 
@@ -55,7 +64,7 @@ def followed(game: Game, blocks: Sequence[RawBlock]) -> List[int]:
     return [number for state, number in by_state.items() if state in met]
 
 
-def _block(game: Game, block: RawBlock, known: Dict[Bound, Constraint]) -> Block:
+def _block(game: Game, block: RawBlock, known: _Known) -> Block:
     locations, values, pieces = block
     by_action: Dict[Action, List[Zone]] = {}
     for matrix, action in pieces:
@@ -79,21 +88,25 @@ def _move(game: Game, edge: int) -> Move:
 
 def zone_text(game: Game, matrix: Matrix) -> Zone:
     """The constraints that make the zone, fewest bounds, in time units; the canonical matrix has the game's scale."""
-    return _zone(game, matrix, {})
+    return _zone(game, matrix, _Known({}, {}))
 
 
-def _zone(game: Game, matrix: Matrix, known: Dict[Bound, Constraint]) -> Zone:
-    """The same; `known` are constraints by their bounds: few of them stand in very many zones."""
+def _zone(game: Game, matrix: Matrix, known: _Known) -> Zone:
+    """The same, with what is known."""
+    found = known.zones.get(matrix)
+    if found is not None:
+        return found
     zone: List[Constraint] = []
     for bound in minimal(game.dim, matrix):
-        constraint = known.get(bound)
+        constraint = known.constraints.get(bound)
         if constraint is None:
             i, j, limit = bound
             names = (None, *game.clocks)
             time = Fraction(constant(limit), game.scale)
-            constraint = known[bound] = Constraint(names[i], names[j], time, is_strict(limit))
+            constraint = known.constraints[bound] = Constraint(names[i], names[j], time, is_strict(limit))
         zone.append(constraint)
-    return tuple(zone)
+    result = known.zones[matrix] = tuple(zone)
+    return result
 
 
 def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
@@ -114,17 +127,18 @@ def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
     from_zero = {first[k] for k in range(1, dim) if rows[0][k] == LE_ZERO}
     kept: List[Bound] = []
     for i, row in enumerate(rows):
+        of_class = first[i]
+        ways = [(k, row[k], rows[k]) for k in heads if k != i and row[k] < INF] if of_class == i else []
         for j, bound in enumerate(row):
             # That a clock is >= 0 goes without saying, also where it tells how large another of its class is at least.
             if i == j or bound >= INF or (i == 0 and (bound == LE_ZERO or j in from_zero)):
                 continue
-            if first[i] == first[j]:
-                if first[i] in (i, j):
+            if of_class == first[j]:
+                if of_class in (i, j):
                     kept.append((i, j, bound))
-            elif first[i] == i and first[j] == j:
-                for k in heads:
-                    there, on = row[k], rows[k][j]
-                    if there < INF and on < INF and k != i and k != j and there + on - ((there | on) & 1) <= bound:
+            elif of_class == i and first[j] == j:
+                for k, there, onward in ways:
+                    if k != j and there + onward[j] - ((there | onward[j]) & 1) <= bound:
                         break
                 else:
                     kept.append((i, j, bound))

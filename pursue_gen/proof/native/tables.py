@@ -126,20 +126,22 @@ class _Maker:
         network = self.network
         if len(network.clocks) > _CLOCKS:
             raise NotHeld
+        # Most constraints and zones are met again and again, so they are known by their identity.
         numbers: Dict[int, int] = {}
+        known: Dict[int, List[int]] = {}
         constraints: List[Constraint] = []
 
         def zones(some: Sequence[Zone]) -> List[List[int]]:
-            result = []
-            for zone in some:
-                table = []
-                for constraint in zone:
-                    number = numbers.get(id(constraint))
-                    if number is None:
-                        number = numbers[id(constraint)] = len(constraints)
-                        constraints.append(constraint)
-                    table.append(number)
-                result.append(table)
+            return [known.get(id(zone)) or table(zone) for zone in some]
+
+        def table(zone: Zone) -> List[int]:
+            result = known[id(zone)] = []
+            for constraint in zone:
+                number = numbers.get(id(constraint))
+                if number is None:
+                    number = numbers[id(constraint)] = len(constraints)
+                    constraints.append(constraint)
+                result.append(number)
             return result
 
         edges = self._edges()

@@ -80,8 +80,9 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
     states = result["states"]
     commanded = [(tuple(d[:count]), tuple(d[count:]), [((), edges) for _, edges, _ in pieces]) for d, pieces in states]
     states = [states[k] for k in followed(game, commanded)]  # few of those that are won, and the others cost most
+    known: Dict[bytes, Tuple[int, ...]] = {}
     blocks: List[RawBlock] = [
-        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(matrix), _action(edges)) for matrix, edges, _ in pieces))
+        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(zone, known), _action(edges)) for zone, edges, _ in pieces))
         for d, pieces in states
     ]
     ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in states)
@@ -94,9 +95,13 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
     return Outcome(result["won"], tuple(blocks), ranks, counts, result["seconds"])
 
 
-def _matrix(bounds: bytes) -> Tuple[int, ...]:
-    found = array("i", bounds)
-    return tuple(map(_UNBOUNDED.get, found, found))
+def _matrix(bounds: bytes, known: Dict[bytes, Tuple[int, ...]]) -> Tuple[int, ...]:
+    """The matrix; `known` are those that were met: most are met again."""
+    matrix = known.get(bounds)
+    if matrix is None:
+        found = array("i", bounds)
+        matrix = known[bounds] = tuple(map(_UNBOUNDED.get, found, found))
+    return matrix
 
 
 def _action(edges: Any) -> Action:
