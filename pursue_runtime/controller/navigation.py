@@ -158,8 +158,8 @@ class Navigation:
         if self._trip is None and self._goal.others(answers):
             self._at.on_departure()
 
-    def on_position(self, position: Position, now: float) -> None:
-        """Take a position on the map."""
+    def on_position(self, position: Optional[Position], now: float) -> None:
+        """Take a position on the map; None: it is not published any more."""
         self._at.on_position(position, now)
 
     # What is to be done -----------------------------------------------------------------------------------------------
@@ -212,6 +212,7 @@ class Navigation:
                 self._log("info", f"{self.name} is at {post.poi}")
                 self._report = Report(self._word(BACK), self.reaction)
             return
+        self._at.on_departure()  # it may pass its place again without standing there
         self._doubt = now if self._doubt is None else self._doubt
         is_elsewhere = self._at.position is not None and not self._at.is_near(post)
         if not is_elsewhere and now < self._doubt + self._grace:

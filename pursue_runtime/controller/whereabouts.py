@@ -60,11 +60,13 @@ class Whereabouts:
         self._place = ""  # where it has arrived, and its position then
         self._arrival: Optional[Position] = None
 
-    def on_position(self, position: Position, now: float) -> None:
-        """Take a position."""
+    def on_position(self, position: Optional[Position], now: float) -> None:
+        """Take a position; None: it is not known any more."""
         self.position = position
         limits = self._settings.still_distance, self._settings.still_angle
-        if self._rest is None or not _within(self._rest, position, *limits):
+        if position is None:
+            self._rest, self._since = None, math.inf
+        elif self._rest is None or not _within(self._rest, position, *limits):
             self._rest, self._since = position, now
 
     def on_arrival(self, poi: str) -> None:
@@ -72,7 +74,7 @@ class Whereabouts:
         self._place, self._arrival = poi, self.position
 
     def on_departure(self) -> None:
-        """Note that the robot may be anywhere: it has a goal, of ours or of another node."""
+        """Note that the robot may be anywhere: it has a goal, of ours or of another node, or was seen elsewhere."""
         self._place, self._arrival = "", None
 
     def stands_at(self) -> float:
@@ -108,7 +110,7 @@ class Whereabouts:
         """Return True if the robot may have moved since its arrival, by more than an arrival may be off."""
         before, at = self._arrival, self.position
         if before is None or at is None:
-            return at is not None  # a first position, which has nothing to be compared with
+            return before is not at  # a first position, with nothing to be compared with, or one that is missing now
         return not _within(before, at, self._settings.end_tolerance, self._settings.end_yaw_tolerance)
 
 

@@ -6,7 +6,7 @@ import contextlib
 import threading
 import time
 from functools import partial
-from typing import Dict, List, Mapping, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence
 
 import rospy
 from std_msgs.msg import String
@@ -43,6 +43,7 @@ class Exeggutor:
         self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
+        self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
@@ -152,7 +153,7 @@ class Exeggutor:
                 robot.on_status(answers, rospy.get_time(), time.monotonic())
                 self._act()
 
-    def _place(self, name: str, position: Position) -> None:
+    def _place(self, name: str, position: Optional[Position]) -> None:
         with self._lock:
             robot = self._robots.get(name)
             if robot is not None:
@@ -179,18 +180,19 @@ class Exeggutor:
             patience += [] if repeat is None else [repeat - real]
             if not self._links[name].watched:
                 patience.append(0.0)  # topics are changed by the alarm's thread: that may have to wait for the master
-            elif self._links[name].looks:
-                patience.append(LOOKS)
+            elif self._links[name].looks:  # a fixed moment: messages that come more often must not put it off
+                patience.append(self._next_look - real)
         self._alarm.set(min(moments, default=None), max(0.0, min(patience)) if patience else None)
 
     def _on_alarm(self) -> None:
         """Look where robots are, and do what is due."""
         with self._lock:
             links = {name: self._links[name] for name in self._robots}
+            self._next_look = time.monotonic() + LOOKS
         for name, link in links.items():
             link.watch()
             position = link.look()
-            if position is not None:
+            if position is not None or link.has_lost_position:
                 self._place(name, position)
         with self._lock:
             self._act()

@@ -17,6 +17,9 @@ from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, publish_to_one, subscribe
 
+STALE = 1.0
+"""Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
+
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
 
@@ -78,6 +81,8 @@ class RobotLink(rospy.SubscribeListener):
         self._status: Any = None
         self._frames: Any = None
         self._seen_by_tf = False  # then amcl_pose, which is published now and then, does not count
+        self._stamp, self._renewed = 0.0, 0.0  # of the newest transform, and when it came
+        self.has_lost_position = False
         self._messages: Any = None
         self._tf: Any = None
         if settings.uses_results:
@@ -209,18 +214,30 @@ class RobotLink(rospy.SubscribeListener):
             self._place(_position(pose.position, pose.orientation))
 
     def look(self) -> Optional[Position]:
-        """Return where tf has the robot now; None where it does not know."""
+        """Return where tf has the robot now; None where it does not know: `has_lost_position` if it did before."""
         if self._frames is None:
             return None
         frames = self._settings.map_frame, self._settings.base_frame
         try:
-            found = self._frames.lookup_transform(*frames, rospy.Time(0)).transform
+            found = self._frames.lookup_transform(*frames, rospy.Time(0))
         except self._tf.TransformException as problem:
             if self._settings.sources == ("tf",):
                 rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {problem}")
             return None
         self._seen_by_tf = True
-        return _position(found.translation, found.rotation)
+        self.has_lost_position = self._is_stale(found.header.stamp.to_sec())
+        if self.has_lost_position:
+            what = f"tf does not know where {self._robot} is: {frames[0]} to {frames[1]} is not published any more"
+            rospy.logwarn_throttle(10.0, what)
+            return None
+        return _position(found.transform.translation, found.transform.rotation)
+
+    def _is_stale(self, stamp: float) -> bool:
+        """Return True if the transform with this stamp (0: a static one) was not renewed for some time."""
+        now = rospy.get_time()
+        if stamp != self._stamp or now < self._renewed:
+            self._stamp, self._renewed = stamp, now
+        return stamp > 0.0 and now > self._renewed + STALE
 
 
 def _answer(status: Any) -> Answer:

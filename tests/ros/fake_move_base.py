@@ -3,13 +3,14 @@
 
 Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
 action takes; negative: the robot does not report its end), boot (seconds from the start of move_base until its action
-server is up), recovery (seconds until a robot that is stuck gives up), plays (what becomes of its first goal, of its
-second …; the last one of all that follow): succeed, abort (at once), reject (at once), never, stuck (it gives up after
-the recovery), twice (the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks
-the wrong way).
+server is up), recovery (seconds until a robot that is stuck gives up), status (seconds between two status messages),
+plays (what becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once),
+reject (at once), never, stuck (it gives up after the recovery), twice (the result comes twice), stale (a result of
+long ago comes first), turned (it arrives, but looks the wrong way).
 
-Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed and
-started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`.
+Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
+and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
+`tf on`, `tf off` (its position is published on tf, or not any more).
 
 Standard output has what each robot receives: `bot1 goal 1.00 2.00`, `bot1 lost 1.00 2.00` (a simple goal that came
 before the action server was up), `bot1 cancel`, `bot1 action e 1.00 2.00` (with its position then); and `bot1 stands
@@ -37,8 +38,8 @@ STEP = 0.05
 STATUS_PERIOD, STATUS_TIMEOUT = 0.2, 5.0
 """Seconds between two status messages, and for which a goal that is over stays in them."""
 
-AMCL_DISTANCE, AMCL_ANGLE = 0.15, 0.5
-"""Metres and radians that a robot moves or turns before amcl publishes its pose again."""
+AMCL_DISTANCE, AMCL_ANGLE = 0.2, math.pi / 6
+"""Metres and radians that a robot moves or turns before amcl publishes its pose again, by default."""
 
 ACCEPTED = "This goal has been accepted by the simple action server"
 TEXTS = {
@@ -62,6 +63,7 @@ class Body:
         self.name = name
         self.at: Tuple[float, float, float] = (start[0], start[1], start[2] if len(start) > 2 else 0.0)
         self.way: Optional[Tuple[float, float, Tuple[float, float, float], Tuple[float, float, float]]] = None
+        self.has_tf = True
         self._shown = (math.inf, math.inf, 0.0)
         self._frames = tf2_ros.TransformBroadcaster()
         self._poses = rospy.Publisher(f"{name}/amcl_pose", PoseWithCovarianceStamped, queue_size=10, latch=True)
@@ -94,7 +96,8 @@ class Body:
         pose = self.pose()
         frame.transform.translation.x, frame.transform.translation.y = self.at[:2]
         frame.transform.rotation = pose.orientation
-        self._frames.sendTransform(frame)
+        if self.has_tf:
+            self._frames.sendTransform(frame)
         x, y, yaw = self._shown
         moved = math.hypot(self.at[0] - x, self.at[1] - y)
         if moved > AMCL_DISTANCE or abs(math.remainder(self.at[2] - yaw, math.tau)) > AMCL_ANGLE:
@@ -133,7 +136,7 @@ class FakeMoveBase:
         rospy.Subscriber(f"{name}/test", String, self.on_order)
         self.start()
         rospy.Timer(rospy.Duration(STEP), self.step)
-        rospy.Timer(rospy.Duration(STATUS_PERIOD), lambda _: self.show_status())
+        rospy.Timer(rospy.Duration(settings.get("status", STATUS_PERIOD)), lambda _: self.show_status())
 
     def say(self, what: str) -> None:
         os.write(1, f"{self.name} {what}\n".encode())  # in one piece: there are several threads
@@ -283,6 +286,8 @@ class FakeMoveBase:
                 self.body.put((x, y, yaw))
             elif what == "play":
                 self.plays = rest
+            elif what == "tf":
+                self.body.has_tf = rest == ["on"]
             elif what == "travel":
                 self.travel = float(rest[0])
         if what == "restart":

@@ -163,18 +163,45 @@ def test_a_robot_that_was_taken_away_returns_before_its_action(
     ros: Ros, workspace: Path, tmp_path: Path, ends: str
 ) -> None:
     (tmp_path / "own.yaml").write_text("end_settle: 0.2\n")
-    arguments = f"goals:=action ends:={ends} on_uncovered:=warn robots:={tmp_path}/own.yaml"
-    bot1 = {"acts": 8.0}  # bot2 waits at a until bot1 has finished
+    arguments = f"goals:=action ends:={ends} on_uncovered:=warn lost_after:=2000 robots:={tmp_path}/own.yaml"
+    bot1 = {"acts": -1.0}  # bot2 waits at a until a person reports that bot1 has finished
     with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
         wait_for(lambda: "bot2_going_c_to_a2a" in log.read_text(), log, "bot2 has not arrived")
         robots.order("bot2", "put 9.0 9.0 0.0")
         wait_for(lambda: "bot2 is " in log.read_text() and "where the state has it" in log.read_text(), log, "not seen")
         assert robots.heard("bot2") == ["goal a"], "it may stay there while nothing waits for it"
+        wait_for(lambda: robots.actions("bot1") != [], log, "bot1 does not act")
+        robots.publish("pursue/events", "std_msgs/String", "'bot1_inbDONE'")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     well(log.read_text())
     assert robots.heard("bot2") == ["goal a", "goal a", "action bot2_ina"]
     assert robots.actions("bot2") == ["bot2_ina at a"]
     assert "where the state has it: it is sent back" in log.read_text()
+
+
+def test_tf_is_looked_at_however_often_other_messages_come(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+    often = {"status": 0.05}
+    robots, said = played(ros, workspace, tmp_path, "goals:=action ends:=tf", bot1=often, bot2=often)
+    well(said)
+    assert robots.actions("bot1") == ["bot1_inb at b"] and robots.actions("bot2") == ["bot2_ina at a"]
+
+
+def test_a_robot_whose_position_is_not_published_any_more_may_be_elsewhere(
+    ros: Ros, workspace: Path, tmp_path: Path
+) -> None:
+    arguments = "goals:=action ends:=result on_uncovered:=warn lost_after:=2000"
+    bot1 = {"acts": -1.0}  # bot2 waits at a until a person reports that bot1 has finished
+    with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
+        wait_for(lambda: "bot2_going_c_to_a2a" in log.read_text(), log, "bot2 has not arrived")
+        robots.order("bot2", "tf off")
+        robots.order("bot2", "put 9.0 9.0 0.0")
+        wait_for(lambda: "bot2 is not known to be at a: no position" in log.read_text(), log, "it is believed")
+        robots.order("bot2", "tf on")
+        wait_for(lambda: robots.actions("bot1") != [], log, "bot1 does not act")
+        robots.publish("pursue/events", "std_msgs/String", "'bot1_inbDONE'")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    assert robots.actions("bot2") == ["bot2_ina at a"]
 
 
 def test_a_robot_that_looks_the_wrong_way_has_not_arrived(ros: Ros, workspace: Path, tmp_path: Path) -> None:

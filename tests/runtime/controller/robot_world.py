@@ -76,6 +76,11 @@ class World:
         self.robot.on_position(Position(x, y, yaw), self.now)
         self.act()
 
+    def vanish(self) -> None:
+        """Its position is not published any more."""
+        self.robot.on_position(None, self.now)
+        self.act()
+
     def wait(self, seconds: float) -> List[float]:
         """Time passes; it is woken when it asked to be, and in the end. The moments of its words, from now."""
         begin, end = self.now, self.now + seconds

@@ -73,6 +73,20 @@ def test_a_robot_that_was_taken_away_is_reported_and_goes_back_when_an_action_wa
     assert robot.wait(30.0) == [] and robot.robot.is_placed(robot.now) and robot.robot.trouble == ""
 
 
+def test_a_robot_that_still_moves_on_its_way_back_is_not_there(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    for step in range(20):  # as move_base does at the end: the robot turns where it is to stand
+        robot.now += 0.1
+        robot.at(3.1, 4.0, 0.48 - 0.03 * step)
+    assert BACK_AGAIN not in robot.words, "it was there before it was taken away, but it moves"
+    robot.now += 0.1
+    robot.result(SUCCEEDED)
+    robot.wait(0.6)
+    assert robot.words[-1] == BACK_AGAIN
+
+
 def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None:
     robot.at(8.0, 4.0)
     robot.stay(doing="e")
@@ -226,3 +240,24 @@ def test_what_is_done_at_once_waits_for_the_robot_too(robot: World) -> None:
     robot.at(3.0, 4.0)
     robot.wait(1.0)
     assert robot.actions == ["beep", "beep"]
+
+
+@pytest.mark.parametrize("ends", ["result", "tf"])
+def test_where_the_position_is_not_published_any_more_the_arrival_does_not_count(ends: str) -> None:
+    robot = arrived(ends=ends, goals="action")
+    robot.vanish()
+    assert not robot.robot.is_placed(robot.now) and robot.words == []
+    robot.wait(3.0)
+    assert robot.words[:1] == [DISPLACED] and "no position" in robot.texts[0]
+    robot.stay(displaced=True)
+    robot.at(3.0, 4.0)
+    robot.wait(1.0)
+    assert robot.words[-1] == BACK_AGAIN
+
+
+def test_a_position_that_is_missing_for_a_moment_is_not_reported(robot: World) -> None:
+    robot.vanish()
+    robot.wait(1.0)
+    robot.at(3.1, 4.0)
+    robot.wait(30.0)
+    assert robot.words == [] and robot.robot.is_placed(robot.now)
