@@ -23,8 +23,8 @@ class Settings(NamedTuple):
     on_stop: str = "finish"
     retries: int = 2
     retry_delay: float = 1.0
-    end_tolerance: float = 0.3
-    end_yaw_tolerance: float = 0.5
+    end_tolerance: float = 0.4
+    end_yaw_tolerance: float = 0.75
     end_settle: float = 0.5
     still_distance: float = 0.05
     still_angle: float = 0.1

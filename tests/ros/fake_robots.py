@@ -23,7 +23,7 @@ UNIT = 0.2
 SLACK = 100
 """Time units by which the robots may be late in their model: they move in real time, and a machine may stand still."""
 
-TOLERANCE = 0.55
+TOLERANCE = 0.6
 """Metres from a place at which a robot is there: ~end_tolerance, and what it may move before amcl publishes again."""
 
 ACTS = {"bot1": 3.5 * UNIT, "bot2": 6.5 * UNIT}

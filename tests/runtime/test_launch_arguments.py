@@ -124,6 +124,7 @@ def test_what_is_not_given_fits_robots_that_are_real_or_simulated(
     for controller in controllers:
         settings = {name: found.params[f"/{controller}/{name}"] for name in wanted}
         assert (settings, found.params[f"/{controller}/simulated"]) == (wanted, simulated)
+    assert found.params["/observer/lost_after"] == (30 if simulated else 180), "move_base tries for minutes"
     free = scenario == "library"
     assert found.params["/UI/mode"] == ("random" if simulated and free else "still"), "nobody's moves are invented"
     assert found.params["/UI/ends"] is not simulated, "whoever is not simulated is reported by a person"

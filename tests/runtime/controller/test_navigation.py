@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from pursue_runtime.controller.whereabouts import place_of, turned
@@ -17,6 +19,7 @@ from tests.runtime.controller.robot_world import (
     REJECTED,
     SUCCEEDED,
     WAY,
+    B,
     World,
 )
 
@@ -255,12 +258,22 @@ def test_noise_of_the_position_is_no_motion(seen: World) -> None:
     assert seen.wait(1.0)[:1] == [pytest.approx(0.1)]
 
 
-@pytest.mark.parametrize("yaw", [3.12, -3.12, 0.6, -1.0])
+@pytest.mark.parametrize("yaw", [3.12, -3.12, 0.8, -1.0])
 def test_a_robot_that_looks_the_wrong_way_is_not_there(seen: World, yaw: float) -> None:
     seen.at(3.0, 4.0, yaw)
     assert seen.wait(20.0) == []
     seen.at(3.0, 4.0, 0.4)
     assert seen.wait(1.0)[:1] == [0.5]
+
+
+def test_a_robot_has_arrived_though_amcl_has_not_published_its_last_motion() -> None:
+    """What amcl does not publish (0.2 m, 30 degrees) and a local planner's tolerances may add up."""
+    robot = World(ends="pose", goals="action")
+    robot.go()
+    robot.now += 9.0
+    robot.at(B.x - 0.2 - 0.15, B.y, math.radians(30.0) + 0.17)
+    robot.wait(0.5)
+    assert robot.words == [END]
 
 
 def test_a_place_without_orientation_demands_none() -> None:
