@@ -5,18 +5,21 @@ Clocks, bounds and delays are in time units, stamps in seconds of ROS time.
 
 from __future__ import annotations
 
-from typing import Any, Dict, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
+from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
 
 from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
-from pursue_runtime.state import SystemState
-from pursue_runtime.zones import EPSILON, Zone, due, parse_zone
+from pursue_runtime.state import RUNNING, SystemState
+from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 
 Payload = TypeVar("Payload")
 
 
 class StateTable(Generic[Payload]):
-    """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are."""
+    """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are.
+
+    `names`: the automata and variables that entries name; nothing else matters to what is entered.
+    """
 
     def __init__(self, entries: Iterable[Tuple[Mapping[str, object], Payload]]) -> None:
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
@@ -24,6 +27,7 @@ class StateTable(Generic[Payload]):
             names = tuple(sorted(state))
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(str(state[name]) for name in names), []).append(payload)
+        self.names: FrozenSet[str] = frozenset(name for names in self._tables for name in names)
 
     def find(self, state: SystemState) -> List[Payload]:
         """What was entered for this state, in order of entry."""
@@ -70,7 +74,7 @@ class Strategy:
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
             self._table = StateTable(entries)
             # What it reads of a state: automata and variables, and clocks.
-            self.names = {str(name) for state, _ in entries for name in state}
+            self.names = self._table.names
             zones = (zone for _, commands in entries for command in commands for zone in command.when)
             self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
             self._instant = {
@@ -108,6 +112,23 @@ class Strategy:
         if first is not None and now > first[0] + self.lateness(state) + EPSILON:
             return self.next_command(state, now)
         return first
+
+    def sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
+        """True if the event between two states changed nothing that the strategy reads: what was decided stands.
+
+        The strategy names all automata that matter to it; the others may do what they like.
+        """
+        if state.seq != before.seq + 1 or not state.event or state.plan != before.plan or not self.names:
+            return False
+        if (before.status, state.status) != (RUNNING, RUNNING):
+            return False
+        was, now = before.discrete(), state.discrete()
+        if any(was.get(name) != now.get(name) for name in self.names):
+            return False
+        if state.agent not in self.names:
+            return True
+        aged = before.clocks_at(state.stamp)
+        return all(abs(value - aged.get(clock, INFINITY)) < EPSILON for clock, value in state.clocks.items())
 
     def lateness(self, state: SystemState) -> float:
         """Seconds by which a command may be sent after its moment: the reaction that the proof allows for."""

@@ -84,6 +84,11 @@ OPTIMIZE = typer.Option(
     help="time: look for the strategy with the least worst-case time to the goal, for two minutes or as --limit says; "
     "the proven bounds are printed.",
 )
+WHOLE = typer.Option(
+    False,
+    "--whole",
+    help="An experiment: solve the whole game, agents and rules included that cannot matter to the objective.",
+)
 EXPLAIN = typer.Option(
     True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
 )
@@ -136,6 +141,7 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
     "solver": (Optional[Solver], SOLVER),
     "verifytga": (Optional[Path], VERIFYTGA),
     "optimize": (Optional[Optimize], OPTIMIZE),
+    "whole": (bool, WHOLE),
     "limit": (float, LIMIT),
     "memory": (Optional[int], MEMORY),
 }
@@ -144,7 +150,7 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
 REQUEST: Any = None
 """Marks the parameter `request` of a command, for which `with_request` declares the options."""
 
-MISSION = tuple(name for name in _REQUEST if name != "engine")
+MISSION = tuple(name for name in _REQUEST if name not in ("engine", "whole"))
 """The options of the commands that generate what robots run."""
 
 
@@ -189,7 +195,7 @@ def _request(values: Dict[str, Any]) -> SolveRequest:
     texts = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
     memory = texts.pop("memory", None)
     limits = Limits(texts.pop("limit", 0.0), careful_memory() if memory is None else memory)
-    how = {name: texts.pop(name) for name in ("engine", "solver", "verifytga", "optimize") if name in texts}
+    how = {name: texts.pop(name) for name in ("engine", "solver", "verifytga", "optimize", "whole") if name in texts}
     if "slack" in texts:
         texts["slack"] = tuple(texts["slack"])
     return SolveRequest(**texts, options=SolveOptions(limits=limits, **how))

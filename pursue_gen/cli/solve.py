@@ -17,7 +17,7 @@ from pursue_gen.files import shell_quoted
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
-OPTIONS = ("ends", "reaction", "slack", "engine", "limit", "memory", "solver", "verifytga", "optimize")
+OPTIONS = ("ends", "reaction", "slack", "engine", "limit", "memory", "solver", "verifytga", "optimize", "whole")
 
 
 @guarded

@@ -15,7 +15,17 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
-from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.game import (
+    Game,
+    JointMove,
+    State,
+    changes_nothing,
+    compile_game,
+    initial_state,
+    is_bad,
+    is_goal,
+    joint_moves,
+)
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.names import is_going
@@ -174,7 +184,7 @@ class _CounterPlayer:
 
     def _next(self, here: Position) -> Optional[Choice]:
         """What happens next; None: time just passes, for ever or until something is overdue."""
-        moves = list(joint_moves(self._game, here.state))
+        moves = [move for move in joint_moves(self._game, here.state) if not changes_nothing(move, here.state)]
         mine = [move for move in moves if move.controllable]
         theirs = [
             (move, window(self._game, here, move))
@@ -275,6 +285,7 @@ class _CounterPlayer:
             if constant(bound) == here.clocks[i - 1] + room
         )
         moves = (move for move in joint_moves(self._game, here.state) if not move.controllable)
+        moves = (move for move in moves if not changes_nothing(move, here.state))
         able = {move.owner for move in moves if window(self._game, here, move).holds(room)}
         if self._horizon is None and able & set(at_bound):
             return ()

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Callable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
+from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
 from pursue_gen.tga import names
@@ -92,7 +93,7 @@ class Controller:
 
     def __init__(self, game: Game, strategies: Sequence[Strategy]) -> None:
         self._game = game
-        self._books: List[Dict[DiscreteState, Block]] = [{b.state: b for b in s.blocks} for s in strategies]
+        self._books = [Blocks(strategy) for strategy in strategies]
         self._planner, self._at_risk = _planner(game)
         self._been: Set[State] = set()
 
@@ -102,9 +103,9 @@ class Controller:
         windows = [(move, window(self._game, here, move)) for move in moves]
         state = _named(self._game, here.state)
         for book in self._books:
-            block = book.get(state)
-            if block is not None and self._knows(block, here):
-                return self._advised(block, here, windows)
+            found = book.find(state)
+            if found is not None and self._knows(found[1], here):
+                return self._advised(found[1], here, windows)
         return self._planned(here, windows)
 
     def _knows(self, block: Block, here: Position) -> bool:
@@ -113,10 +114,11 @@ class Controller:
 
     def _advised(self, block: Block, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
         choices: List[Choice] = []
+        named = {name for name, _ in block.state.locations}
         for command in block.commands:
             keys = tuple(_key(move.automaton, move.edge) for move in command.moves)
             for move, open_ in windows:
-                if self._keys(move) != keys:
+                if self._keys(move, named) != keys:
                     continue
                 for span in map(self._span(here), command.zones):
                     delay = None if span is None else _both(span, open_).earliest()
@@ -140,9 +142,11 @@ class Controller:
                     return move, delay
         return None
 
-    def _keys(self, move: JointMove) -> Tuple[_Key, ...]:
+    def _keys(self, move: JointMove, named: AbstractSet[str]) -> Tuple[_Key, ...]:
+        """What the named automata do in the move."""
         game = self._game
-        return tuple(_key(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges)
+        parts = ((game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges)
+        return tuple(_key(name, edge) for name, edge in parts if name in named)
 
     def _span(self, here: Position) -> Callable[[Zone], Optional[Window]]:
         """When a zone holds, seen from here; None: time does not get there."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import AbstractSet, List, Mapping, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
 from pursue_gen.play.state import GRAIN, PlayState, Setup
 from pursue_gen.synthesis.game import JointMove, State, joint_moves
+from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.network import Edge
 
@@ -40,18 +41,17 @@ class Advisor:
 
     def __init__(self, setup: Setup, strategy: Strategy) -> None:
         self._setup, self.size = setup, len(strategy.blocks)
-        self._book: Dict[DiscreteState, Tuple[int, Block]] = {
-            block.state: (number, block) for number, block in enumerate(strategy.blocks, start=1)
-        }
+        self._blocks = Blocks(strategy)
 
     def decision(self, play: PlayState) -> Optional[Decision]:
         """What the strategy decides first after the last move; None: it waits for what others do."""
-        found = self._book.get(self._named(play.entry.state))
+        found = self._blocks.find(self._named(play.entry.state))
         if found is None:
             return None
         game, entry = self._setup.game, play.entry
         clocks = dict(zip(game.clocks, entry.clocks))
-        moves = {self._keys(move): move for move in joint_moves(game, entry.state) if move.controllable}
+        named = {name for name, _ in found[1].state.locations}
+        moves = {self._keys(move, named): move for move in joint_moves(game, entry.state) if move.controllable}
         best: Optional[Tuple[Fraction, JointMove]] = None
         for command in found[1].commands:
             move = moves.get(_keys_of(command))
@@ -67,7 +67,7 @@ class Advisor:
 
     def holding(self, play: PlayState) -> Optional[Holding]:
         """What the strategy says now; None: it has no block for this state."""
-        found = self._book.get(self._named(play.entry.state))
+        found = self._blocks.find(self._named(play.entry.state))
         if found is None:
             return None
         number, block = found
@@ -88,12 +88,12 @@ class Advisor:
             tuple(zip(game.variables, state.values)),
         )
 
-    def _keys(self, move: JointMove) -> Tuple[Tuple[str, ...], ...]:
+    def _keys(self, move: JointMove, named: AbstractSet[str]) -> Tuple[Tuple[str, ...], ...]:
+        """What the named automata do in the move; the first one makes it."""
         game = self._setup.game
-        first, *others = (
-            _key(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges
-        )
-        return (first, *sorted(others))
+        parts = ((game.automata[game.edges[k].automaton].name, game.origins[k]) for k in move.edges)
+        keys = [_key(name, edge) for name, edge in parts if name in named]
+        return (*keys[:1], *sorted(keys[1:]))
 
 
 def _keys_of(command: Command) -> Tuple[Tuple[str, ...], ...]:

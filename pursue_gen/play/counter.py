@@ -35,7 +35,7 @@ from pursue_gen.play.state import (
     taken,
 )
 from pursue_gen.play.world import Offer
-from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
+from pursue_gen.synthesis.game import JointMove, changes_nothing, is_bad, is_goal
 from pursue_gen.synthesis.limits import Limits, Listener
 
 _LONG = 1e6
@@ -204,7 +204,8 @@ class CounterPlay:
         return taken(self.setup, play, move, play.now + delay, by)
 
     def _theirs(self, play: PlayState) -> List[Tuple[JointMove, Window]]:
-        return list(open_moves(self.setup, play, False))
+        moves = open_moves(self.setup, play, False)
+        return [pair for pair in moves if not changes_nothing(pair[0], play.position.state)]
 
     def _preferred(self, driven: _Pairs) -> Iterator[Answer]:
         """Robots end as late as they may, others as soon as they can."""

@@ -14,6 +14,7 @@ from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
+from pursue_gen.proof.left_out import named_part, why_it_matters
 from pursue_gen.proof.moves import Arena
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth, Found, Searches
@@ -71,15 +72,20 @@ def verify(
     A strategy that loses is never ok. A strategy that compares clock differences may in rare cases be refused
     though it wins, because extrapolation is not exact there. Whoever waits in a reach game may rely on
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
-    Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on time or memory.
-    `progress` is called a few times a second; `arenas` as for `ClosedLoop`.
+    A strategy that names a part of the network is checked for that part, once nothing else can matter there
+    (`left_out`). Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on
+    time or memory. `progress` is called a few times a second; `arenas` as for `ClosedLoop`.
     """
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
-    loop = ClosedLoop(network, objective, strategy, reaction, ranks, arenas=arenas)
+    part = named_part(network, strategy)
+    matters = why_it_matters(network, objective, part)
+    if matters:
+        return Report(False, f"left out: the strategy does not speak of what matters: {matters}", (), frozenset(), 0)
+    loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
     searches = searches_of(loop)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):

@@ -16,6 +16,7 @@ from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
@@ -59,13 +60,14 @@ def strategy_margin(
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
     depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found.
     """
-    left, arenas = states, Arena.kept(network)
+    part = named_part(network, strategy)
+    left, arenas = states, Arena.kept(part)
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left
         if left <= 0:
             return None
-        report = verify(network, objective, strategy, delay, limit=left, prompt=True, limits=limits, arenas=arenas)
+        report = verify(part, objective, strategy, delay, limit=left, prompt=True, limits=limits, arenas=arenas)
         left -= report.states
         return None if report.reason.startswith("limit") else report.ok
 

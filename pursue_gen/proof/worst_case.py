@@ -12,6 +12,7 @@ from typing import Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
@@ -86,7 +87,7 @@ def worst_case(
     """
     if objective.kind is Kind.SAFETY:
         return None
-    game = with_deadline(with_counter(network), objective, LONGEST)
+    game = with_deadline(with_counter(named_part(network, strategy)), objective, LONGEST)
     loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
     count = loop.arena.clock[counting_clock(game) or ""]
     try:

@@ -9,7 +9,7 @@ from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import with_missing
-from pursue_gen.replay.moves import Move, Moves, after, place_of
+from pursue_gen.replay.moves import Move, Moves, after, changed, place_of
 from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
@@ -21,11 +21,12 @@ from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemSt
 @dataclass(frozen=True)
 class ReplayedStep:
     """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
-    recorded)."""
+    recorded). `since`: the last state before it in which something happened that the plan in force sees."""
 
     before: SystemState
     state: SystemState
     move: Move
+    since: SystemState
     word: Optional[RecordedWord] = None
 
     @property
@@ -66,8 +67,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     checker = _Checker(record, game, moves, tolerance)
     checker.run()
     steps = checker.steps
-    said = match_words(record, [(step.before, step.state) for step in steps])
-    steps = [ReplayedStep(step.before, step.state, step.move, said.of(step.state.seq)) for step in steps]
+    said = match_words(record, [(step.since, step.before, step.state) for step in steps])
+    steps = [replace(step, word=said.of(step.state.seq)) for step in steps]
     text = "recorded {:.2f} s after it began: its first message is missing"
     findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
     text = "not recorded: the words that were recorded lead to it"
@@ -105,6 +106,7 @@ class _Checker:
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
         self._zeros: Dict[str, float] = {}
+        self._since: Optional[SystemState] = None
 
     def run(self) -> None:
         """The states one by one."""
@@ -155,10 +157,11 @@ class _Checker:
 
     def _resume(self, state: SystemState) -> None:
         """Clocks are believed as they are here."""
+        self._since = state
         self._zeros = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
 
     def _started(self, state: SystemState) -> None:
-        self._zeros = dict.fromkeys(self.moves.network.clocks, state.stamp)
+        self._zeros, self._since = dict.fromkeys(self.moves.network.clocks, state.stamp), state
         self._clocks(state)
 
     def _again(self, before: SystemState, state: SystemState) -> None:
@@ -181,8 +184,11 @@ class _Checker:
         if state.stamp < before.stamp - EXACT:
             self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
         move = self._move(before, state)
+        since, self._since = self._since, state
         if move is not None:
-            self.steps.append(ReplayedStep(before, state, move))
+            since = before if since is None else since
+            self.steps.append(ReplayedStep(before, state, move, since))
+            self._since = state if self._is_seen(before, state, move) else since
             self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))
         elif self._turned(before, state):
             self.turns.append((before, state, "", False))
@@ -202,6 +208,14 @@ class _Checker:
         place, clocks = place_of(before), self._clocks_at(state)
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == place_of(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
+
+    def _is_seen(self, before: SystemState, state: SystemState, move: Move) -> bool:
+        """True where the move changes something of which the plan in force speaks."""
+        if (before.status, before.plan) != (RUNNING, state.plan) or state.status != RUNNING:
+            return True
+        orders = self.orders.get(state.plan)
+        named = None if orders is None else orders.cover.names
+        return any(not named or name in named for name in changed(move, place_of(before)))
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
         """True where robots whose way was blocked turn round with a new plan, as the only change."""
@@ -333,7 +347,8 @@ class _Checker:
         return [Finding(FAULT, "command", step.state.seq, text + self._is_reliable())]
 
     def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
-        """True where the strategy has this command at the moment, or had it not longer ago than the reaction."""
+        """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since
+        something happened that it sees."""
         before, state = step.before, step.state
         zones = [
             zone
@@ -341,7 +356,7 @@ class _Checker:
             if (command.agent, command.event) == (step.move[0][0], state.event)
             for zone in command.zones
         ]
-        back = min(orders.reaction + self._tolerance, (state.stamp - before.stamp) / state.unit)
+        back = min(orders.reaction + self._tolerance, (state.stamp - step.since.stamp) / state.unit)
         return in_time(zones, _aged(before, state), back, self._tolerance)
 
     def _is_reliable(self) -> str:

@@ -163,3 +163,12 @@ def after(move: Move, place: DiscreteState) -> Tuple[DiscreteState, Tuple[str, .
         values.update(edge.assign)
         resets.update(dict.fromkeys(edge.resets))
     return DiscreteState(locations, values), tuple(resets)
+
+
+def changed(move: Move, place: DiscreteState) -> Tuple[str, ...]:
+    """The automata whose location, variables or clocks the move changes."""
+    return tuple(
+        name
+        for name, edge in move
+        if edge.source != edge.target or edge.resets or any(place.values[v] != value for v, value in edge.assign)
+    )

@@ -32,6 +32,11 @@ class PlanTable(Generic[Payload]):
     def __init__(self) -> None:
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
 
+    @property
+    def names(self) -> FrozenSet[str]:
+        """The automata and variables that entries name."""
+        return frozenset(name for names in self._tables for name in names)
+
     def add(self, state: Mapping[str, object], payload: Payload) -> None:
         """Adds an entry."""
         names = tuple(sorted(state))

@@ -46,8 +46,9 @@ class WordMatches:
         return self.words.get(seq)
 
 
-def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState]]) -> WordMatches:
-    """A command is for the number of the state before it; of several reports the one nearest to the state counts."""
+def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState, SystemState]]) -> WordMatches:
+    """A command is for the number of the state before it (the second of a step), or of one before that back to the
+    first, if the plan has seen nothing new since; of several reports the one nearest to the state counts."""
     received: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
         received.setdefault((word.event, word.seq), []).append((word.at, place))
@@ -55,8 +56,9 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, System
         words.sort()
     used: Set[int] = set()
     found: Dict[int, RecordedWord] = {}
-    for before, state in steps:
-        for words in (received.get((state.event, before.seq), []), received.get((state.event, None), [])):
+    for since, before, state in steps:
+        numbers = (*range(before.seq, since.seq - 1, -1), None)
+        for words in (received.get((state.event, number), []) for number in numbers):
             near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
             mine = [place for _, place in near if record.words[place].agent in ("", state.agent) and place not in used]
             if mine:

@@ -20,6 +20,7 @@ def section(strategy: StrategyData) -> Section:
     parts = [
         f"<p>The strategy knows {states:,} situations and gives {commands:,} commands in them. Open a situation to see "
         "what is commanded, under which clocks, what is waited for, and where each of these leads.</p>",
+        *_left_out(strategy),
         "<noscript><p>The search and the tree need JavaScript, which is switched off in this browser.</p></noscript>",
         '<div id="strategy-live" hidden>',
         _form(strategy),
@@ -34,6 +35,11 @@ def section(strategy: StrategyData) -> Section:
     ]
     body = "\n".join(parts)
     return Section("strategy", "The strategy", body, asset("strategy.css"), asset("strategy.js"))
+
+
+def _left_out(strategy: StrategyData) -> List[str]:
+    names = ", ".join(safe(name) for name in strategy.left_out)
+    return [f"<p>It does not speak of what cannot matter, whatever that does: {names}.</p>"] if names else []
 
 
 def graph(strategy: StrategyData) -> Optional[Graph]:

@@ -49,7 +49,8 @@ class Situation:
 class StrategyData:
     """All situations, the initial one first; zones as (words, exact text).
 
-    `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`.
+    `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`. `left_out`: the
+    automata that the strategy does not speak of, as they cannot matter.
     """
 
     automata: Tuple[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]], ...]
@@ -57,6 +58,7 @@ class StrategyData:
     controllers: Mapping[str, Tuple[str, ...]]
     zones: Tuple[Tuple[str, str], ...]
     situations: Tuple[Situation, ...]
+    left_out: Tuple[str, ...] = ()
 
 
 def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
@@ -73,8 +75,9 @@ def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> Strat
         for a in builder.game.automata
     )
     situations = builder.situations()
-    variables = tuple(state.name for state in scenario.states)
-    return StrategyData(automata, variables, owners, tuple(builder.zones), situations)
+    shown = (state.name for state in scenario.states if names.state_value(state.name) in builder.game.variables)
+    left_out = tuple(a.name for a in won.network.automata if a.name not in {a.name for a in builder.game.automata})
+    return StrategyData(automata, tuple(shown), owners, tuple(builder.zones), situations, left_out)
 
 
 def as_json(data: StrategyData) -> Dict[str, Any]:
@@ -105,7 +108,7 @@ class _Builder:
     """Numbers situations and zones in the order in which they are met."""
 
     def __init__(self, scenario: Scenario, won: Solution) -> None:
-        self.game: Game = compile_game(won.network, won.objective, won.reaction)
+        self.game: Game = compile_game(won.part, won.objective, won.reaction)
         self.words: Words = words_of(scenario, won.network)
         self.zones: List[Tuple[str, str]] = []
         self._zone_numbers: Dict[Zone, int] = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.words import event_word
@@ -51,6 +51,11 @@ class Commands:
             names = tuple(sorted(state))
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(state[name] for name in names), []).append(held)
+
+    @property
+    def names(self) -> FrozenSet[str]:
+        """The automata and variables that entries name."""
+        return frozenset(name for names in self._tables for name in names)
 
     def find(self, state: Mapping[str, str], agent: str, event: str) -> List[ZonedCommand]:
         """The commands by which the agent does the event in this state."""

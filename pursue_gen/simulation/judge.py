@@ -121,7 +121,22 @@ class Judge:
         target = move.moves[0].edge.target
         self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
-        self._entered = self._decided_since = now
+        if self._is_seen(before, state, move):
+            self._entered = self._decided_since = now
+
+    def _is_seen(self, before: SystemState, state: SystemState, move: JointMove) -> bool:
+        """True if the step changes something of which the plan in force speaks: else what was commanded still is."""
+        plan = self._plans.get(state.plan)
+        if plan is None or (before.status, state.status, before.plan) != ("running", "running", state.plan):
+            return True
+        changed = {
+            part.automaton
+            for part in move.moves
+            if part.edge.source != part.edge.target
+            or part.edge.resets
+            or any(before.values.get(name) != value for name, value in part.edge.assign)
+        }
+        return not plan.names or not changed.isdisjoint(plan.names)
 
     def _off_model(self, move: JointMove, clocks: Mapping[str, float], what: str) -> None:
         guard = move.moves[0].edge.guard.clocks

@@ -18,7 +18,7 @@ from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.proof.worst_case import LONGEST, counting_clock, with_counter, with_deadline
 from pursue_gen.proof.zones import with_neighbours
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tga.network import Kind
+from pursue_gen.tga.network import Kind, Network
 from pursue_gen.zones.dbm import INF, Dbm, constant, raw
 
 STATES = 2_000
@@ -46,15 +46,17 @@ class Remaining:
         self._met = 0  # symbolic states that were looked at
         if won.objective.kind is Kind.SAFETY:
             return
-        game = with_deadline(with_counter(won.network), won.objective, LONGEST)
-        self._added = len(game.clocks) - len(won.network.clocks)
+        part = won.part
+        game = with_deadline(with_counter(part), won.objective, LONGEST)
+        self._added = len(game.clocks) - len(part.clocks)
+        self._project = _Projection(won.network, part)
         instant = won.reaction / 4 or Fraction(1, 50)
         try:
             self._loop = ClosedLoop(game, won.objective, won.strategy, won.reaction, None, instant)
         except PursueError:
             return
         self._count = self._loop.arena.clock[counting_clock(game) or ""]
-        if self.at(self._loop.arena.initial, (0.0,) * (self._loop.arena.dim - self._added)) is None:
+        if self.at(*self._project.start) is None:
             self._loop = None
         self.ease = min(1.0, CHEAP / max(1, self._met))
 
@@ -67,7 +69,7 @@ class Remaining:
         """The longest that a mission takes with the workspace's controllers, in time units."""
         if self._loop is None:
             return None
-        bound = self.at(self._loop.arena.initial, (0.0,) * (self._loop.arena.dim - self._added))
+        bound = self.at(*self._project.start)
         return None if bound == FOREVER else bound
 
     def after(self, move: JointMove, point: Tuple[float, ...], delay: float) -> Optional[float]:
@@ -82,6 +84,7 @@ class Remaining:
         loop = self._loop
         if loop is None:
             return None
+        state, point = self._project.of(state, point)
         ticks = tuple(int(value * loop.arena.scale) for value in (*point, *(0.0,) * self._added))
         if (state, ticks) not in self._known:
             if len(self._known) >= KNOWN:
@@ -122,6 +125,26 @@ class Remaining:
                 known[:] = [other for other in known if not after.includes(other)] + [after]
                 pending.append((target, after))
         return latest / loop.arena.scale
+
+
+class _Projection:
+    """From the states and points of a network to those of the part that a strategy speaks of."""
+
+    def __init__(self, network: Network, part: Network) -> None:
+        automata, variables = ({a.name for a in part.automata}, {name for name, _ in part.variables})
+        self._automata = [k for k, a in enumerate(network.automata) if a.name in automata]
+        self._variables = [k for k, (name, _) in enumerate(network.variables) if name in variables]
+        self._clocks = [0, *(k for k, clock in enumerate(network.clocks, start=1) if clock in part.clocks)]
+        locations = tuple(automaton.initial for automaton in network.automata)
+        self.start: Tuple[State, Tuple[float, ...]] = (
+            (locations, tuple(value for _, value in network.variables)), (0.0,) * (len(network.clocks) + 1)
+        )
+
+    def of(self, state: State, point: Tuple[float, ...]) -> Tuple[State, Tuple[float, ...]]:
+        """The state and the point (0 first, then the clocks) as the part has them."""
+        locations, values = state
+        some = tuple(locations[k] for k in self._automata), tuple(values[k] for k in self._variables)
+        return some, tuple(point[k] for k in self._clocks)
 
 
 def _point(ticks: Tuple[int, ...]) -> Dbm:

@@ -73,7 +73,7 @@ def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) ->
         reports=tuple(data["UI/ui.yaml"]["reports"]),
         request=data.get("observer/game.yaml"),
         reaction=float(won.reaction),
-        arena=Arena(won.network, 1),
+        arena=Arena(won.network, 1, idle_moves=True),
         commands=commands_of(won.strategy),
     )
 

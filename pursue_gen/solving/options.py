@@ -15,7 +15,8 @@ class SolveOptions:
 
     `limits` hold for solving and proving together; `progress` is called a few times a second. `engine`: "native",
     "python", or None for the native one where it was built. `optimize`: "time" for the strategy with the least
-    worst-case time to the goal, None for the first one found. `solver`: None for the built-in solver, "verifytga" for
+    worst-case time to the goal, None for the first one found. `whole`: what cannot matter is not left out of the game
+    (an experiment: it takes longer, and finds the same). `solver`: None for the built-in solver, "verifytga" for
     UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
     """
 
@@ -23,6 +24,7 @@ class SolveOptions:
     engine: Optional[str] = None
     progress: Optional[Listener] = None
     optimize: Optional[str] = None
+    whole: bool = False
     solver: Optional[str] = None
     verifytga: Optional[Path] = None
 

@@ -8,6 +8,7 @@ from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.checker import LIMIT, pruned, pruned_ranks, verify
+from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
@@ -49,7 +50,7 @@ def prove(
     if not simpler or report.states > _LITTLE:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
-    fewer = simplified(network, kept, reaction, left)
+    fewer = simplified(named_part(network, kept), kept, reaction, left)
     try:
         again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
     except PursueError as problem:

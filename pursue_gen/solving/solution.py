@@ -9,6 +9,7 @@ from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.least_time import SECONDS, Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -41,6 +42,11 @@ class Solution:
     rules: Rules = DEFAULT_RULES
     warnings: Tuple[Diagnostic, ...] = ()
 
+    @property
+    def part(self) -> Network:
+        """The part of the network that the strategy speaks of: what is not in it cannot matter."""
+        return named_part(self.network, self.strategy)
+
 
 def solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
     """Solves the game and proves the strategy with the independent checker, both together within the limits.
@@ -51,7 +57,8 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     """
     start = time.monotonic()
     game = played(network, rules)
-    verdict = solve(game, objective, rules.reaction, options.engine, options.limits, options.progress)
+    how = options.engine, options.limits, options.progress
+    verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     left = options.since(start)
@@ -71,7 +78,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     start, limits = time.monotonic(), options.limits
     won = solution(network, objective, rules, options)
     known = guaranteed(won, LIMIT, limits.since(start))
-    found, faster = fastest(won.network, objective, rules.reaction, known.worst, options.since(start))
+    found, faster = fastest(won.part, objective, rules.reaction, known.worst, options.since(start))
     if faster is None:
         return replace(won, guarantee=found)
     delay = rules.reaction * faster.fine
@@ -83,7 +90,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
         if problem.exit_status != 5:
             raise
         return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
-    counted = with_counter(won.network)
+    counted = _with_clocks_of(with_counter(won.part), won.network)
     fast = replace(won, network=counted, strategy=unscaled(strategy, counted, faster.fine))
     took = guaranteed(fast, LIMIT, left)
     if took.worst is None or took.most is None or found.most is None:
@@ -95,7 +102,14 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
 def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:
     """The worst-case time of a reach game's strategy, where at most so many symbolic states of the checker tell it."""
     worst = worst_case(won.network, won.objective, won.strategy, won.reaction, states, limits)
-    return bounds(won.network, won.objective, won.reaction, worst)
+    return bounds(won.part, won.objective, won.reaction, worst)
+
+
+def _with_clocks_of(counted: Network, network: Network) -> Network:
+    """The network with the clock that was added to a part of it."""
+    added = tuple(clock for clock in counted.clocks if clock not in network.clocks)
+    start = tuple(c for c in counted.start if c.left in added)
+    return replace(network, clocks=(*network.clocks, *added), start=(*network.start, *start)) if added else network
 
 
 def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, as_json, counted
 from pursue_gen.proof.checker import LIMIT
@@ -60,7 +60,7 @@ def verdict_json(
             engine=stats.engine, states=stats.discrete_states, zones=stats.zones, seconds=round(stats.seconds, 6)
         )
     if won:
-        result.update(blocks=len(won.strategy.blocks), commands=_commands(won))
+        result.update(blocks=len(won.strategy.blocks), commands=_commands(won), left_out=_left_out(won))
     if won and margin:
         playable = margin.wins > 0 and not decides_ends(won.strategy)
         result.update(margin=margin_json(margin), playable=playable)
@@ -70,6 +70,12 @@ def verdict_json(
         result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]
     return result
+
+
+def _left_out(won: Solution) -> List[str]:
+    """The automata of which the strategy does not speak: they cannot matter."""
+    named = {automaton.name for automaton in won.part.automata}
+    return [automaton.name for automaton in won.network.automata if automaton.name not in named]
 
 
 def _commands(won: Solution) -> int:

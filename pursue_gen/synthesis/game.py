@@ -351,6 +351,15 @@ def joint_moves(game: Game, state: State) -> Iterator[JointMove]:
                     yield _joint_move(game, state, number, (k, *receivers))
 
 
+def changes_nothing(move: JointMove, state: State) -> bool:
+    """True for a move of the environment from the state that leads to it again, with all clocks as they were.
+
+    It is no move to solver and checker: whoever makes it, and however often, nothing has happened. So it makes no
+    command stale, and is no way out at the bound of an invariant.
+    """
+    return not move.controllable and not move.resets and move.target == state
+
+
 def _receivers(game: Game, state: State, here: Sequence[Leaving], sender: GameEdge) -> List[List[int]]:
     if sender.channel == NO_CHANNEL:
         return []

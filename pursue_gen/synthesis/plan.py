@@ -7,7 +7,8 @@ What stands before the strategy (escape codes, progress, the verdict) is skipped
     When you are in (1<Cpolice), take transition police.a->police.b { Cpolice > 1, police_a2b!, Cpolice := 0 }
 
 with the other automata that take part in a transition on the lines after it. A location to which the network gives no
-name is printed by its id with an underscore before it.
+name is printed by its id with an underscore before it. A plan of ours names what it does not speak of above its title
+(`plan_parts`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import re
 from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.synthesis.plan_parts import left_out_lines, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
     assign_meaning,
@@ -235,7 +237,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
-    reader = _Reader(_Names(network), file)
+    reader = _Reader(_Names(spoken_of(text[: header.start()], network, file)), file)
     first = text.count("\n", 0, header.end()) + 1
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
@@ -364,7 +366,8 @@ def write_plan(strategy: Strategy, network: Network, objective: Objective) -> st
         automaton.name: {location.name: _printed(location.name, location.named) for location in automaton.locations}
         for automaton in network.automata
     }
-    lines = ["Verifying property 1 at line 1", f" -- Property is {'NOT ' if strategy.counter else ''}satisfied.", ""]
+    lines = ["Verifying property 1 at line 1", f" -- Property is {'NOT ' if strategy.counter else ''}satisfied."]
+    lines += [*left_out_lines(strategy, network), ""]
     lines += [_title(strategy, objective), ""]
     for block in strategy.blocks:
         if not block.wait and not block.commands:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
@@ -70,8 +71,11 @@ def solve(
     engine: Optional[str] = None,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
+    whole: bool = False,
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
+
+    What cannot matter is left out of the game first, and not named in the strategy (`cone`), unless `whole` is set.
 
     `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
     a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
@@ -80,6 +84,9 @@ def solve(
     """
     chosen = choose(engine)
     game = compile_game(network, objective, reaction)
+    part = network if whole else cone_of_influence(network, objective)
+    if part is not network:
+        game = compile_game(part, objective, reaction)
     if not chosen.holds(game):
         if engine is not None:
             hint = "leave the choice to pursue-gen, or use --engine python"

@@ -36,6 +36,7 @@ class CommandScheduler:
         self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
         self._name = name
         self._agents = strategy.agents
+        self._since: Optional[SystemState] = None  # the state in which is decided what stands in the present one
         self._own = strategy
         self._plans = Plans(strategy)
         self._newest = 0
@@ -51,6 +52,7 @@ class CommandScheduler:
         self._plans.add(plan, strategy)
         self._newest = max(plan, self._newest)
         if self.state is not None and self.state.plan == plan and self.planned is None:
+            self._since = self.state
             self._plan(self.state, now)
         return self._receipt(plan)
 
@@ -75,13 +77,17 @@ class CommandScheduler:
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
             return []  # the answer to a ping, or a heartbeat
         self.is_new = True
-        self.planned, self._patience, self._unanswered = None, None, 0
+        stands = before is not None and self._since is not None and self._sees_nothing_new(before, state)
+        if not stands:
+            self._since = state
+            self.planned, self._patience, self._unanswered = None, None, 0
         self.joined = self._joined(before, state) if state.status in (*LIVE, WON) else []
         if state.status == WON:  # what won it, if that is done at once
             return [order for order in self._begun(before, state) if order.origin == order.target]
         if state.status not in LIVE:
             return []
-        self._plan(state, now)
+        if not stands:
+            self._plan(state, now)
         orders = self._begun(before, state)
         self.counts["taken"] += len(orders)
         return orders
@@ -91,17 +97,17 @@ class CommandScheduler:
 
         One that begins an action is not published unless `is_placed` is true of its agent.
         """
-        state = self.state
-        if state is None or state.status != RUNNING:
+        state, since = self.state, self._since
+        if state is None or since is None or state.status != RUNNING:
             return None
         self._patience = None
         strategy = self._plans.strategy_for(state)
         if strategy is None:
             return None
         if self.planned is None:  # the last word was not answered
-            self.planned = strategy.decided(state, now)
+            self.planned = strategy.decided(since, now)
         elif now > self.planned[0] + strategy.lateness(state) + EPSILON:
-            self.planned = strategy.decided(state, now)
+            self.planned = strategy.decided(since, now)
             self.counts["too_late"] += self.planned is None or self.planned[0] > now
         if self.planned is None or now < self.planned[0]:
             return None
@@ -119,6 +125,10 @@ class CommandScheduler:
         """Find the next command: none while the mission holds, or before the plan in force has arrived."""
         strategy = self._plans.strategy_for(state) if state.status == RUNNING else None
         self.planned = strategy.decided(state, now) if strategy else None
+
+    def _sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
+        strategy = self._plans.strategy_for(state)
+        return strategy is not None and strategy.sees_nothing_new(before, state)
 
     def _begun(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
         """Return what our agents have begun since the state before, even if states in between were missed."""

@@ -67,6 +67,7 @@ class Mission:
     ) -> None:
         self.model, self.name = model, name
         self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
+        self._since = 0  # nothing has happened after this state that the plan in force sees
         self.counts = dict.fromkeys(COUNTED, 0)
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
@@ -151,7 +152,7 @@ class Mission:
             return self._on_plan_receipt(word.agent, word.seq, now)
         elif word.seq is not None and self.status == HOLDING:
             self._reject("held", f"{text} while the mission holds", level="info")
-        elif word.seq is not None and word.seq != self.seq:
+        elif word.seq is not None and not self._is_current(word.seq):
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         else:
             moves = self._moves_of(word, now)
@@ -222,7 +223,7 @@ class Mission:
         """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
         state = adoptable(found, self.model, self._unit, self.plan)
         self._automata.adopt(state)
-        self.seq, self.status, self.reason = state.seq, state.status, state.reason
+        self.seq, self.status, self.reason, self._since = state.seq, state.status, state.reason, state.seq
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
         self._early, self._warned = {}, False
@@ -244,7 +245,7 @@ class Mission:
             self._log("warn", f"{START} while the mission is {self.status}: ignored")
             return []
         self._automata.start(now)
-        self.status, self.seq = RUNNING, 1
+        self.status, self.seq, self._since = RUNNING, 1, 1
         moves = self._evaluate(now)
         return [self.state(now), *self._take(moves, now)]
 
@@ -291,9 +292,13 @@ class Mission:
         """Return the moves of an early command that is due now; one that another event has overtaken is dropped."""
         for word in [word for word, moment in self._early.items() if now >= moment - EPSILON * self._unit]:
             del self._early[word]
-            if word.seq == self.seq and self.status == RUNNING:
+            if word.seq is not None and self._is_current(word.seq) and self.status == RUNNING:
                 return self.model.joint_move(position, word.event, word.agent)
         return None
+
+    def _is_current(self, seq: int) -> bool:
+        """Return True for the number of the state, or of an earlier one after which the plan has seen nothing new."""
+        return self._since <= seq <= self.seq
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
@@ -308,6 +313,7 @@ class Mission:
         """Apply the moves, and then internal edges of objectives that are enabled."""
         states: List[SystemState] = []
         while moves:
+            is_seen = any(map(self._is_named, self._automata.changed(moves)))
             self._automata.take(moves, now)
             self.robots.on_moves(moves)
             for name, _ in moves:
@@ -316,6 +322,7 @@ class Mission:
                 self.ways.turns.pop(name, None)
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
+            self._since = self.seq if is_seen else self._since
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
@@ -351,6 +358,7 @@ class Mission:
 
     def _new_state(self, now: float) -> List[SystemState]:
         self.seq, self._shown = self.seq + 1, self.robots.revision()
+        self._since = self.seq
         self._event, self._agent, self._commanded = "", "", False
         return [self.state(now)]
 
@@ -359,7 +367,8 @@ class Mission:
 
         `patience`: the time units for which clocks may be outside what the plan covers.
         """
-        trouble = self._planning.unexcused(self.lost)
+        relied_on = {name: why for name, why in self.lost.items() if self._is_named(name)}
+        trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
         waits = self.robots.reasons()
@@ -388,6 +397,11 @@ class Mission:
         if reason != self.reason:
             self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
         self.status, self.reason = HOLDING if reasons else RUNNING, reason
+
+    def _is_named(self, name: str) -> bool:
+        """Return True unless the plan in force speaks of others only: this automaton cannot matter to it."""
+        named = self._cover.names if self._cover is not None else ()
+        return not named or name in named
 
     @property
     def _cover_grace(self) -> float:

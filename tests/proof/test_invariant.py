@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
@@ -31,7 +32,7 @@ needs_native = pytest.mark.skipif(not native.available(), reason="the native eng
 
 
 def covered(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> bool:
-    loop = ClosedLoop(network, objective, strategy, reaction, None)
+    loop = ClosedLoop(named_part(network, strategy), objective, strategy, reaction, None)
     return searches_of(loop).covered(LimitMonitor()) is not None
 
 

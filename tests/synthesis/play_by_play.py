@@ -54,6 +54,12 @@ class PlayByPlay:
 
     def __init__(self, network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> None:
         self.network, self.objective, self.reaction = network, objective, reaction
+        # A strategy may name a part of the network only: its blocks hold whatever the rest is.
+        first = strategy.blocks[0].state if strategy.blocks else None
+        self.named = {name for name, _ in first.locations} if first else {a.name for a in network.automata}
+        values = {name for name, _ in first.values} if first else {name for name, _ in network.variables}
+        self._places = [k for k, automaton in enumerate(network.automata) if automaton.name in self.named]
+        self._values = [k for k, (name, _) in enumerate(network.variables) if name in values]
         self.blocks: Dict[Tuple[Tuple[str, ...], Tuple[int, ...]], Block] = {
             (tuple(p for _, p in b.state.locations), tuple(v for _, v in b.state.values)): b for b in strategy.blocks
         }
@@ -91,7 +97,7 @@ class PlayByPlay:
             return
         if self.objective.kind is not Kind.REACH and self.at(entry, self.objective.bad):
             raise Broken("bad")
-        block = self.blocks.get(entry[:2])
+        block = self.blocks.get((tuple(entry[0][k] for k in self._places), tuple(entry[1][k] for k in self._values)))
         if block is None:
             raise Broken("no block")
         entered: Optional[List[Tuple[Command, Zone]]] = None
@@ -130,7 +136,8 @@ class PlayByPlay:
             if not self.lasts(then):  # time is blocked before the command comes: someone else has to move
                 self.check_obliged(self.later(now, (n - 1) * STEP))
                 return
-            moves = [m for m in self.moves(then) if {(x.automaton, x.edge) for x in command.moves} == set(m)]
+            commanded = {(x.automaton, x.edge) for x in command.moves}
+            moves = [m for m in self.moves(then) if commanded == {(a, e) for a, e in m if a in self.named}]
             if not moves or not all(edge.controllable for _, edge in moves[0]):
                 raise Broken("not enabled")
             yield self.after(then, moves[0])
@@ -140,7 +147,9 @@ class PlayByPlay:
         """What the environment may make of this point."""
         for move in self.moves(now):
             if not all(edge.controllable for _, edge in move):
-                yield self.after(now, move)
+                after = self.after(now, move)
+                if after[:2] != now[:2] or any(edge.resets for _, edge in move):  # else nothing has happened
+                    yield after
 
     def moves(self, now: Entry) -> Tuple[Move, ...]:
         """The joint moves that are enabled at a point."""
@@ -209,7 +218,12 @@ class PlayByPlay:
     def check_obliged(self, now: Entry) -> None:
         """At the end of an invariant while waiting. Raises Broken unless someone is obliged to move."""
         at_bound = {a.name for a, b in self.invariants(now) if self.clocks(now)[b.clock] == UNIT * b.bound}
-        able = {m[0][0] for m in self.moves(now) if not all(edge.controllable for _, edge in m)}
+        able = {
+            m[0][0]
+            for m in self.moves(now)
+            if not all(e.controllable for _, e in m)
+            and (self.after(now, m)[:2] != now[:2] or any(e.resets for _, e in m))
+        }
         if not (at_bound <= able if self.objective.kind is Kind.SAFETY else at_bound & able):
             raise Broken("time is blocked")
 

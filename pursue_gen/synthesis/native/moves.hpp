@@ -65,6 +65,9 @@ struct Joint {
     std::vector<std::pair<int, int>> writes;  // index in the discrete state, value
     std::vector<std::pair<int, int>> extensions;  // edge id, number of the joint move that has this edge as well
 
+    // True for a move of the environment that is none: it leads back to d, and no clock notices.
+    bool changes_nothing(const Discrete& d) const { return !controllable && resets.empty() && target(d) == d; }
+
     Discrete target(Discrete d) const {
         for (const auto& [index, value] : writes) d[index] = value;
         return d;

@@ -14,6 +14,7 @@ from pursue_gen.synthesis.game import (
     Game,
     JointMove,
     State,
+    changes_nothing,
     initial_state,
     invariant,
     is_bad,
@@ -131,7 +132,8 @@ class ZoneGraph:
         chosen = commands if self._choose is None else self._choose(node.state, commands)
         node.controllable = [Transition(joint) for joint in commands if joint in chosen]
         node.omitted = [Transition(joint) for joint in commands if joint not in chosen]
-        node.uncontrollable = [Transition(joint) for joint in moves if not joint.controllable]
+        others = (joint for joint in moves if not joint.controllable and not changes_nothing(joint, node.state))
+        node.uncontrollable = [Transition(joint) for joint in others]
         node.expanded = True
 
     def _follow(self, number: int, moves: Iterable[Transition]) -> None:

@@ -1,0 +1,171 @@
+"""What a strategy does not name: the checker's own test, from the network's tables, that it cannot matter.
+
+A strategy may speak of a part of the network: its blocks then name some of the automata and variables. It is proven for
+that part alone (`named_part`), and what `why_it_matters` finds is held against it. Where that finds nothing, each play
+of the network shows the part as one of its own plays: what is left out changes nothing in the part, takes no command
+from the controller, and cannot stop time. A move that changes nothing in the part is no move there (see `moves`).
+"""
+
+from __future__ import annotations
+
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
+
+from pursue_gen.proof.moves import Arena, Bound
+from pursue_gen.proof.zones import without
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Automaton, Edge, Network, Objective
+from pursue_gen.tga.part import part_of
+from pursue_gen.zones.dbm import Dbm, raw
+from pursue_gen.zones.scale import common_denominator
+
+
+def named_part(network: Network, strategy: Strategy) -> Network:
+    """The part of the network that the strategy speaks of; the network itself where it names everything.
+
+    The first block says what is named: one that names something else covers nothing.
+    """
+    if not strategy.blocks:
+        return network
+    state = strategy.blocks[0].state
+    automata, variables = {name for name, _ in state.locations}, {name for name, _ in state.values}
+    if not automata.issubset(a.name for a in network.automata):
+        return network
+    return part_of(network, automata, variables.intersection(name for name, _ in network.variables))
+
+
+def why_it_matters(network: Network, objective: Objective, part: Network) -> str:
+    """Why what the part of the network leaves out may matter in it; "" if it cannot."""
+    if part is network:
+        return ""
+    kept = {automaton.name: automaton for automaton in part.automata}
+    for place in (objective.goal, objective.bad):
+        if place is not None and place[0] not in kept:
+            return f"the objective is about {place[0]}"
+    for automaton in network.automata:
+        if automaton.name in kept:
+            why = _why_an_edge_matters(automaton, kept[automaton.name], part)
+        else:
+            why = _why_it_is_seen(automaton, part) or _why_it_may_stop_time(automaton, network)
+        if why:
+            return f"{automaton.name} {why}"
+    return ""
+
+
+def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network) -> str:
+    """Why an edge of the automaton that the part does not have may change something there."""
+    variables = {name for name, _ in part.variables}
+    listened = _channels(a for a in part.automata if a.name != automaton.name)[1]
+    for edge in automaton.edges:
+        if edge in kept.edges:
+            continue
+        what = f"may go from {edge.source} to {edge.target}"
+        if edge.source != edge.target or edge.resets or any(name in variables for name, _ in edge.assign):
+            return f"{what}, by an edge that is left out"
+        if edge.sync is None:
+            continue
+        if edge.sync.sends and edge.sync.channel in listened:
+            return f"sends {edge.sync.channel} by an edge that is left out"
+        if not edge.sync.sends:
+            rivals = (e for e in kept.edges if e.sync == edge.sync and e.source == edge.source)
+            if not edge.controllable or any(True for _ in rivals):
+                return f"receives {edge.sync.channel} by an edge that is left out"
+    return ""
+
+
+def _why_it_is_seen(automaton: Automaton, part: Network) -> str:
+    """Why the part may notice what an automaton does that is not in it."""
+    variables, clocks = {name for name, _ in part.variables}, set(part.clocks)
+    sent, received = _channels(part.automata)
+    for edge in automaton.edges:
+        for name, _ in edge.assign:
+            if name in variables:
+                return f"sets {name}"
+        for clock in edge.resets:
+            if clock in clocks:
+                return f"resets {clock}"
+        if edge.sync is not None and edge.sync.sends and edge.sync.channel in received:
+            return f"sends {edge.sync.channel}"
+        if edge.sync is not None and not edge.sync.sends and edge.sync.channel in sent and not edge.controllable:
+            return f"takes {edge.sync.channel} out of the controller's hands"
+    return ""
+
+
+def _channels(automata: Iterable[Automaton]) -> Tuple[Set[str], Set[str]]:
+    """The channels on which these automata send, and those on which they receive."""
+    sent: Set[str] = set()
+    received: Set[str] = set()
+    for automaton in automata:
+        for edge in automaton.edges:
+            if edge.sync is not None:
+                (sent if edge.sync.sends else received).add(edge.sync.channel)
+    return sent, received
+
+
+def _why_it_may_stop_time(automaton: Automaton, network: Network) -> str:
+    """Why time may have to stop because of an automaton that nobody commands.
+
+    At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
+    the first may last a time unit, so that these moves leave time its way.
+    """
+    stays = {location.name: location for location in automaton.locations if location.invariant}
+    if not stays:
+        return ""
+    alone = part_of(network, {automaton.name}, {name for name, _ in network.variables})
+    arena = Arena(alone, common_denominator([constraint.bound for constraint in alone.start]))
+    for name in _visited(automaton, network):
+        if name not in stays:
+            continue
+        bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name].invariant)]
+        clocks = {bound.clock for bound in stays[name].invariant}
+        stay = Dbm.of(arena.dim, [(i, 0, bound) for _, i, bound in bounds])
+        if name == automaton.initial and (stay is None or not stay.includes(arena.start)):
+            return f"may not stay in {name} at the start"
+        entering = [edge for edge in automaton.edges if edge.target == name != edge.source]
+        if any(not clocks.issubset(edge.resets) for edge in entering):
+            return f"may come to {name} without time to stay"
+        if any(bound.bound < 1 for bound in stays[name].invariant):
+            return f"has no time to stay in {name}"
+        ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
+        if stay is None or _left_at(arena, stay, bounds, ways):
+            return f"may have to leave {name} and not be able to"
+    return ""
+
+
+def _left_at(arena: Arena, stay: Dbm, bounds: Sequence[Bound], ways: Sequence[Edge]) -> List[Dbm]:
+    """The points at the end of the stay from which none of the ways leads."""
+    rest: List[Dbm] = []
+    for _, clock, bound in bounds:
+        last = stay.constrained(0, clock, raw(-(bound >> 1), strict=False))
+        rest += [] if last is None else [last]
+    for edge in ways:
+        free: Optional[Dbm] = stay.constrained_all(arena.limits(edge.guard.clocks))
+        rest = rest if free is None else without(rest, free)
+    return rest
+
+
+def _is_free(edge: Edge) -> bool:
+    """True for an edge that the environment can take whatever the variables are."""
+    return not edge.controllable and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
+
+
+def _visited(automaton: Automaton, network: Network) -> Set[str]:
+    """Where the automaton may come by moves of the environment, and by receiving."""
+    taken = {
+        edge.sync.channel
+        for other in network.automata
+        for edge in other.edges
+        if edge.sync is not None and not edge.sync.sends and not edge.controllable
+    }
+    ways: Dict[str, List[str]] = {}
+    for edge in automaton.edges:
+        commanded = edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))
+        if not commanded:
+            ways.setdefault(edge.source, []).append(edge.target)
+    visited = {automaton.initial}
+    pending = [automaton.initial]
+    while pending:
+        for target in ways.get(pending.pop(), ()):
+            if target not in visited:
+                visited.add(target)
+                pending.append(target)
+    return visited

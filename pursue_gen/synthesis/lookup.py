@@ -1,0 +1,37 @@
+"""The block of a strategy that holds in a discrete state."""
+
+from __future__ import annotations
+
+from typing import Dict, Optional, Tuple
+
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
+
+Names = Tuple[Tuple[str, ...], Tuple[str, ...]]
+"""Names of automata, and names of variables."""
+
+
+class Blocks:
+    """The blocks of a strategy by discrete state. One that does not name all automata and variables holds whatever the
+    others are."""
+
+    def __init__(self, strategy: Strategy) -> None:
+        self._tables: Dict[Names, Dict[DiscreteState, Tuple[int, Block]]] = {}
+        for number, block in enumerate(strategy.blocks, start=1):
+            self._tables.setdefault(_names(block.state), {})[block.state] = number, block
+
+    def find(self, state: DiscreteState) -> Optional[Tuple[int, Block]]:
+        """The number of the block (from 1) and the block; None where the strategy has none."""
+        places, values = dict(state.locations), dict(state.values)
+        for (automata, variables), table in self._tables.items():
+            if not (places.keys() >= set(automata) and values.keys() >= set(variables)):
+                continue
+            some = DiscreteState(
+                tuple((name, places[name]) for name in automata), tuple((name, values[name]) for name in variables)
+            )
+            if some in table:
+                return table[some]
+        return None
+
+
+def _names(state: DiscreteState) -> Names:
+    return tuple(name for name, _ in state.locations), tuple(name for name, _ in state.values)

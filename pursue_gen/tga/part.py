@@ -1,0 +1,55 @@
+"""A part of a network: some of its automata and variables, and what belongs to them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import AbstractSet, Iterator, Set
+
+from pursue_gen.tga.network import Automaton, Constraint, Edge, Network
+
+
+def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet[str]) -> Network:
+    """The network of these automata and variables alone.
+
+    Of their edges those are left out that test or set another variable; clocks go that only left-out automata name, and
+    what `start` says of these; channels that are on no edge any more. All else, and every order, stays. The network
+    itself where nothing is left out.
+    """
+    if len(automata) == len(network.automata) and len(variables) == len(network.variables):
+        return network
+    kept = tuple(_with_edges_on(a, variables) for a in network.automata if a.name in automata)
+    gone = {clock for a in network.automata if a.name not in automata for clock in clocks_of(a)}
+    gone -= {clock for a in kept for clock in clocks_of(a)}
+    clocks = tuple(clock for clock in network.clocks if clock not in gone)
+    start = tuple(c for c in network.start if c.left not in gone and c.right not in gone)
+    if network.start and not start and clocks:
+        start = (Constraint(None, clocks[0], Fraction(0), False),)  # anything: without a bound all clocks were 0
+    used = {edge.sync.channel for a in kept for edge in a.edges if edge.sync is not None}
+    return Network(
+        clocks,
+        tuple((name, value) for name, value in network.variables if name in variables),
+        tuple(channel for channel in network.channels if channel in used),
+        kept,
+        start,
+    )
+
+
+def clocks_of(automaton: Automaton) -> Set[str]:
+    """The clocks that an automaton tests or resets."""
+    found = {bound.clock for location in automaton.locations for bound in location.invariant}
+    for edge in automaton.edges:
+        found.update(bound.clock for bound in edge.guard.clocks)
+        found.update(edge.resets)
+    return found
+
+
+def variables_of(edge: Edge) -> Iterator[str]:
+    """The variables that an edge tests or sets."""
+    yield from (test.variable for clause in edge.guard.integers for test in clause)
+    yield from (name for name, _ in edge.assign)
+
+
+def _with_edges_on(automaton: Automaton, variables: AbstractSet[str]) -> Automaton:
+    edges = tuple(edge for edge in automaton.edges if variables >= set(variables_of(edge)))
+    return automaton if len(edges) == len(automaton.edges) else replace(automaton, edges=edges)

@@ -1,0 +1,78 @@
+"""Agents of whom the plan in force does not speak: what they do counts, and changes nothing for the others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.runtime.observer.test_mission import CHASE, Journey
+
+COVER = """
+format: 1
+cover:
+- state: {bot: a, rule: first, reachObj: initial_location}
+  zones: [always]
+- state: {bot: going_a_to_b, rule: first, reachObj: initial_location}
+  zones: [always]
+- state: {bot: b, rule: first, reachObj: initial_location}
+  zones: [always]
+"""
+WALKING = CHASE.replace(
+    "locations: {b: [], gone: []}", "locations: {b: [], gone: [Cthief <= 4]}"
+)
+
+
+def journey(text: str = CHASE, **options: Any) -> Journey:
+    made = Journey(text, COVER, **{"on_uncovered": "plan", "controllers": ("one",), "lost_after": 8.0, **options})
+    made.hear("_start_", 0.0)
+    return made
+
+
+def test_a_command_is_not_stale_because_of_them() -> None:
+    made = journey()
+    assert made.hear("thief_leaves", 12.0).seq == 2
+    state = made.hear("bot:bot_a2b@1", 12.05)
+    assert (state.seq, state.locations["bot"], state.status) == (3, "going_a_to_b", "running")
+
+
+def test_a_command_is_stale_once_somebody_moved_who_matters() -> None:
+    made = journey()
+    made.hear("thief_leaves", 12.0)
+    made.hear("bot:bot_a2b@1", 12.05)
+    assert made.hear("bot:bot_a2b@2", 12.06) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:bot_a2b@4", 12.07) is None and made.mission.counts["stale"] == 2
+
+
+def test_a_command_for_a_state_before_a_hold_is_stale() -> None:
+    made = journey()
+    made.mission.on_controller_silent("one", 10.0)
+    made.mission.on_controller_back("one", 11.0)
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:bot_a2b@3", 12.1).seq == 5
+
+
+def test_an_early_command_waits_for_its_moment_whatever_they_do() -> None:
+    made = journey(CHASE.replace("when: [Cbot > 1], set", "when: [Cbot > 13], set"))
+    assert made.hear("bot:bot_a2b@1", 12.95) is None
+    made.hear("thief_leaves", 12.97)
+    moment, state = made.tick_from(12.98)
+    assert moment == pytest.approx(13.0) and state.locations["bot"] == "going_a_to_b"
+
+
+def test_who_is_lost_among_them_is_not_waited_for() -> None:
+    made = journey(WALKING)
+    assert made.hear("thief_leaves", 12.0).locations["thief"] == "gone"
+    for moment in (16.2, 24.5):
+        made.mission.on_time(moment)
+    state = made.hear("_ping_", 40.0)
+    assert (state.lost, state.status, made.mission.plan_request) == (("thief",), "running", None)
+    assert made.hear("bot:bot_a2b@1", 41.0).locations["bot"] == "going_a_to_b"
+
+
+def test_a_plan_that_names_everybody_is_as_before() -> None:
+    made = Journey(CHASE, COVER.replace("{bot:", "{thief: b, bot:"), on_uncovered="warn")
+    made.hear("_start_", 0.0)
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
