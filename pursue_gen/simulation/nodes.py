@@ -148,7 +148,6 @@ class ControllerNode:
         if not self.alive:
             return
         self._newest = max(self._newest, state.seq)
-        known = self._scheduler.state
         for order in self._scheduler.on_state(state, self._now):
             if order.agent in self._stage.robots and _is_for_robots(order):
                 self._links.command_robot(self.name, order, state.seq, self._newest, self._restarted)
@@ -156,8 +155,8 @@ class ControllerNode:
         receipt = self._scheduler.repeated_receipt()
         if receipt:
             self._links.publish_word(self.name, receipt, self._links.events.now)
-        if known is None or (known.seq, known.status) != (state.seq, state.status):
-            self._set_timer()  # a state that is published again must not delay the next resend
+        if self._scheduler.is_new:
+            self._set_timer()  # a state in which nothing is new must not delay the next resend
 
     def on_plan(self, plan: Dict[str, Any]) -> None:
         """Another plan has come."""

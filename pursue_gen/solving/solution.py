@@ -16,6 +16,7 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -126,6 +127,11 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
     reaction = f"{float(rules.reaction):g}"
     message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
     hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
+    alone = out_of_reach(network, objective)
+    if alone:
+        message += f"; no robot can do anything about it, as it depends on {' and '.join(alone)} alone"
+        hint = "let something that a robot does matter to the objective, or make one of these agents controllable"
+        return error(_CANNOT_BE_MET, message, hint=hint)
     if rules != IDEAL and _won_ideally(network, objective, options):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import Dict, Set, Tuple
 
+from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, variables_of
 
@@ -25,6 +26,14 @@ def cone_of_influence(network: Network, objective: Objective) -> Network:
     while cone.grow():
         pass
     return part_of(network, cone.automata, cone.variables)
+
+
+def out_of_reach(network: Network, objective: Objective) -> Tuple[str, ...]:
+    """The agents on whom alone the objective depends, where no command changes anything for it; () where one may."""
+    cone = cone_of_influence(network, objective)
+    agents = [automaton for automaton in cone.automata if is_agent(automaton)]
+    commanded = any(edge.controllable for automaton in agents for edge in automaton.edges)
+    return () if commanded else tuple(automaton.name for automaton in agents)
 
 
 class _Cone:

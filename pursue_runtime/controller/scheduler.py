@@ -31,7 +31,7 @@ class CommandScheduler:
         """`name`: the controller's, with which it acknowledges new plans."""
         self.state: Optional[SystemState] = None
         self.planned: Optional[Tuple[float, Command]] = None
-        self.is_new = False  # the last state was a new one
+        self.is_new = False  # the last state was a new one, in which there is something to decide
         self.joined: List[StartedActivity] = []  # what our robots do with others, who have begun it in the last state
         self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
         self._name = name
@@ -76,9 +76,8 @@ class CommandScheduler:
             self._plans, self._newest = Plans(self._own), 0
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
             return []  # the answer to a ping, or a heartbeat
-        self.is_new = True
-        stands = before is not None and self._since is not None and self._sees_nothing_new(before, state)
-        if not stands:
+        self.is_new = before is None or self._since is None or not self._sees_nothing_new(before, state)
+        if self.is_new:
             self._since = state
             self.planned, self._patience, self._unanswered = None, None, 0
         self.joined = self._joined(before, state) if state.status in (*LIVE, WON) else []
@@ -86,7 +85,7 @@ class CommandScheduler:
             return [order for order in self._begun(before, state) if order.origin == order.target]
         if state.status not in LIVE:
             return []
-        if not stands:
+        if self.is_new:
             self._plan(state, now)
         orders = self._begun(before, state)
         self.counts["taken"] += len(orders)

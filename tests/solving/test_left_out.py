@@ -125,3 +125,16 @@ def test_the_commands_solve_and_verify_agree(tmp_path: Path) -> None:
     found = [json.loads(result.stdout) for result in (solved, whole)]
     assert [one["left_out"] for one in found] == [["sleeper"], []]
     assert found[0]["states"] < found[1]["states"]
+
+
+@pytest.mark.parametrize("crowd", [0, 20])
+def test_what_no_robot_can_touch_is_said_to_be_so(crowd: int) -> None:
+    people = "".join(f'agent "person{i}" mobile 3 location hub\n' for i in range(crowd + 1))
+    people = people.replace("location hub", "location hub can_do shout", 1)
+    text = PASSERS_BY[: PASSERS_BY.index('agent "walker"')] + people + "objective: avoid shout\n"
+    with pytest.raises(PursueError, match="no robot can do anything about it, as it depends on person0") as failure:
+        _solved(text)
+    assert failure.value.exit_status == 4
+    with pytest.raises(PursueError) as failure:
+        _solved(text.replace("avoid shout", "if shout then report within 3"))
+    assert "no robot can do anything" not in str(failure.value)

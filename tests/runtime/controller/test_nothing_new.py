@@ -50,7 +50,7 @@ def test_a_word_that_is_on_its_way_is_sent_again_where_time_has_left_its_zone() 
     assert bot.on_timer(105.0) == ("bot", "bot_a2b", 1)
     patience = bot.next_wakeup()[1]
     bot.on_state(state(2, 105.1, "guest_a2b", "guest", (5.1, 0.0)), 105.1)
-    assert bot.is_new and bot.next_wakeup() == (None, patience)
+    assert not bot.is_new and bot.next_wakeup() == (None, patience)
     assert bot.on_timer(105.15) == ("bot", "bot_a2b", 2)
 
 
