@@ -41,7 +41,7 @@ class World:
         self._environment = {**os.environ, **self.variables}
         self.running: Dict[str, "subprocess.Popen[bytes]"] = {}
         self.start("roscore", ["roscore", "-p", str(port)])
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 120
         while self.run(["rosparam", "get", "/run_id"]).returncode:
             if time.monotonic() > deadline:
                 raise SystemExit(f"roscore does not come up; see {home}/roscore.txt")
