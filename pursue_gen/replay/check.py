@@ -225,7 +225,9 @@ class _Checker:
         place, resets = after(move, place_of(before))
         if not changed or len(move) < len(changed) or state.plan == before.plan or place != place_of(state):
             return False
-        self._zeros.update(dict.fromkeys(resets, state.stamp))
+        for clock in resets:  # the way back begins when the plan does, which may have come later
+            zero = state.stamp - state.clocks.get(clock, 0.0) * state.unit
+            self._zeros[clock] = zero if self._zeros[clock] <= zero <= state.stamp else state.stamp
         for name in changed:
             self._report(WORLD, "turned", state, f"{name} turned round on its way, which was blocked")
         return True

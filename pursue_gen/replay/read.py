@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import struct
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import AbstractSet, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
@@ -19,7 +19,8 @@ EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an ob
 RECORD = re.compile(rb"[0-9a-f]{8} 0 \d+ \{")
 """How a journal of format 2 begins."""
 
-_ORDERS = ("/move_base_simple/goal", "/pursue/actions", "/move_base/goal")
+_SIMPLE, _ACTION = "/move_base_simple/goal", "/move_base/goal"
+_ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
 """Topics of a robot, below its name."""
 
 
@@ -61,10 +62,12 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     plans: Dict[int, Mapping[str, Any]] = {}
     game: Optional[Mapping[str, Any]] = None
     strange = 0
+    # without `seq`, which counts what was sent to one subscriber alone, too
+    simple = {(message.topic.strip("/"), message.data[4:]) for message in messages if message.topic.endswith(_SIMPLE)}
     for message in messages:
         topic = message.topic.strip("/")
         if topic.endswith(_ORDERS):
-            orders.append(_order(message, topic))
+            orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic)]
         elif topic.endswith(("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")):
             text = _text(message.data)
             state = parse_state(text) if topic.endswith("system_state") else None
@@ -83,13 +86,21 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     return MissionRecord(ordered(iter(states)), tuple(words), tuple(orders), plans, game, tuple(found))
 
 
+def _is_published_again(message: Message, topic: str, simple: AbstractSet[Tuple[str, bytes]]) -> bool:
+    """Return True for an action goal that ends with a simple goal: move_base publishes those so, for itself."""
+    if not topic.endswith(_ACTION):
+        return False
+    own = topic[: -len(_ACTION)] + _SIMPLE
+    return any((own, message.data[-size:]) in simple for size in {len(data) for _, data in simple})
+
+
 def _order(message: Message, topic: str) -> RobotOrder:
     """An order to a robot; the robot's name stands first in the topic's last parts."""
     kind = next(kind for kind in _ORDERS if topic.endswith(kind))
     robot = topic[: -len(kind)].rpartition("/")[2]
     if kind == "/pursue/actions":
         return RobotOrder(message.at, robot, message.node, action=_text(message.data).strip() or "?")
-    goal = _position(message.data) if kind == "/move_base_simple/goal" else None
+    goal = _position(message.data) if kind == _SIMPLE else None
     return RobotOrder(message.at, robot, message.node, goal)
 
 

@@ -15,8 +15,10 @@ from recordings import PLAY, SCENARIO, game, mission, write_bag, write_journal
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.replay import MissionRecord, check, read_recording
+from pursue_gen.replay.bag import Message
 from pursue_gen.replay.journal import Journal, reconstruct
 from pursue_gen.replay.moves import Moves
+from pursue_gen.replay.read import from_messages
 
 GAME: Dict[str, Any] = {
     "format": 1,
@@ -192,3 +194,22 @@ def test_json_of_another_shape_on_our_topics_is_passed_over(tmp_path: Path) -> N
     made.heard.append((4.0, "/pursue/plan", "observer", json.dumps({"plan": "x"})))
     record = read(write_bag(made, tmp_path / "m.bag"))
     assert record.problems == ("3 messages on our topics could not be read",)
+
+
+def test_a_simple_goal_that_move_base_publishes_again_as_an_action_goal_is_one_order() -> None:
+    def pose(x: float, seq: int = 0) -> bytes:
+        return struct.pack("<LLL", seq, 100, 0) + struct.pack("<L", 3) + b"map" + struct.pack("<7d", x, *[0.0] * 5, 1.0)
+
+    def action_goal(name: bytes, x: float, seq: int = 0) -> bytes:
+        stamps = struct.pack("<LLLL", 7, 100, 5, 0) + struct.pack("<LL", 0, 0)  # of the message and, zero, of the goal
+        return stamps + struct.pack("<L", len(name)) + name + pose(x, seq)
+
+    sent = [
+        ("/bot1/move_base/goal", "bot1/move_base", action_goal(b"", 1.0)),  # may be recorded first
+        ("/bot1/move_base_simple/goal", "controller_bot1", pose(1.0)),
+        ("/bot1/move_base/goal", "bot1/move_base", action_goal(b"", 1.0, seq=1)),  # sent to a restarted one alone
+        ("/bot2/move_base/goal", "controller_bot2", action_goal(b"bot2-1", 1.0)),
+        ("/bot1/move_base/goal", "stranger", action_goal(b"", 2.0)),
+    ]
+    record = from_messages([Message(topic, "", node, 100.0, data) for topic, node, data in sent])
+    assert [order.node for order in record.orders] == ["controller_bot1", "controller_bot2", "stranger"]
