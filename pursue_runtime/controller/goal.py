@@ -56,6 +56,7 @@ class GoalTracker:
     def __init__(self, settings: Settings) -> None:
         self.current: Optional[Goal] = None
         self.is_lost = False  # the robot's status shows that it does not have the goal
+        self.is_active = False  # the robot's status shows that the goal is in progress
         self._settings = settings
         self._sent = self._earliest = -math.inf  # when a goal was sent last; the earliest stamp that it may have
         self._sent_real = 0.0
@@ -83,7 +84,7 @@ class GoalTracker:
 
     def drop(self) -> None:
         """Note that the goal does not matter any more."""
-        self.current, self.is_lost, self._missing = None, False, None
+        self.current, self.is_lost, self.is_active, self._missing = None, False, False, None
 
     def ends(self, answer: Answer) -> bool:
         """Return True if the answer ends the present goal, which is then dropped."""
@@ -116,6 +117,7 @@ class GoalTracker:
             return []
         own = [answer for answer in entries if self.concerns(answer)]
         in_progress = [answer for answer in own if answer.status in ACTIVE]
+        self.is_active = bool(in_progress)
         if in_progress and not self._id:
             self._id = max(in_progress, key=lambda answer: answer.stamp).goal
             self._ours.append(self._id)
@@ -139,4 +141,4 @@ class GoalTracker:
         # one is not taken for the answer to this.
         self._earliest = now - min(self._settings.clock_skew, (now - self._sent) / 2)
         self._sent, self._sent_real = now, real
-        self.is_lost, self._missing = False, None
+        self.is_lost, self.is_active, self._missing = False, False, None

@@ -186,7 +186,7 @@ class Navigation:
             moments += [self._goal_due_at(trip)] if trip.goal_at is not None and self._may_go(trip) else []
             moments += [] if trip.is_return else [self._arrives_at(trip)]
         if post is not None and self._doubt is not None:
-            moments += [self._at.stands_at()] if self._at.is_near(post) else []
+            moments += [self._at.stands_at()] if self._at.is_near(post) and not self._goal.is_active else []
             moments += [] if self._reports(DISPLACED) or self._view.displaced else [self._doubt + self._grace]
         finite = [moment for moment in moments if moment < float("inf")]
         return min(finite, default=None), (self._report.next_moment() if self._report else None)
@@ -196,7 +196,9 @@ class Navigation:
     def _is_known(self, now: float) -> bool:
         """Return True if the robot is known to be at the place where the state has it."""
         post = self._view.post
-        return post is None or self.settings.believes_words or self._at.is_known_at(post, now)
+        if post is None or self.settings.believes_words:
+            return True
+        return not self._goal.is_active and self._at.is_known_at(post, now)
 
     def _check_post(self, now: float) -> None:
         """Report that the robot is not known to be where the state has it, or that it is there again."""
@@ -228,7 +230,9 @@ class Navigation:
 
     def _arrives_at(self, trip: Trip) -> float:
         """Return when the robot has arrived by its position, if it does not move until then."""
-        if not self.settings.ends_by_position or trip.has_arrived or not self._at.is_near(trip.movement.place):
+        if not self.settings.ends_by_position or trip.has_arrived or self._goal.is_active:
+            return float("inf")  # move_base may still turn the robot, by less than amcl publishes
+        if not self._at.is_near(trip.movement.place):
             return float("inf")
         return max(self._at.stands_at(), trip.since + self.settings.end_settle)
 

@@ -3,10 +3,10 @@
 
 Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
 action takes; negative: the robot does not report its end), boot (seconds from the start of move_base until its action
-server is up), recovery (seconds until a robot that is stuck gives up), status (seconds between two status messages),
-plays (what becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once),
-reject (at once), never, stuck (it gives up after the recovery), twice (the result comes twice), stale (a result of
-long ago comes first), turned (it arrives, but looks the wrong way).
+server is up), recovery (seconds until a robot that is stuck gives up, and answers other goals and cancellations),
+status (seconds between two status messages), plays (what becomes of its first goal, of its second …; the last one of
+all that follow): succeed, abort (at once), reject (at once), never, stuck (it gives up after the recovery), twice
+(the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
 and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
@@ -129,6 +129,7 @@ class FakeMoveBase:
         self.server = False
         self.goals: List[Tuple[GoalStatus, float]] = []  # and when each is over, inf before that
         self.current: Optional[GoalStatus] = None
+        self.pending: Optional[Tuple[GoalStatus, Pose]] = None  # a goal that came while the robot recovers
         self.gives_up = math.inf
         self.words = rospy.Publisher("pursue/events", String, queue_size=10)
         self.body.show()
@@ -171,7 +172,8 @@ class FakeMoveBase:
     def kill(self, down: float) -> None:
         """The process is killed, and started again after so many seconds. The robot stands still."""
         with self.lock:
-            self.server, self.goals, self.current, self.body.way = False, [], None, None
+            self.server, self.goals, self.current, self.pending = False, [], None, None
+            self.body.way, self.gives_up = None, math.inf
             topics, self.process = self.process, []
         for topic in topics:
             topic.unregister()
@@ -196,15 +198,26 @@ class FakeMoveBase:
             self.count += 1
             known = GoalID(message.goal_id.stamp or now, message.goal_id.id or f"/{self.name}-{self.count}-{now}")
             self.say(f"goal {target.position.x:.2f} {target.position.y:.2f}")
-            if self.current is not None:
-                self.finish("replace")
-            self.current = GoalStatus(known, GoalStatus.ACTIVE, ACCEPTED)
-            self.goals.append((self.current, math.inf))
+            goal = GoalStatus(known, GoalStatus.PENDING, "")
+            self.goals.append((goal, math.inf))
+            if self.gives_up < math.inf:  # a recovery behaviour is not interrupted
+                self.drop_pending()
+                self.pending = (goal, target)
+            else:
+                if self.current is not None:
+                    self.finish("replace")
+                self.begin(goal, target)
             self.show_status()
-            self.begin(target)
 
-    def begin(self, target: Pose) -> None:
+    def drop_pending(self) -> None:
+        """A goal that was not begun is recalled."""
+        if self.pending is not None:
+            (status, _), self.pending = self.pending, None
+            self.conclude(status, GoalStatus.RECALLED, TEXTS["replace"][1])
+
+    def begin(self, goal: GoalStatus, target: Pose) -> None:
         """Do what the test has planned for this goal."""
+        self.current, goal.status, goal.text = goal, GoalStatus.ACTIVE, ACCEPTED
         play = self.plays[min(self.count, len(self.plays)) - 1]
         yaw = 2.0 * math.atan2(target.orientation.z, target.orientation.w) + (math.pi if play == "turned" else 0.0)
         if play in ("abort", "reject"):
@@ -223,13 +236,20 @@ class FakeMoveBase:
             current = self.current
             everything = not message.id and not message.stamp
             if current is not None and (everything or message.id == current.goal_id.id):
-                self.finish("cancel")
+                current.status = GoalStatus.PREEMPTING
+                if self.gives_up == math.inf:  # else it is answered when the recovery behaviour is over
+                    self.finish("cancel")
+            self.show_status()
 
     def finish(self, how: str) -> None:
         """The present goal is over."""
         status, self.current, self.body.way, self.gives_up = self.current, None, None, math.inf
         assert status is not None
-        status.status, status.text = TEXTS[how]
+        self.conclude(status, *TEXTS[how])
+
+    def conclude(self, status: GoalStatus, number: int, text: str) -> None:
+        """This goal is over."""
+        status.status, status.text = number, text
         self.goals = [(known, rospy.get_time() if known is status else over) for known, over in self.goals]
         play = self.plays[min(self.count, len(self.plays)) - 1]
         for _ in range(2 if play == "twice" else 1):
@@ -261,7 +281,7 @@ class FakeMoveBase:
             if self.current is not None and arrived:
                 self.finish("succeed")
             elif self.current is not None and rospy.get_time() >= self.gives_up:
-                self.finish("stuck")
+                self.recovered(self.current)
             elif self.current is not None:
                 message = MoveBaseActionFeedback(status=self.current)
                 message.header.stamp = rospy.Time.now()
@@ -269,6 +289,15 @@ class FakeMoveBase:
                 message.feedback.base_position.pose = self.body.pose()
                 self.feedback.publish(message)
             self.body.show()
+
+    def recovered(self, current: GoalStatus) -> None:
+        """The recovery behaviours are over: now move_base sees what has come meanwhile."""
+        if self.pending is not None:
+            (goal, target), self.pending = self.pending, None
+            self.finish("replace")
+            self.begin(goal, target)
+        else:
+            self.finish("cancel" if current.status == GoalStatus.PREEMPTING else "stuck")
 
     def on_action(self, message: String) -> None:
         x, y, _ = self.body.at

@@ -150,6 +150,27 @@ def test_a_cancelled_goal_holds_the_robot_and_does_not_start_again(
     assert robots.heard("bot1") == ["goal b", "cancel", "goal b", "action bot1_inb"]
 
 
+@pytest.mark.parametrize("what", ["cancel", "goal"])
+def test_what_comes_while_move_base_recovers_is_answered_later(
+    ros: Ros, workspace: Path, tmp_path: Path, what: str
+) -> None:
+    arguments = "goals:=action ends:=result planner:=off lost_after:=2000"
+    bot1 = {"plays": ["stuck", "succeed"], "recovery": 25.0}
+    with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
+        wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
+        if what == "cancel":
+            robots.publish("bot1/move_base/cancel", "actionlib_msgs/GoalID", "{}")
+        else:
+            pose = "{header: {frame_id: map}, pose: {position: {x: -7.0, y: 7.0}, orientation: {w: 1.0}}}"
+            robots.publish("bot1/move_base_simple/goal", "geometry_msgs/PoseStamped", pose)
+        wait_for(lambda: "the mission holds: bot1 on its way to b: preempted" in log.read_text(), log, "no hold")
+        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
+    well(log.read_text())
+    between = ["cancel"] if what == "cancel" else ["goal -7.00"]
+    assert robots.heard("bot1") == ["goal b", *between, "goal b", "action bot1_inb"]
+
+
 def test_what_move_base_says_is_part_of_the_reason(ros: Ros, workspace: Path, tmp_path: Path) -> None:
     (tmp_path / "own.yaml").write_text("retries: 0\n")
     arguments = f"goals:=action ends:=result planner:=off robots:={tmp_path}/own.yaml"

@@ -6,9 +6,11 @@ import math
 
 import pytest
 
+from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.whereabouts import place_of, turned
 from tests.runtime.controller.robot_world import (
     ABORTED,
+    ACTIVE,
     BACK,
     BLOCKED,
     END,
@@ -273,6 +275,17 @@ def test_a_robot_has_arrived_though_amcl_has_not_published_its_last_motion() -> 
     robot.now += 9.0
     robot.at(B.x - 0.2 - 0.15, B.y, math.radians(30.0) + 0.17)
     robot.wait(0.5)
+    assert robot.words == [END]
+
+
+@pytest.mark.parametrize("ends", ["pose", "tf"])
+def test_a_robot_has_not_arrived_while_move_base_has_its_goal_in_progress(ends: str) -> None:
+    robot = World(ends=ends, goals="action")
+    robot.go()
+    robot.status(Answer(robot.goals[-1].name, robot.now, ACTIVE))
+    robot.at(3.0, 4.0)
+    assert robot.wait(5.0) == []
+    robot.result(SUCCEEDED)
     assert robot.words == [END]
 
 

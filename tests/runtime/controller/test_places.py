@@ -87,6 +87,19 @@ def test_a_robot_that_still_moves_on_its_way_back_is_not_there(robot: World) -> 
     assert robot.words[-1] == BACK_AGAIN
 
 
+def test_a_robot_is_not_back_while_move_base_has_its_goal_in_progress(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    robot.status(Answer(robot.goals[-1].name, robot.now, ACTIVE))
+    robot.at(3.0, 4.0)
+    robot.wait(5.0)
+    assert BACK_AGAIN not in robot.words
+    robot.result(SUCCEEDED)
+    robot.wait(1.0)
+    assert robot.words[-1] == BACK_AGAIN
+
+
 def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None:
     robot.at(8.0, 4.0)
     robot.stay(doing="e")
