@@ -6,10 +6,10 @@ stamp, as the observer published it again. The clocks that its step resets say h
 
 from __future__ import annotations
 
-from typing import Dict, Iterator, List, Mapping, NamedTuple, Sequence
+from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from pursue_gen.replay.moves import Moves, after, place_of
-from pursue_runtime.state import WAITING, SystemState
+from pursue_runtime.state import ENDED, WAITING, SystemState
 
 EXACT = 0.001
 """Seconds by which a clock may be beside the stamps."""
@@ -28,22 +28,30 @@ def with_beginnings(states: Sequence[SystemState], moves: Moves) -> Beginnings:
     late: Dict[int, float] = {}
     for state in states:
         before = found[-1] if found else None
-        passed = 0.0 if before is None or state.seq != before.seq + 1 else _passed(before, state, moves)
-        if passed:
-            late[state.seq] = passed
-            clocks = {clock: value - passed / state.unit for clock, value in state.clocks.items()}
-            found.append(state._replace(stamp=state.stamp - passed, clocks=clocks))
-        found.append(state)
+        begun = None if before is None or state.seq != before.seq + 1 else _begun(before, state, moves)
+        if begun is not None:
+            late[state.seq] = state.stamp - begun.stamp
+            found.append(begun)
+        if begun is None or state.status not in ENDED:  # the clocks of an end stay as they were then
+            found.append(state)
     return Beginnings(found, late)
 
 
-def _passed(before: SystemState, state: SystemState, moves: Moves) -> float:
-    """The seconds since the step into this state, by the clocks that it reset; 0 where they do not say it."""
+def _begun(before: SystemState, state: SystemState, moves: Moves) -> Optional[SystemState]:
+    """The state when it began, by the clocks that its step reset, or at the end by all others; None: it began now, or
+    the clocks do not say when."""
     for resets in _resets(before, state, moves):
-        ages = [state.clocks.get(clock, 0.0) * state.unit for clock in resets]
+        if state.status in ENDED:
+            kept = [clock for clock in before.clocks if clock not in resets and clock in state.clocks]
+            since = [(state.clocks[clock] - before.clocks[clock]) * state.unit for clock in kept]
+            ages = [state.stamp - before.stamp - each for each in since]
+        else:
+            ages = [state.clocks.get(clock, 0.0) * state.unit for clock in resets]
         if ages and min(ages) > EXACT and max(ages) - min(ages) <= EXACT and state.stamp - min(ages) >= before.stamp:
-            return min(ages)
-    return 0.0
+            passed = 0.0 if state.status in ENDED else min(ages) / state.unit
+            clocks = {clock: value - passed for clock, value in state.clocks.items()}
+            return state._replace(stamp=state.stamp - min(ages), clocks=clocks)
+    return None
 
 
 def _resets(before: SystemState, state: SystemState, moves: Moves) -> Iterator[Sequence[str]]:

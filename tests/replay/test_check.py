@@ -362,6 +362,14 @@ def test_a_state_whose_first_message_is_missing_began_where_its_clocks_say(seq: 
     assert findings.kept and findings.won and kinds(findings, NOTE) == [("recorded late", seq)]
 
 
+def test_an_end_whose_first_message_is_missing_was_when_its_clocks_stopped() -> None:
+    made = mission()
+    made.change(10, stamp=made.states[10].stamp + 4.0)
+    findings = found(made)
+    assert findings.kept and findings.won and kinds(findings, NOTE) == [("recorded late", 10)]
+    assert findings.length == pytest.approx(21.3)
+
+
 def test_clocks_that_do_not_fit_an_earlier_beginning_are_a_fault() -> None:
     made = mission()
     state = next(state for state in made.states if state.seq == 3)
