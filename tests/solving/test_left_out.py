@@ -131,7 +131,8 @@ def test_the_commands_solve_and_verify_agree(tmp_path: Path) -> None:
 def test_what_no_robot_can_touch_is_said_to_be_so(crowd: int) -> None:
     people = "".join(f'agent "person{i}" mobile 3 location hub\n' for i in range(crowd + 1))
     people = people.replace("location hub", "location hub can_do shout", 1)
-    text = PASSERS_BY[: PASSERS_BY.index('agent "walker"')] + people + "objective: avoid shout\n"
+    text = deliver_by_robots(1).replace('event "report"', 'event "report"\nevent "shout"')
+    text = text.replace("reach_objective: do report after 0", people + "objective: avoid shout")
     with pytest.raises(PursueError, match="no robot can do anything about it, as it depends on person0") as failure:
         _solved(text)
     assert failure.value.exit_status == 4
