@@ -181,7 +181,7 @@ FAMILIES: Tuple[Family, ...] = tuple(
         ("round in order", "actions", inspect_in_order, (1, 2, 4, 6, 8, 10, 12), (1, 2)),
         ("round in any order", "actions", inspect_in_any_order, (1, 2, 4, 6, 8, 10, 12), (1, 2)),
         ("visitors", "uncontrollable agents", hand_to_visitors, (1, 2, 3, 4), (1, 2)),
-        ("bystanders", "uncontrollable agents", pass_bystanders, (0, 1, 2, 3, 4), (0, 1)),
+        ("bystanders", "uncontrollable agents", pass_bystanders, (0, 1, 2, 5, 10, 20, 50), (0, 1)),
     )
 )
 

@@ -39,7 +39,7 @@ def section(strategy: StrategyData) -> Section:
 
 def _left_out(strategy: StrategyData) -> List[str]:
     names = ", ".join(safe(name) for name in strategy.left_out)
-    return [f"<p>It does not speak of what cannot matter, whatever that does: {names}.</p>"] if names else []
+    return [f"<p>Not mentioned, because what they do cannot matter: {names}.</p>"] if names else []
 
 
 def graph(strategy: StrategyData) -> Optional[Graph]:
