@@ -8,13 +8,13 @@ from the controller, and cannot stop time. A move that changes nothing in the pa
 
 from __future__ import annotations
 
-from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
-from pursue_gen.tga.part import part_of
+from pursue_gen.tga.part import clocks_of, part_of, start_of
 from pursue_gen.zones.dbm import Dbm, raw
 from pursue_gen.zones.scale import common_denominator
 
@@ -38,6 +38,8 @@ def why_it_matters(network: Network, objective: Objective, part: Network) -> str
     if part is network:
         return ""
     kept = {automaton.name: automaton for automaton in part.automata}
+    noticed = _Noticed({name for name, _ in part.variables}, set(part.clocks), *_channels(part.automata))
+    taken = _taken_over(network)
     for place in (objective.goal, objective.bad):
         if place is not None and place[0] not in kept:
             return f"the objective is about {place[0]}"
@@ -45,7 +47,7 @@ def why_it_matters(network: Network, objective: Objective, part: Network) -> str
         if automaton.name in kept:
             why = _why_an_edge_matters(automaton, kept[automaton.name], part)
         else:
-            why = _why_it_is_seen(automaton, part) or _why_it_may_stop_time(automaton, network)
+            why = _why_it_is_seen(automaton, noticed) or _why_it_may_stop_time(automaton, network, taken)
         if why:
             return f"{automaton.name} {why}"
     return ""
@@ -72,20 +74,27 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network) -
     return ""
 
 
-def _why_it_is_seen(automaton: Automaton, part: Network) -> str:
+class _Noticed(NamedTuple):
+    """What a part of a network has: its variables, its clocks, and the channels on which it sends and receives."""
+
+    variables: AbstractSet[str]
+    clocks: AbstractSet[str]
+    sent: AbstractSet[str]
+    received: AbstractSet[str]
+
+
+def _why_it_is_seen(automaton: Automaton, part: _Noticed) -> str:
     """Why the part may notice what an automaton does that is not in it."""
-    variables, clocks = {name for name, _ in part.variables}, set(part.clocks)
-    sent, received = _channels(part.automata)
     for edge in automaton.edges:
         for name, _ in edge.assign:
-            if name in variables:
+            if name in part.variables:
                 return f"sets {name}"
         for clock in edge.resets:
-            if clock in clocks:
+            if clock in part.clocks:
                 return f"resets {clock}"
-        if edge.sync is not None and edge.sync.sends and edge.sync.channel in received:
+        if edge.sync is not None and edge.sync.sends and edge.sync.channel in part.received:
             return f"sends {edge.sync.channel}"
-        if edge.sync is not None and not edge.sync.sends and edge.sync.channel in sent and not edge.controllable:
+        if edge.sync is not None and not edge.sync.sends and edge.sync.channel in part.sent and not edge.controllable:
             return f"takes {edge.sync.channel} out of the controller's hands"
     return ""
 
@@ -101,18 +110,20 @@ def _channels(automata: Iterable[Automaton]) -> Tuple[Set[str], Set[str]]:
     return sent, received
 
 
-def _why_it_may_stop_time(automaton: Automaton, network: Network) -> str:
+def _why_it_may_stop_time(automaton: Automaton, network: Network, taken: AbstractSet[str]) -> str:
     """Why time may have to stop because of an automaton that nobody commands.
 
     At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
-    the first may last a time unit, so that these moves leave time its way.
+    the first may last a time unit, so that these moves leave time its way. `taken`: as for `_visited`.
     """
     stays = {location.name: location for location in automaton.locations if location.invariant}
     if not stays:
         return ""
-    alone = part_of(network, {automaton.name}, {name for name, _ in network.variables})
-    arena = Arena(alone, common_denominator([constraint.bound for constraint in alone.start]))
-    for name in _visited(automaton, network):
+    own = tuple(sorted(clocks_of(automaton)))
+    start = start_of(network, own)
+    alone = Network(own, network.variables, network.channels, (automaton,), start)
+    arena = Arena(alone, common_denominator([constraint.bound for constraint in start]))
+    for name in _visited(automaton, taken):
         if name not in stays:
             continue
         bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name].invariant)]
@@ -148,14 +159,18 @@ def _is_free(edge: Edge) -> bool:
     return not edge.controllable and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
 
 
-def _visited(automaton: Automaton, network: Network) -> Set[str]:
-    """Where the automaton may come by moves of the environment, and by receiving."""
-    taken = {
+def _taken_over(network: Network) -> Set[str]:
+    """The channels whose moves are the environment's because of one who receives."""
+    return {
         edge.sync.channel
-        for other in network.automata
-        for edge in other.edges
+        for automaton in network.automata
+        for edge in automaton.edges
         if edge.sync is not None and not edge.sync.sends and not edge.controllable
     }
+
+
+def _visited(automaton: Automaton, taken: AbstractSet[str]) -> Set[str]:
+    """Where the automaton may come by moves of the environment, and by receiving; `taken`: `_taken_over`."""
     ways: Dict[str, List[str]] = {}
     for edge in automaton.edges:
         commanded = edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import AbstractSet, Iterator, Set
+from typing import AbstractSet, Iterator, Sequence, Set, Tuple
 
 from pursue_gen.tga.network import Automaton, Constraint, Edge, Network
 
@@ -22,17 +22,23 @@ def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet
     gone = {clock for a in network.automata if a.name not in automata for clock in clocks_of(a)}
     gone -= {clock for a in kept for clock in clocks_of(a)}
     clocks = tuple(clock for clock in network.clocks if clock not in gone)
-    start = tuple(c for c in network.start if c.left not in gone and c.right not in gone)
-    if network.start and not start and clocks:
-        start = (Constraint(None, clocks[0], Fraction(0), False),)  # anything: without a bound all clocks were 0
     used = {edge.sync.channel for a in kept for edge in a.edges if edge.sync is not None}
     return Network(
         clocks,
         tuple((name, value) for name, value in network.variables if name in variables),
         tuple(channel for channel in network.channels if channel in used),
         kept,
-        start,
+        start_of(network, clocks),
     )
+
+
+def start_of(network: Network, clocks: Sequence[str]) -> Tuple[Constraint, ...]:
+    """What the network says of these clocks at the start; a clock of which it says nothing may have any value."""
+    names = {None, *clocks}
+    start = tuple(c for c in network.start if c.left in names and c.right in names)
+    if network.start and not start and clocks:
+        return (Constraint(None, clocks[0], Fraction(0), False),)  # without any bound all clocks would be 0
+    return start
 
 
 def clocks_of(automaton: Automaton) -> Set[str]:
