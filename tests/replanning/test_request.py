@@ -123,7 +123,8 @@ def test_the_command_ends_when_nobody_reads_its_answer_any_more(searching: bool)
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert process.stdin is not None and process.stdout is not None
     if searching:
-        walkers = "".join(f'agent "walker{n}" mobile {n + 1} location a\n' for n in range(5))
+        # They matter: each can do what the robots wait for.
+        walkers = "".join(f'agent "walker{n}" mobile {n + 1} location a can_do bot1_inb\n' for n in range(5))
         game = {**GOOD["game"], "scenario": GOOD["game"]["scenario"] + walkers}
         there = {f"walker{n}": "a" for n in range(5)}
         places = {f"Pwalker{n}": 1 for n in range(5)}
