@@ -35,7 +35,7 @@ class ClosedLoop {
         : rules(rules), watch(watch), arena(tables.network, factor), strategy_(tables.strategy),
           goal_(goal), bad_(bad), ranks_(ranks) {}
 
-    const Rules rules;
+    Rules rules;  // between two searches `prompt` may change: nothing that is kept depends on it
     Watch& watch;
     Arena<Z> arena;
     std::vector<bool> used;  // for each zone of the strategy whether plays reach it

@@ -79,22 +79,21 @@ Strategy read_strategy(const py::list& blocks, const py::list& constraints) {
 }
 
 // Gives Python a chance to end the work: signals, limits. It runs without the interpreter's lock.
-Watch watching(const py::function& poll) {
-    return Watch([&poll](std::size_t states, std::size_t waiting) {
+Watch::Poll polling(const py::function& poll) {
+    return [&poll](std::size_t states, std::size_t waiting) {
         const py::gil_scoped_acquire locked;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         poll(states, waiting);
-    });
+    };
 }
 
-// Calls f with a zone type that has room for the clocks: with 32-bit bounds, and where those do not do, 64-bit ones.
+// Calls f with a zone type that has room for the clocks, with 32-bit bounds, or 64-bit ones if `wide` is set.
 template <class F>
-auto with_zones(int dim, F f) {
-    try {
+auto with_zones(int dim, bool wide, F f) {
+    if (!wide) {
         if (dim <= 4) return f(Dbm<4, std::int32_t>{});
         if (dim <= 8) return f(Dbm<8, std::int32_t>{});
         if (dim <= 16) return f(Dbm<16, std::int32_t>{});
-    } catch (const std::overflow_error&) {
     }
     if (dim <= 8) return f(Dbm<8, std::int64_t>{});
     if (dim <= 16) return f(Dbm<16, std::int64_t>{});
@@ -133,31 +132,35 @@ Place read_place(const py::handle& pair) {
     return {automaton, location};
 }
 
-// What a search has to do, and how.
-struct Task {
-    std::string search;
+// How a strategy is played, and for what.
+struct Settings {
     std::int64_t factor;
     Rules rules;
     Place goal, bad;
     std::vector<std::int64_t> start;
-    bool exact;
-    std::size_t limit, many;
-    int clock;
     std::optional<Ranks> ranks;
 };
 
-Task read_task(const py::dict& in) {
-    return {in["search"].cast<std::string>(),
-            in["factor"].cast<std::int64_t>(),
-            {in["reaction"].cast<int>(), in["prompt"].cast<bool>(), in["must_end"].cast<bool>(), in["instant"].cast<int>()},
+Settings read_settings(const py::dict& in) {
+    return {in["factor"].cast<std::int64_t>(),
+            {in["reaction"].cast<int>(), false, in["must_end"].cast<bool>(), in["instant"].cast<int>()},
             read_place(in["goal"]),
             read_place(in["bad"]),
             in["start"].cast<std::vector<std::int64_t>>(),
-            in["exact"].cast<bool>(),
-            in["limit"].cast<std::size_t>(),
-            in["many"].cast<std::size_t>(),
-            in["clock"].cast<int>(),
             in["ranks"].cast<std::optional<Ranks>>()};
+}
+
+// What a search has to do, and how.
+struct Task {
+    std::string search;
+    bool prompt, exact;
+    std::size_t limit, many;
+    int clock;
+};
+
+Task read_task(const py::dict& in) {
+    return {in["search"].cast<std::string>(),  in["prompt"].cast<bool>(),      in["exact"].cast<bool>(),
+            in["limit"].cast<std::size_t>(), in["many"].cast<std::size_t>(), in["clock"].cast<int>()};
 }
 
 // What a search found out, free of the type of zones.
@@ -172,57 +175,114 @@ struct Result {
     std::vector<std::int64_t> zone;
 };
 
+// A closed loop with zones of some type.
+class AnyLoop {
+  public:
+    virtual ~AnyLoop() = default;
+    virtual Result search(const Task& task, const Watch::Poll& poll) = 0;
+};
+
 template <class Z>
-Result searched(const Tables& tables, const Task& task, Watch& watch) {
-    const int dim = tables.network.dim;
-    if (task.rules.reaction > Arena<Z>::most / 2 || task.rules.instant > Arena<Z>::most / 2)
-        throw std::overflow_error("the reaction is too long");
-    ClosedLoop<Z> loop(tables, task.factor, task.rules, task.goal, task.bad, task.ranks ? &*task.ranks : nullptr, watch);
-    Search<Z> search(loop, read_zone<Z>(task.start, dim), task.exact, task.limit);
-    Result out;
-    if (task.search == "invariant") {
-        if (const auto zones = search.invariant()) out.number = static_cast<std::int64_t>(*zones);
-    } else if (task.search == "latest") {
-        try {
-            out.number = search.latest(task.clock);
-        } catch (const Broken<Z>& broken) {
-            out.fault = static_cast<int>(broken.fault);
+class LoopOf : public AnyLoop {
+  public:
+    LoopOf(const Tables& tables, const Settings& settings)
+        : start_(read_zone<Z>(settings.start, tables.network.dim)),
+          loop_(tables, settings.factor, settings.rules, settings.goal, settings.bad,
+                settings.ranks ? &*settings.ranks : nullptr, watch_) {
+        if (std::max(settings.rules.reaction, settings.rules.instant) > Arena<Z>::most / 2)
+            throw std::overflow_error("the reaction is too long");
+    }
+
+    Result search(const Task& task, const Watch::Poll& poll) override {
+        watch_ = Watch(poll);
+        loop_.rules.prompt = task.prompt;
+        Search<Z> search(loop_, constants_, start_, task.exact, task.limit);
+        Result out;
+        if (task.search == "invariant") {
+            if (const auto zones = search.invariant()) out.number = static_cast<std::int64_t>(*zones);
+        } else if (task.search == "latest") {
+            try {
+                out.number = search.latest(task.clock);
+            } catch (const Broken<Z>& broken) {
+                out.fault = static_cast<int>(broken.fault);
+            }
+        } else {
+            note(task.search == "ends" ? search.ends() : search.all(task.many), out);
         }
-    } else {
-        const Outcome<Z> found = task.search == "ends" ? search.ends() : search.all(task.many);
+        for (std::size_t key = 0; key < loop_.used.size(); ++key)
+            if (loop_.used[key]) out.used.push_back(static_cast<int>(key));
+        return out;
+    }
+
+  private:
+    void note(const Outcome<Z>& found, Result& out) const {
         out.states = found.states;
         for (const auto* step : found.steps) out.steps.push_back(step->edges);
-        if (found.failure) {
-            out.fault = static_cast<int>(found.failure->fault);
-            out.state = loop.arena.state(found.state);
-            out.zone = matrix(found.failure->zone, dim);
-            if (found.failure->move) out.step = found.failure->move->edges;
-        }
+        if (!found.failure) return;
+        out.fault = static_cast<int>(found.failure->fault);
+        out.state = loop_.arena.state(found.state);
+        out.zone = matrix(found.failure->zone, loop_.arena.dim);
+        if (found.failure->move) out.step = found.failure->move->edges;
     }
-    for (std::size_t key = 0; key < loop.used.size(); ++key)
-        if (loop.used[key]) out.used.push_back(static_cast<int>(key));
-    return out;
-}
 
-py::dict search(const Tables& tables, const py::dict& in, const py::function& poll) {
-    const Task task = read_task(in);
-    Watch watch = watching(poll);
-    Result found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = with_zones(tables.network.dim, [&](auto z) { return searched<decltype(z)>(tables, task, watch); });
+    Watch watch_;
+    const Z start_;
+    ClosedLoop<Z> loop_;
+    std::optional<MaxConstants<Z>> constants_;
+};
+
+// A closed loop; what one search works out of it serves the next ones. The tables must outlive it.
+class Loop {
+  public:
+    Loop(const Tables& tables, const py::dict& settings) : tables_(tables), settings_(read_settings(settings)) {}
+
+    py::dict search(const py::dict& in, const py::function& poll) {
+        const Task task = read_task(in);
+        const Watch::Poll polled = polling(poll);
+        Result found;
+        {
+            const py::gil_scoped_release unlocked;
+            found = search_in_zones(task, polled);
+        }
+        py::dict out;
+        out["states"] = found.states;
+        out["used"] = found.used;
+        out["number"] = found.number;
+        out["fault"] = found.fault;
+        out["steps"] = found.steps;
+        out["step"] = found.step;
+        out["state"] = found.state;
+        out["zone"] = found.zone;
+        return out;
     }
-    py::dict out;
-    out["states"] = found.states;
-    out["used"] = found.used;
-    out["number"] = found.number;
-    out["fault"] = found.fault;
-    out["steps"] = found.steps;
-    out["step"] = found.step;
-    out["state"] = found.state;
-    out["zone"] = found.zone;
-    return out;
-}
+
+  private:
+    // Where the times are too large for the zones it starts again with wider ones, and stays with these.
+    Result search_in_zones(const Task& task, const Watch::Poll& poll) {
+        if (!wide_) {
+            try {
+                return loop().search(task, poll);
+            } catch (const std::overflow_error&) {
+                loop_.reset();
+                wide_ = true;
+            }
+        }
+        return loop().search(task, poll);
+    }
+
+    AnyLoop& loop() {
+        if (!loop_)
+            loop_ = with_zones(tables_.network.dim, wide_, [&](auto z) -> std::unique_ptr<AnyLoop> {
+                return std::make_unique<LoopOf<decltype(z)>>(tables_, settings_);
+            });
+        return *loop_;
+    }
+
+    const Tables& tables_;
+    const Settings settings_;
+    bool wide_ = false;
+    std::unique_ptr<AnyLoop> loop_;
+};
 
 // Of each block the zones of each action, to wait first, as bounds; an empty list where the block stays as it is.
 using Smaller = std::vector<std::vector<std::vector<std::vector<std::tuple<int, int, std::int64_t>>>>>;
@@ -268,12 +328,19 @@ Smaller simplified(const Tables& tables, std::int64_t factor, int late, const st
 
 py::object simplify(const Tables& tables, std::int64_t factor, int late, const std::optional<Ranks>& ranks,
                     const py::function& poll) {
-    Watch watch = watching(poll);
+    Watch watch(polling(poll));
     Smaller found;
+    const auto with = [&](bool wide) {
+        return with_zones(tables.network.dim, wide,
+                          [&](auto z) { return simplified<decltype(z)>(tables, factor, late, ranks, watch); });
+    };
     {
         const py::gil_scoped_release unlocked;
-        found = with_zones(tables.network.dim,
-                           [&](auto z) { return simplified<decltype(z)>(tables, factor, late, ranks, watch); });
+        try {
+            found = with(false);
+        } catch (const std::overflow_error&) {
+            found = with(true);
+        }
     }
     return py::cast(found);
 }
@@ -286,8 +353,10 @@ PYBIND11_MODULE(_proof, module) {
         .def(py::init([](const py::dict& network, const py::list& blocks, const py::list& constraints) {
             return Tables{read_network(network), read_strategy(blocks, constraints)};
         }));
-    module.def("search", &search, py::arg("tables"), py::arg("task"), py::arg("poll"),
-               "Searches the closed loop. Raises OverflowError where the times do not fit, and what `poll` raises.");
+    py::class_<Loop>(module, "Loop", "A closed loop, played as search.py says.")
+        .def(py::init<const Tables&, const py::dict&>(), py::arg("tables"), py::arg("settings"), py::keep_alive<1, 2>())
+        .def("search", &Loop::search, py::arg("task"), py::arg("poll"),
+             "Searches the loop. Raises OverflowError where the times do not fit, and what `poll` raises.");
     module.def("simplify", &simplify, py::arg("tables"), py::arg("factor"), py::arg("late"), py::arg("ranks"),
-               py::arg("poll"), "The strategy's zones, simplified. Raises as `search`.");
+               py::arg("poll"), "The strategy's zones, simplified. Raises as a search does.");
 }

@@ -23,9 +23,12 @@ using Passed = std::unordered_map<int, std::vector<int>>;
 template <class Z>
 class Search {
   public:
-    // With `exact` zones are not extrapolated; at most `limit` symbolic states are met.
-    Search(ClosedLoop<Z>& loop, const Z& start, bool exact, std::size_t limit)
-        : loop_(loop), start_{loop.arena.number(loop.arena.network().initial), start}, exact_(exact), limit_(limit) {
+    // With `exact` zones are not extrapolated; at most `limit` symbolic states are met. `constants` are those of the loop,
+    // if an earlier search needed them.
+    Search(ClosedLoop<Z>& loop, std::optional<MaxConstants<Z>>& constants, const Z& start, bool exact, std::size_t limit)
+        : loop_(loop), constants_(constants), start_{loop.arena.number(loop.arena.network().initial), start},
+          exact_(exact), limit_(limit) {
+        loop_.used.clear();
         loop_.arena.check_width(start);
     }
 
@@ -249,10 +252,10 @@ class Search {
     }
 
     ClosedLoop<Z>& loop_;
+    std::optional<MaxConstants<Z>>& constants_;
     const Entry<Z> start_;
     const bool exact_;
     const std::size_t limit_;
-    std::optional<MaxConstants<Z>> constants_;
 };
 
 }  // namespace pursue::proof

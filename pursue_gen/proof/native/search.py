@@ -50,7 +50,7 @@ class NativeSearches(Searches):
         if any(_UNBOUNDED <= abs(bound) < INF for bound in loop.arena.start.m):
             raise NotHeld
         self._tables = tables
-        self._task: Dict[str, Any] = {
+        settings: Dict[str, Any] = {
             "factor": factor,
             "reaction": rules.reaction,
             "must_end": rules.must_end,
@@ -60,6 +60,7 @@ class NativeSearches(Searches):
             "start": [min(bound, _UNBOUNDED) for bound in loop.arena.start.m],
             "ranks": None if ranks is None else tables.numbers(ranks, 0),
         }
+        self._native = tables.loop(settings)
 
     def everything(self, depth: Depth, monitor: LimitMonitor) -> Found:
         """All that is reachable."""
@@ -104,7 +105,6 @@ class NativeSearches(Searches):
     ) -> Optional[Dict[str, Any]]:
         """The result of a native search; None where the times that come up are too large for it."""
         task = {
-            **self._task,
             "search": search,
             "prompt": depth.prompt,
             "exact": depth.exact,
@@ -113,7 +113,7 @@ class NativeSearches(Searches):
             "clock": clock,
         }
         try:
-            return self._tables.search(task, monitor)
+            return self._native.search(task, monitor.check)
         except OverflowError:
             return None
 

@@ -47,9 +47,9 @@ class Tables:
     whole: bool
     edges: Tuple[Move, ...]
 
-    def search(self, task: Dict[str, Any], monitor: LimitMonitor) -> Dict[str, Any]:
-        """The result of a search through the closed loop. Raises OverflowError for times that are too large."""
-        return _proof.search(self.native, task, monitor.check)
+    def loop(self, settings: Dict[str, Any]) -> _proof.Loop:
+        """The native closed loop."""
+        return _proof.Loop(self.native, settings)
 
     def simplify(self, factor: int, late: int, ranks: Optional[Sequence[int]], monitor: LimitMonitor) -> Smaller:
         """Of each block the zones of each action, to wait first, as bounds in a scale that is `factor` times finer.

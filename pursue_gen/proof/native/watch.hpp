@@ -13,7 +13,7 @@ class Watch {
   public:
     using Poll = std::function<void(std::size_t states, std::size_t waiting)>;
 
-    explicit Watch(Poll poll) : poll_(std::move(poll)) {}
+    explicit Watch(Poll poll = [](std::size_t, std::size_t) {}) : poll_(std::move(poll)) {}
 
     // How far a search is: symbolic states that it reached, and those that wait to be explored.
     void reached(std::size_t states, std::size_t waiting) {
