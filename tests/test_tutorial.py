@@ -20,18 +20,9 @@ def blocks(language: str) -> List[str]:
     return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
 
 
-PATIENT = """
-import sys
-from pursue_gen.explanation import explain
-explain.DEFAULT_SECONDS = 600.0  # how much is found out in the usual time is a matter of the machine
-from pursue_gen.cli.app import main
-sys.exit(main())
-"""
-
-
 def said(folder: Path, *words: str) -> Tuple[int, str]:
     """What a command says to its reader, and its exit status."""
-    command = [sys.executable, "-c", PATIENT, *words]
+    command = [sys.executable, "-m", "pursue_gen", *words]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=False)
     return done.returncode, done.stdout + done.stderr
 

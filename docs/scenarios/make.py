@@ -33,9 +33,9 @@ from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.least_time import Guarantee
-from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, guaranteed
+from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind
@@ -48,9 +48,6 @@ PAGES, INDEX = DOCS / "scenarios", DOCS / "scenarios.md"
 
 UNTIL = 120.0
 """So long, in time units, a mission is simulated that has no goal."""
-
-_LARGE = 50_000
-"""In so many symbolic states of the checker the worst time is looked for."""
 
 _PART = re.compile(r"(<!-- made: (\w+)(?: (\d+))? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _WHAT_IF = re.compile(r"^(\| [^|\n]+ \| ([^|\n]*`[^|\n]*) \|)([^|\n]*)\|$", re.MULTILINE)
@@ -78,17 +75,12 @@ def scenario_files() -> Dict[str, Path]:
 def facts(path: Path) -> Facts:
     """Solves a scenario and proves the strategy."""
     scenario = load(path)
-    network, objective, rules = translate(scenario), scenario_objective(scenario), Rules()
     verdict = _verdict(scenario)
-    assert verdict.stats is not None
     states = verdict.stats.discrete_states
     if verdict.strategy is None:
         return Facts(path.stem, scenario, states, None, None)
-    game = played(network, rules)
-    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks)
-    won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
-    time = None if objective.kind is Kind.SAFETY else guaranteed(won, _LARGE)
-    return Facts(path.stem, scenario, states, won, time)
+    won = solved(translate(scenario), scenario_objective(scenario), Rules())
+    return Facts(path.stem, scenario, states, won, won.guarantee)
 
 
 def _verdict(scenario: Scenario) -> Verdict:

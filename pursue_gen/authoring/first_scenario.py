@@ -28,7 +28,8 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import Limits, Listener
 
-_PATIENCE = 10.0
+_WORK = 50_000_000
+"""Enough for a first scenario: ten seconds or so."""
 
 
 def scenario_text(given: Requirements, file: str) -> str:
@@ -169,5 +170,5 @@ def checked(text: str, file: str) -> Scenario:
 
 
 def tried(scenario: Scenario, progress: Optional[Listener] = None) -> None:
-    """Solves it in the default game. Raises PursueError where it is lost, or not decided in `_PATIENCE` seconds."""
-    solve_scenario(scenario, Rules(), SolveOptions(Limits(_PATIENCE), progress=progress))
+    """Solves it in the default game. Raises PursueError where it is lost, or not decided with so much `_WORK`."""
+    solve_scenario(scenario, Rules(), SolveOptions(Limits(work=_WORK), progress=progress))

@@ -95,12 +95,14 @@ def mission_of_scenario(
     """
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.language import load
+    from pursue_gen.solving.verdict import margin_text, margins
     from pursue_gen.transport.bundles import make_mission, placed
     from pursue_gen.workspace.spots import spots_in_one
 
     scenario = placed(load(file), poses.file, poses.computed)
     show(spots_in_one(scenario, poses.spot_distance))
     won = solve_and_print(scenario, request, file if explain else None)
+    info(margin_text(won, margins(won, False, request.options.limits)[0]))
     return make_mission(scenario, won, request, poses.spot_distance)
 
 

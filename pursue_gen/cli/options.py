@@ -46,6 +46,7 @@ class Optimize(str, Enum):
     """What the strategy is to have least of."""
 
     TIME = "time"
+    NONE = "none"
 
 
 def _spot_distance(metres: float) -> float:
@@ -81,8 +82,11 @@ SOLVER = typer.Option(
 VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
 OPTIMIZE = typer.Option(
     None,
-    help="time: look for the strategy with the least worst-case time to the goal, for two minutes or as --limit says; "
-    "the proven bounds are printed.",
+    help="time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
+    "says; none: take the first strategy. By default: a quick one that takes little work.",
+)
+WITHIN = typer.Option(
+    None, metavar="UNITS", help="Can the goal be reached within so many time units? A strategy that does, or status 4."
 )
 WHOLE = typer.Option(
     False,
@@ -141,6 +145,7 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
     "solver": (Optional[Solver], SOLVER),
     "verifytga": (Optional[Path], VERIFYTGA),
     "optimize": (Optional[Optimize], OPTIMIZE),
+    "within": (Optional[str], WITHIN),
     "whole": (bool, WHOLE),
     "limit": (float, LIMIT),
     "memory": (Optional[int], MEMORY),

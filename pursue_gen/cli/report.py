@@ -100,10 +100,9 @@ def _check_target(target: Path) -> None:
 def _print_tables(scenario: Scenario, reach_obj: Optional[str], solving: SolveOptions, as_json_: bool) -> None:
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.proof.margin import as_json as margin_json
-    from pursue_gen.proof.margin import describe
     from pursue_gen.report import commands
     from pursue_gen.report.make import solved_both
-    from pursue_gen.solving.verdict import margins
+    from pursue_gen.solving.verdict import margin_text, margins
 
     with progress_line(as_json_) as progress:
         both = solved_both(scenario, replace(solving, progress=progress))
@@ -118,7 +117,7 @@ def _print_tables(scenario: Scenario, reach_obj: Optional[str], solving: SolveOp
         return
     print(commands.render_table(table))
     for name, won, margin in zip(_NAMES, both, found):
-        print(f"{name} game: {describe(margin, won.strategy)}")
+        print(f"{name} game: {margin_text(won, margin)}")
         if won.guarantee:
             print(f"{name} game: {won.guarantee.in_words()}")
 

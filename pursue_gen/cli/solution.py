@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, Optional, Sequence
 
@@ -44,19 +43,18 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, file: Optional[Pa
 def explain_loss(
     problem: PursueError, files: Sequence[Path], rules: Rules, wanted: bool, limits: Limits, quiet: bool = False
 ) -> Dict[str, Any]:
-    """Prints the findings of a scenario that is lost and what would change that, within the limits and some seconds.
+    """Prints the findings of a scenario that is lost and what would change that, within the limits and some work.
 
     `quiet`: without progress. Returns {"explanation": …} for JSON. Prints nothing, and returns an empty dict, where it
     is not `wanted`, where the problem is another one, and for UPPAAL's files: they have no words of a scenario.
     """
     if not wanted or not is_lost(problem) or not are_scenario(files):
         return {}
-    from pursue_gen.explanation.explain import DEFAULT_SECONDS, as_json, explain, render
+    from pursue_gen.explanation.explain import as_json, explain, render
 
     show(problem.diagnostics)
-    seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS
-    info(f"Looking for what would change that, for at most {seconds:g} s (--no-explain leaves it out) …")
+    info("Looking for what would change that (--no-explain leaves it out) …")
     with progress_line(quiet) as progress:
-        explanation = explain(language.load(files[0]), rules, replace(limits, seconds=seconds), progress)
+        explanation = explain(language.load(files[0]), rules, limits, progress)
     info(render(explanation).rstrip())
     return {"explanation": as_json(explanation)}

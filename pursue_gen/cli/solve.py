@@ -17,7 +17,8 @@ from pursue_gen.files import shell_quoted
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
-OPTIONS = ("ends", "reaction", "slack", "engine", "limit", "memory", "solver", "verifytga", "optimize", "whole")
+SOLVERS = ("engine", "solver", "verifytga", "whole")
+OPTIONS = ("ends", "reaction", "slack", "limit", "memory", "optimize", "within", *SOLVERS)
 
 
 @guarded

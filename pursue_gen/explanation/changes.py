@@ -11,15 +11,15 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
-from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
 _SHARE = 0.5
-"""The part of the time left that one attempt may take."""
+"""The part of what is left that one attempt may take."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before it looks at the end of a long list: large numbers take longer."""
@@ -53,7 +53,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Findings:
-    """Changes that win; what was tried to the utmost and does not; what was not decided in time.
+    """Changes that win; what was tried to the utmost and does not; what was not decided within the limits.
 
     `helpful`: strategies that win a changed game in which only numbers differ, those first that say most of the game
     as it is.
@@ -84,8 +84,8 @@ class _Knob:
 def findings(
     scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
 ) -> Findings:
-    """Tries all that is small, for a scenario that is lost under these rules; takes about the time at most."""
-    clock = TimeBudget(limits, progress)
+    """Tries all that is small, for a scenario that is lost under these rules, within the limits."""
+    budget = Budget(limits, progress, phase=EXPLAINING)
     knobs = list(_knobs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
@@ -96,7 +96,7 @@ def findings(
         if knob.what == "game" and any(knobs[n].what in ("ends", "reaction") for n in won):
             continue
         try:
-            win = _least(knob, clock)
+            win = _least(knob, budget)
         except PursueError as problem:
             if problem.exit_status == 5:
                 undecided[k] = knob.label
@@ -123,16 +123,16 @@ class _Win:
     strategy: Strategy
 
 
-def _least(knob: _Knob, clock: TimeBudget) -> Optional[_Win]:
+def _least(knob: _Knob, budget: Budget) -> Optional[_Win]:
     """The smallest change that wins, between two that have been tried; None: the largest does not.
 
-    When the time is up, the smallest that is known. Raises PursueError (exit status 5) when none is.
+    At the limits, the smallest that is known. Raises PursueError (exit status 5) when none is.
     """
     last = len(knob.values) - 1
     win: Optional[_Win] = None
     low = -1
     for probe in [p for p in _PROBES if p < last] + [last] if last >= _PROBES[0] else [last]:
-        strategy = _strategy(knob.make(knob.values[probe]), clock)
+        strategy = _strategy(knob.make(knob.values[probe]), budget)
         if strategy is not None:
             win = _Win(low, probe, strategy)
             break
@@ -140,7 +140,7 @@ def _least(knob: _Knob, clock: TimeBudget) -> Optional[_Win]:
     while win is not None and win.high - win.low > 1:
         middle = (win.low + win.high) // 2
         try:
-            strategy = _strategy(knob.make(knob.values[middle]), clock)
+            strategy = _strategy(knob.make(knob.values[middle]), budget)
         except PursueError as problem:
             if problem.exit_status != 5:
                 raise
@@ -155,11 +155,11 @@ def _change(knob: _Knob, win: _Win) -> Change:
     return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
 
 
-def _strategy(variant: Variant, clock: TimeBudget) -> Optional[Strategy]:
+def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises PursueError (status 5: not decided)."""
     scenario, rules = variant
     network = played(translate(scenario), rules)
-    return clock.verdict(network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
+    return budget.verdict(network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
 
 
 # What can be changed --------------------------------------------------------------------------------------------------

@@ -1,13 +1,13 @@
 """Why an objective cannot be met, in the scenario's own words: what would change that, and a play that shows it.
 
 Everything in it was computed: each change was tried by solving again, and the next smaller one as well; every
-position of the play is one from which the solver finds the game lost. What the time was too short for is said to be so.
+position of the play is one from which the solver finds the game lost. What the budget was too small for is said to be
+so.
 """
 
 from __future__ import annotations
 
 import textwrap
-import time
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -17,22 +17,20 @@ from pursue_gen.explanation.play import counter_play
 from pursue_gen.explanation.texts import TimedLine, describe, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
-DEFAULT_SECONDS = 20.0
-"""How long an explanation may take, unless there is a limit."""
-
-_PATIENCE = Limits(DEFAULT_SECONDS)
+WORK = 100_000_000
+"""The work of an explanation: some twenty seconds."""
 
 _FOR_CHANGES = 0.65
-"""The part of the time that the search for changes may take."""
+"""The part of the limits that the search for changes may take."""
 
 
 @dataclass(frozen=True)
 class Explanation:
     """Single changes that win, in order of interest; the utmost changes that were tried and do not; those that were not
-    decided in time; and a play that is lost whatever the controller does (empty: not computed in time).
+    decided within the limits; and a play that is lost whatever the controller does (empty: not found within them).
     """
 
     changes: Tuple[Change, ...]
@@ -44,24 +42,30 @@ class Explanation:
 def explain(
     scenario: Scenario,
     rules: Rules,
-    limits: Limits = _PATIENCE,
+    limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
 ) -> Explanation:
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
-    Their seconds are for everything, the memory for each game that is solved, which `progress` reports.
+    Their seconds and their work (WORK where they name none) are for everything, the memory for each game that is
+    solved, which `progress` reports.
     """
-    began = time.monotonic()
-    found = findings(scenario, rules, replace(limits, seconds=limits.seconds * _FOR_CHANGES), progress)
+    limits = replace(limits, work=limits.work or WORK)
+    found = findings(scenario, rules, _share(limits, _FOR_CHANGES), progress)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-    left = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
+    rest = _share(limits, 1 - _FOR_CHANGES)
     try:
-        play = describe(scenario, counter_play(network, objective, rules.reaction, left, found.helpful, progress))
+        play = describe(scenario, counter_play(network, objective, rules.reaction, rest, found.helpful, progress))
     except PursueError as problem:
         if problem.exit_status != 5:
             raise
         play = ()
     return Explanation(found.changes, found.lost, found.undecided, play)
+
+
+def _share(limits: Limits, share: float) -> Limits:
+    """That share of what is left of them."""
+    return replace(limits, seconds=limits.left * share, spent=0.0, work=max(1, int(limits.work * share)))
 
 
 def render(explanation: Explanation, width: int = 110) -> str:
@@ -79,9 +83,9 @@ def render(explanation: Explanation, width: int = 110) -> str:
         for at, line in zip(times, explanation.play):
             lines.append(f"  {at:>{widest}}  {line.who + ': ' if line.who else ''}{line.text}")
     else:
-        lines.append("A play that shows it was not computed in the time.")
+        lines.append("A play that shows it was not found within the limits.")
     lines += _listed("Not enough alone:", explanation.lost, width)
-    lines += _listed("Not decided in the time:", explanation.undecided, width)
+    lines += _listed("Not decided within the limits:", explanation.undecided, width)
     return "\n".join(lines) + "\n"
 
 
@@ -99,7 +103,7 @@ def _change(change: Change) -> str:
     place = f"line {change.span.line}" if change.span else ""
     limit = f"{change.next_lost} is not enough" if change.next_lost != change.before else ""
     if not change.least:
-        limit += "; what lies between was not decided in the time" if limit else "less was not decided in the time"
+        limit += "; what lies between was not decided" if limit else "less was not decided"
     notes = "; ".join(note for note in (limit, place) if note)
     return f"{change.sentence}{f' ({notes})' if notes else ''}"
 

@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import (
     Game,
     JointMove,
@@ -26,7 +26,7 @@ from pursue_gen.synthesis.game import (
     is_goal,
     joint_moves,
 )
-from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
@@ -74,14 +74,14 @@ def counter_play(
     """A play that shows why a lost game is lost; the network is that of the game as it is played.
 
     `helpful` are strategies for games that differ in numbers only, for the controller to go by. Raises PursueError with
-    exit status 5 if the play is not found within the time.
+    exit status 5 if no play is found within the limits.
     """
-    clock = TimeBudget(limits, progress)
-    spared = _spared(network, objective, reaction, clock)
-    return _CounterPlayer(network, spared, objective, reaction, clock, helpful).play()
+    budget = Budget(limits, progress, phase=EXPLAINING)
+    spared = _spared(network, objective, reaction, budget)
+    return _CounterPlayer(network, spared, objective, reaction, budget, helpful).play()
 
 
-def _spared(network: Network, objective: Objective, reaction: Fraction, clock: TimeBudget) -> Network:
+def _spared(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Network:
     """The network without what the environment can do without, so that the play has less of what does not matter.
 
     It only loses moves that it need not make (no invariant drives them), so what is lost there is lost in the whole.
@@ -94,7 +94,7 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, clock: T
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)
-            if group and not clock.verdict(fewer, objective, reaction).won:
+            if group and not budget.verdict(fewer, objective, reaction).won:
                 network = fewer
     return network
 
@@ -113,12 +113,12 @@ class _CounterPlayer:
         spared: Network,
         objective: Objective,
         reaction: Fraction,
-        clock: TimeBudget,
+        budget: Budget,
         helpful: Sequence[Strategy],
     ) -> None:
         self._game = game = compile_game(whole, objective)
         self._reaction = reaction
-        self._oracle = PositionSolver(spared, objective, reaction, clock)
+        self._oracle = PositionSolver(spared, objective, reaction, budget)
         self._controller = Controller(game, helpful)
         self._kept = _kept(whole, spared)
         self._robots = {edge.automaton for edge in game.edges if edge.controllable}
@@ -143,7 +143,7 @@ class _CounterPlayer:
             self._been.add(here.state)
             try:
                 choice = self._next(here)
-            except PursueError:  # no time is left: what has been played holds
+            except PursueError:  # nothing is left of the limits: what has been played holds
                 break
             if choice is None:
                 return self._finish(steps, here)

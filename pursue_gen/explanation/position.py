@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.explanation.budget import TimeBudget
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import State
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.zones.scale import common_denominator
@@ -31,8 +31,8 @@ class Position:
 class PositionSolver:
     """Decides of positions of one game whether they are lost for the controller; answers are remembered."""
 
-    def __init__(self, network: Network, objective: Objective, reaction: Fraction, clock: TimeBudget) -> None:
-        self._network, self._objective, self._reaction, self._clock = network, objective, reaction, clock
+    def __init__(self, network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> None:
+        self._network, self._objective, self._reaction, self._budget = network, objective, reaction, budget
         self._largest = _largest_constants(network)
         self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}
 
@@ -43,7 +43,7 @@ class PositionSolver:
 
     def lost(self, position: Position, elapsed: Fraction = Fraction(0), horizon: Optional[int] = None) -> bool:
         """True if the controller cannot win from here; with a horizon, not even if only so much time since the start
-        counts, of which `elapsed` has passed. Raises PursueError with exit status 5 when the time is up.
+        counts, of which `elapsed` has passed. Raises PursueError with exit status 5 at a limit.
         """
         if horizon is not None and elapsed > horizon:
             return False
@@ -56,7 +56,7 @@ class PositionSolver:
                 clocks = (*clocks, elapsed)
             scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
-            self._known[key] = not self._clock.verdict(begun, self._objective, self._reaction * scale).won
+            self._known[key] = not self._budget.verdict(begun, self._objective, self._reaction * scale).won
         return self._known[key]
 
 

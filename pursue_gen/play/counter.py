@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.policy import COARSE, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.play.state import (
@@ -35,11 +34,9 @@ from pursue_gen.play.state import (
     taken,
 )
 from pursue_gen.play.world import Offer
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, changes_nothing, is_bad, is_goal
-from pursue_gen.synthesis.limits import Limits, Listener
-
-_LONG = 1e6
-"""Seconds that a whole game may be thought about."""
+from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 
 _FARTHEST = 32
 """Horizons beyond so many time units are not looked for: that can take minutes."""
@@ -260,8 +257,8 @@ def counter_game(setup: Setup, memory: int = 0, progress: Optional[Listener] = N
 
     `memory`: MiB for each question to the solver (0: no limit). Raises PursueError with exit status 5 at a limit.
     """
-    clock = TimeBudget(Limits(_LONG, memory), progress)
-    oracle = PositionSolver(setup.network, setup.objective, setup.rules.reaction, clock)
+    budget = Budget(Limits(memory=memory), progress, phase=EXPLAINING)
+    oracle = PositionSolver(setup.network, setup.objective, setup.rules.reaction, budget)
     return CounterPlay(setup, oracle, _horizon(oracle, beginning(setup).entry) if setup.safety else None)
 
 

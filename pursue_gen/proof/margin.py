@@ -29,8 +29,8 @@ STEP = Fraction(1, 20)
 CAP = Fraction(10)
 """The search ends there: no machine is so late. It is a hundred times the reaction of the default game."""
 
-QUICK, USUAL = 1_000, 3_000
-"""States for `strategy_margin` that are not noticed when a workspace is made, and such that are worth a second."""
+USUAL = 3_000
+"""States for `strategy_margin` that are worth a second."""
 
 _LIMIT_HIT = 5
 """The exit status of errors at a limit."""

@@ -14,7 +14,7 @@ from pursue_gen.partition import partition
 from pursue_gen.replay.orders import Orders, of_strategy
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import solution
+from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy
@@ -104,7 +104,7 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
         strategy = read_plan(source.plan[0], network, source.plan[1])
     else:
         try:
-            strategy = solution(ideal, objective, source.rules, SolveOptions(limits, progress=progress)).strategy
+            strategy = solved(ideal, objective, source.rules, SolveOptions(limits, progress=progress)).strategy
         except PursueError as problem:
             return Game(scenario, network, objective, None, problem.diagnostics[0].message)
     subs = partition(strategy, network, scenario.agents, source.controllers, source.reach_obj)

@@ -7,9 +7,8 @@ from typing import Callable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.explanation.explain import DEFAULT_SECONDS, explain
+from pursue_gen.explanation.explain import explain
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.margin import describe
 from pursue_gen.report import tables
 from pursue_gen.report.commands import Game
 from pursue_gen.report.recording import simulated
@@ -19,7 +18,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.solvers import solved
-from pursue_gen.solving.verdict import margins
+from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
@@ -52,7 +51,7 @@ def won_report(
 ) -> Report:
     """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
-    margin = describe(margins(won, False, limits)[0], won.strategy)
+    margin = margin_text(won, margins(won, False, limits)[0])
     game, ideal = (Game(one.network, one.strategy, one.reaction) for one in both)
     policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
     policy = policies[0].reach_obj
@@ -72,7 +71,6 @@ def lost_report(
     """The report on a scenario that is not won, as `problem` says: why, and what would change that."""
     rules = Rules()
     lost = is_lost(problem)
-    seconds = min(limits.seconds, DEFAULT_SECONDS) if limits.seconds else DEFAULT_SECONDS
-    explanation = explain(scenario, rules, replace(limits, seconds=seconds), progress) if lost else None
+    explanation = explain(scenario, rules, limits, progress) if lost else None
     network = played(translate(scenario), rules)
     return Report(scenario, network, rules, lost=Lost(problem.diagnostics, explanation, lost), floor=floor)

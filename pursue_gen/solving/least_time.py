@@ -17,7 +17,6 @@ at most the multiple, and a bisection over the multiples finds v itself.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Tuple
@@ -25,28 +24,24 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import compile_game
-from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
 from pursue_gen.zones.scale import least_common_multiple
 
-SECONDS = 120.0
-"""The time of the search where no limit is set; then the best strategy found so far counts."""
+WORK = 600_000_000
+"""The work of the search where no limit is set: some two minutes. Then the best strategy found so far counts."""
 
 TOLERANCE = Fraction(1, 10)
 """A strategy that is made for a deadline keeps v and at most so many time units more."""
 
 _SHARE = 0.4
-"""The part of the time that is left which one game of the search may take."""
+"""The part of what is left of the limits that one game of the search may take."""
 
 _NEAR = 8
 """A reaction delay that is the unit of the search costs so much or less, as a rule: once per command of a play."""
-
-_LEAST_SECONDS = 0.05
-"""With less time left no game is begun."""
 
 _LIMIT_HIT = 5
 """The exit status of errors at a limit."""
@@ -70,12 +65,8 @@ class Guarantee:
 
     def in_words(self) -> str:
         """A line for people."""
-        best = f"the least worst-case time is {_decimal(self.least)} (infimum)"
-        if not self.exact:
-            best = f"no strategy guarantees less than {_decimal(self.least)}"
-            best += ", better ones than this one may exist"
-        here = "not found out" if self.worst is None else f"at most {_decimal(self.worst)} time units"
-        return f"Time to the goal: {here}; {best}."
+        here = "not found out" if self.worst is None else f"at most {decimal(self.worst)} time units"
+        return f"Time to the goal: {here}; nothing below {decimal(self.least)} can be promised."
 
     def as_json(self) -> Dict[str, Any]:
         """For machines; numbers are exact, as fractions in texts."""
@@ -114,24 +105,24 @@ def fastest(
     known: Optional[Fraction],
     options: SolveOptions = DEFAULT,
 ) -> Tuple[Guarantee, Optional[Faster]]:
-    """Encloses v of a reach game that is won, as closely as the limits (`SECONDS` where they name none) allow.
+    """Encloses v of a reach game that is won, as closely as the limits allow (WORK where they name none).
 
     `known`: what a strategy at hand takes at worst; of the options limits, engine and progress count. With it the
     strategy that takes v, or the best one that was found; None: the one at hand is as good.
     """
-    start, unit, limits = time.monotonic(), reaction.denominator, options.limits
-    limits = limits if limits.seconds else replace(limits, seconds=SECONDS, spent=0.0)
+    limits, unit = options.limits, reaction.denominator
+    limits = limits if limits.seconds or limits.work else replace(limits, work=WORK)
+    budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     first, counted = bounds(network, objective, reaction, known), with_counter(network)
     low = int(first.least * unit)
     if reaction and known is not None and not first.exact:
         # Who may be late has no advantage of it, and commands that come at once make a smaller game.
         prompt = bounds(network, objective, Fraction(0), known)
-        some = replace(limits, seconds=limits.spent + limits.left / 2)
-        search = _Search(counted, objective, Fraction(0), replace(options, limits=some))
+        search = _Search(counted, objective, Fraction(0), budget.split(0.5))
         search.run(int(prompt.least), None if prompt.most is None else int(prompt.most))
         low = max(low, search.low * unit)
     near = low > first.least * unit
-    search = _Search(counted, objective, reaction, replace(options, limits=limits.since(start)))
+    search = _Search(counted, objective, reaction, budget)
     search.run(low, None if first.most is None else int(first.most * unit), near)
     search.leave_room()
     most = None if search.high is None else Fraction(search.high, unit)
@@ -142,8 +133,8 @@ def fastest(
 class _Search:
     """The bisection: `low` <= k * v is proven, k * v <= `high` as well (None: nothing known)."""
 
-    def __init__(self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> None:
-        self._objective, self._options, self._start = objective, options, time.monotonic()
+    def __init__(self, network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> None:
+        self._objective, self._budget = objective, budget
         self._unit = reaction.denominator
         self._fine = least_common_multiple((2 * self._unit, TOLERANCE.denominator))
         self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
@@ -152,13 +143,13 @@ class _Search:
         self.faster: Optional[Faster] = None
 
     def run(self, low: int, high: Optional[int], near: bool = False) -> None:
-        """Narrows down what is known already, as far as the time allows.
+        """Narrows down what is known already, as far as the budget allows.
 
         The lower bound is tried first; `near`: what is not far above it, because v is likely to be there.
         """
         self.low, self.high = low, high
         floor, leap = low, _NEAR if near else 1
-        while (self.high is None or floor < self.high) and self._left() > _LEAST_SECONDS:
+        while (self.high is None or floor < self.high) and not self._budget.used_up:
             at = floor + leap - 1
             at = at if self.high is None else min(at, (floor + self.high) // 2)
             won = self._won(at)
@@ -175,19 +166,14 @@ class _Search:
         if self.faster is not None and Fraction(deadline, self._fine) > self.faster.kept:
             self._met(deadline)
 
-    def _left(self) -> float:
-        return self._options.limits.since(self._start).left
-
     def _won(self, at: int) -> Optional[bool]:
-        """Whether v is at most `at`; None: not decided in its share of the time that is left."""
+        """Whether v is at most `at`; None: not decided in its share of what is left."""
         return self._met(at * self._fine // self._unit + 1)
 
     def _met(self, deadline: int) -> Optional[bool]:
         game = with_deadline(self._network, self._objective, deadline)
-        limits = Limits(self._left() * _SHARE, self._options.limits.memory)
         try:
-            engine, progress = self._options.engine, self._options.progress
-            verdict = solve(game, self._objective, self._reaction, engine, limits, progress)
+            verdict = self._budget.verdict(game, self._objective, self._reaction, _SHARE)
         except PursueError as problem:
             if problem.exit_status != _LIMIT_HIT:
                 raise
@@ -236,5 +222,6 @@ def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:
     return replace(strategy, blocks=tuple(map(block, strategy.blocks)))
 
 
-def _decimal(value: Fraction) -> str:
+def decimal(value: Fraction) -> str:
+    """A time for people, with six digits."""
     return f"{float(value):.6g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Optional
 
@@ -15,15 +16,17 @@ class SolveOptions:
 
     `limits` hold for solving and proving together; `progress` is called a few times a second. `engine`: "native",
     "python", or None for the native one where it was built. `optimize`: "time" for the strategy with the least
-    worst-case time to the goal, None for the first one found. `whole`: what cannot matter is not left out of the game
-    (an experiment: it takes longer, and finds the same). `solver`: None for the built-in solver, "verifytga" for
-    UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
+    worst-case time to the goal, "none" for the first one found, None for a quick one that is found with little work.
+    `within`: the goal has to be reached in so many time units; None: some time. `whole`: what cannot matter is not left
+    out of the game (an experiment: it takes longer, and finds the same). `solver`: None for the built-in solver,
+    "verifytga" for UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
     """
 
     limits: Limits = NO_LIMITS
     engine: Optional[str] = None
     progress: Optional[Listener] = None
     optimize: Optional[str] = None
+    within: Optional[Fraction] = None
     whole: bool = False
     solver: Optional[str] = None
     verifytga: Optional[Path] = None

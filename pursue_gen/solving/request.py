@@ -26,7 +26,8 @@ class SolveRequest:
     """Which controllers for which game, and where its strategy comes from.
 
     `controllers` and `reach_obj`: as for `partition`. `ends`, `reaction`, `slack`: the game, as typed; None or empty
-    for the defaults of `Rules`. `plan`: a file with a plan to use instead of solving. `options`: how to solve.
+    for the defaults of `Rules`. `within`: the time to the goal, as typed. `plan`: a file with a plan to use instead of
+    solving. `options`: how to solve.
     """
 
     controllers: str = "distributed"
@@ -34,6 +35,7 @@ class SolveRequest:
     ends: Optional[str] = None
     reaction: Optional[str] = None
     slack: Tuple[str, ...] = ()
+    within: Optional[str] = None
     plan: Optional[Path] = None
     options: SolveOptions = DEFAULT
 
@@ -49,7 +51,7 @@ class SolveRequest:
 
     def rules(self, network: Network) -> Rules:
         """The game; the slack's agents are those of the network. Raises PursueError (exit status 2)."""
-        reaction = DEFAULT_RULES.reaction if self.reaction is None else _reaction(self.reaction)
+        reaction = DEFAULT_RULES.reaction if self.reaction is None else _time("reaction", self.reaction, 1000)
         ends = CONTROLLABLE if self.decides_ends else self.ends or DEFAULT_RULES.ends
         rules = Rules(ends, reaction, _slack(network, self.slack))
         if rules.slack and rules.ends == CONTROLLABLE:
@@ -70,22 +72,26 @@ def solution_of(
 
     Raises what `take_plan` and `solved` do; with exit status 2 for options that contradict each other.
     """
-    options = replace(request.options, progress=progress)
+    deadline = None if request.within is None else _time("within", request.within, 1_000_000)
+    options = replace(request.options, progress=progress, within=deadline)
     if request.plan is None:
         return solved(network, objective, request.rules(network), options)
     if options.solver is not None or options.verifytga is not None:
         raise usage_error("there is a plan, and a solver to make one", "use --plan or --solver, not both")
+    if deadline is not None:
+        raise usage_error("there is a plan, and a time for one to be made", "use --plan or --within, not both")
     return take_plan(request.plan, network, objective, request.games(network), options)
 
 
-def _reaction(text: str) -> Fraction:
+def _time(name: str, text: str, most: int) -> Fraction:
+    """A number of time units. Raises PursueError (exit status 2)."""
     hint = "a number of time units from 0 on, such as 0.1, 1/20 or 0"
     try:
         value = exact(text)
     except ValueError:
-        raise usage_error(f"the reaction is '{text}'", hint) from None
-    if value < 0 or value > 1000 or value.denominator > 1000:
-        raise usage_error(f"the reaction is {text}; expected 0 to 1000, in steps of at least 1/1000", hint)
+        raise usage_error(f"the {name} is '{text}'", hint) from None
+    if value < 0 or value > most or value.denominator > 1000:
+        raise usage_error(f"the {name} is {text}; expected 0 to {most}, in steps of at least 1/1000", hint)
     return value
 
 

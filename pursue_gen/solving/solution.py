@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.least_time import SECONDS, Guarantee, bounds, fastest, unscaled
+from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
@@ -25,13 +25,17 @@ from pursue_gen.tga.network import Kind, Network, Objective
 
 _CANNOT_BE_MET = "SYN021"
 
+_FOR_IDEAL = 50_000_000
+"""The work that may be spent on whether a lost game is won ideally: some ten seconds."""
+
 
 @dataclass(frozen=True)
 class Solution:
     """A proven strategy for the objective in `network` (the game as it is played, ends and slack included).
 
     `rules` are those of that game, `reaction` is theirs, in time units; `guarantee`: how long it takes at worst, where
-    that was computed; `warnings`: what to know before it is used.
+    that was computed; `within`: in how many time units it has to come to the goal, where that is given; `warnings`:
+    what to know before it is used.
     """
 
     network: Network
@@ -42,6 +46,7 @@ class Solution:
     guarantee: Optional[Guarantee] = None
     rules: Rules = DEFAULT_RULES
     warnings: Tuple[Diagnostic, ...] = ()
+    within: Optional[Fraction] = None
 
     @property
     def part(self) -> Network:
@@ -73,9 +78,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     Raises as `solution`, and with exit status 2 for an objective without a goal. A limit that is hit after the first
     strategy ends the search, and the best one that is proven counts.
     """
-    if objective.kind is Kind.SAFETY:
-        hint = "leave --optimize time out; it is for objectives with a goal: reach_objective: do ..."
-        raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)], exit_status=2)
+    check_goal(objective, "--optimize time")
     start, limits = time.monotonic(), options.limits
     won = solution(network, objective, rules, options)
     known = guaranteed(won, LIMIT, limits.since(start))
@@ -83,15 +86,14 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     if faster is None:
         return replace(won, guarantee=found)
     delay = rules.reaction * faster.fine
-    left = limits.since(start) if limits.seconds else Limits(SECONDS, limits.memory)
+    left = limits.since(start)
     try:
-        proving = replace(options, limits=left)
-        strategy = prove(faster.game, objective, faster.strategy, delay, faster.ranks, proving)
+        strategy = prove(faster.game, objective, faster.strategy, delay, faster.ranks, replace(options, limits=left))
     except PursueError as problem:
         if problem.exit_status != 5:
             raise
         return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
-    counted = _with_clocks_of(with_counter(won.part), won.network)
+    counted = with_clocks_of(with_counter(won.part), won.network)
     fast = replace(won, network=counted, strategy=unscaled(strategy, counted, faster.fine))
     took = guaranteed(fast, LIMIT, left)
     if took.worst is None or took.most is None or found.most is None:
@@ -100,13 +102,20 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     return replace(fast, guarantee=replace(found, worst=min(took.worst, faster.kept), most=most))
 
 
+def check_goal(objective: Objective, option: str) -> None:
+    """Raises PursueError (exit status 2) for an objective without a goal, where an option is about the time to it."""
+    if objective.kind is Kind.SAFETY:
+        hint = f"leave {option} out; it is for objectives with a goal: reach_objective: do ..."
+        raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)], exit_status=2)
+
+
 def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:
     """The worst-case time of a reach game's strategy, where at most so many symbolic states of the checker tell it."""
     worst = worst_case(won.network, won.objective, won.strategy, won.reaction, states, limits)
     return bounds(won.part, won.objective, won.reaction, worst)
 
 
-def _with_clocks_of(counted: Network, network: Network) -> Network:
+def with_clocks_of(counted: Network, network: Network) -> Network:
     """The network with the clock that was added to a part of it."""
     added = tuple(clock for clock in counted.clocks if clock not in network.clocks)
     start = tuple(c for c in counted.start if c.left in added)
@@ -139,8 +148,9 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
 
 
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:
-    """True if the ideal game is known to be won; that it is not decided in time takes nothing from the verdict."""
+    """True if the ideal game is known to be won; that it is not decided with so much work changes no verdict."""
+    limits = replace(options.limits, work=_FOR_IDEAL)
     try:
-        return solve(network, objective, engine=options.engine, limits=options.limits, progress=options.progress).won
+        return solve(network, objective, engine=options.engine, limits=limits, progress=options.progress).won
     except PursueError:
         return False

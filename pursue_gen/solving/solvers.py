@@ -5,6 +5,7 @@ What only UPPAAL-TIGA needs is imported when it is used.
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Optional
@@ -12,10 +13,14 @@ from typing import Optional
 from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.files import write_texts
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.quick import quick, within
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, fastest_solution, guaranteed, solution
+from pursue_gen.solving.solution import Solution, check_goal, fastest_solution, guaranteed, solution
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga.network import Kind, Network, Objective
+
+_FASTEST, _FIRST = "time", "none"
+"""What `optimize` may be; None: a quick strategy."""
 
 
 def solved(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
@@ -27,11 +32,10 @@ def solved(network: Network, objective: Objective, rules: Rules, options: SolveO
     if options.solver is None:
         if options.verifytga is not None:
             raise usage_error("--verifytga names a program that is not used", "add --solver verifytga")
-        if options.optimize is not None:
-            return fastest_solution(network, objective, rules, options)
-        return _timed(solution(network, objective, rules, options), options.limits)
-    if options.optimize is not None:
-        raise usage_error("UPPAAL-TIGA's solver does not look for the least time", "leave out --optimize or --solver")
+        return _built_in(network, objective, rules, options)
+    if options.optimize is not None or options.within is not None:
+        hint = "leave out --solver, or --optimize and --within"
+        raise usage_error("UPPAAL-TIGA's solver does not look at the time to the goal", hint)
     if options.engine is not None:
         message = f"{options.engine} is an engine of the built-in solver"
         raise usage_error(message, "use --engine or --solver verifytga, not both")
@@ -42,6 +46,24 @@ def solved(network: Network, objective: Objective, rules: Rules, options: SolveO
     assert verdict.strategy is not None  # it raises where there is none
     won = Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats, rules=rules)
     return _timed(won, options.limits)
+
+
+def _built_in(network: Network, objective: Objective, rules: Rules, options: SolveOptions) -> Solution:
+    """The proven solution of the built-in solver: as quick as the options ask for."""
+    start = time.monotonic()
+    if options.within is not None:
+        check_goal(objective, "--within")
+        if options.optimize is not None:
+            message = "the time to the goal is given, and to be optimized"
+            raise usage_error(message, "use --within or --optimize, not both")
+        return within(solution(network, objective, rules, options), options.within, options.since(start))
+    if options.optimize == _FASTEST:
+        return fastest_solution(network, objective, rules, options)
+    won = solution(network, objective, rules, options)
+    left = options.since(start)
+    if objective.kind is Kind.SAFETY or options.optimize == _FIRST:
+        return _timed(won, left.limits)
+    return quick(won, left)
 
 
 def _timed(won: Solution, limits: Limits) -> Solution:

@@ -9,6 +9,7 @@ from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
 from pursue_gen.proof.margin import as_json as margin_json
 from pursue_gen.proof.margin import in_words as margin_in_words
+from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules, rules_text
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import UNDECIDED, Limits
@@ -25,7 +26,8 @@ def verdict_text(won: Solution) -> str:
     """The verdict of a game that is won: what it took, and how long a play takes, where that is known."""
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    text = f"won: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}, proven"
+    kept = "" if won.within is None else f" within {decimal(won.within)} time units"
+    text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}, proven"
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
 
 
@@ -66,6 +68,8 @@ def verdict_json(
         result.update(margin=margin_json(margin), playable=playable)
     if won and won.guarantee:
         result["time"] = won.guarantee.as_json()
+    if won and won.within is not None:
+        result["within"] = str(won.within)
     if game_margin:
         result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]

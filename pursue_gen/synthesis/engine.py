@@ -15,13 +15,15 @@ class Counts:
     """What deciding a game took.
 
     `discrete_states`: those that were reached; `zones`: of the result; `evaluations`: of discrete states by the
-    fixpoint; `symbolic_states`: zones whose successors were computed, as other tools count them (0: not counted).
+    fixpoint; `symbolic_states`: zones whose successors were computed, as other tools count them (0: not counted);
+    `work`: as `Limits.work` counts it.
     """
 
     discrete_states: int
     zones: int
     evaluations: int
     symbolic_states: int = 0
+    work: int = 0
 
 
 @dataclass(frozen=True)

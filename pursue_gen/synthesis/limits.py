@@ -1,4 +1,4 @@
-"""Limits on the time and memory of a search, its progress, and the error at a limit."""
+"""Limits on the time, memory and work of a search, its progress, and the error at a limit."""
 
 from __future__ import annotations
 
@@ -22,15 +22,17 @@ _CHECK_INTERVAL, _REPORT_INTERVAL = 0.05, 0.2
 
 @dataclass(frozen=True)
 class Limits:
-    """Seconds, MiB of the whole process, discrete states of an engine; 0: no limit.
+    """Seconds, MiB of the whole process, discrete states of an engine, its work; 0: no limit.
 
-    `spent`: so many of the seconds are used up already. The checker counts symbolic states, with a limit of its own.
+    `spent`: so many of the seconds are used up already. `work` counts the steps of an engine and the pairs of zones
+    that it combines, so it is the same on every machine. The checker counts symbolic states, with a limit of its own.
     """
 
     seconds: float = 0.0
     memory: int = 0
     spent: float = 0.0
     states: int = 0
+    work: int = 0
 
     @property
     def left(self) -> float:
@@ -56,7 +58,7 @@ class Progress:
 Listener = Callable[[Progress], None]
 """Called with the progress a few times a second."""
 
-SOLVING, PROVING = "solving", "proving"
+SOLVING, PROVING, EXPLAINING = "solving", "proving", "explaining"
 UNDECIDED = "SYN010"
 """The code of the error at a limit."""
 
@@ -72,6 +74,7 @@ class LimitMonitor:
         self._start = time.monotonic()
         self._next_check = self._next_report = 0.0
         self._reached = NOTHING_YET
+        self.work = 0
 
     def admit(self, states: int, waiting: int) -> None:
         """Raises PursueError (exit status 5) where one more discrete state would be too many."""
@@ -80,8 +83,13 @@ class LimitMonitor:
             self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
             raise self.stopped("states")
 
-    def check(self, states: int, waiting: int) -> None:
-        """Raises PursueError (exit status 5) at a limit."""
+    def check(self, states: int, waiting: int, work: int = 1) -> None:
+        """Raises PursueError (exit status 5) at a limit; `work` is what was done since the last check."""
+        self.work += work
+        if 0 < self._limits.work < self.work:
+            seconds = time.monotonic() - self._start
+            self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
+            raise self.stopped("work")
         seconds = time.monotonic() - self._start
         late = 0 < self._limits.left < seconds
         if seconds < self._next_check and not late:
@@ -97,15 +105,20 @@ class LimitMonitor:
             self._listener(self._reached)
 
     def stopped(self, which: str) -> PursueError:
-        """What to raise where the limit on "seconds" or "memory" ended the work."""
+        """What to raise where this limit ended the search, see `limit_reached`."""
         return limit_reached(which, self._limits, self._reached)
 
 
 def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
-    """The error at a limit: which one ("seconds", "memory" or "states"), how far the work was, what to do."""
+    """The error at a limit: which one ("seconds", "memory", "states" or "work"), how far the work was, what to do."""
     proving = reached.phase == PROVING
-    shown = {"seconds": f"{limits.seconds:g} seconds", "memory": f"{limits.memory} MiB of memory"}
-    where = f"within the limit of {shown.get(which, f'{limits.states} discrete states')}"
+    shown = {
+        "seconds": f"{limits.seconds:g} seconds",
+        "memory": f"{limits.memory} MiB of memory",
+        "states": f"{limits.states} discrete states",
+        "work": f"{limits.work} units of work",
+    }
+    where = f"within the limit of {shown[which]}"
     hint = "make the scenario smaller: fewer agents, POIs or events"
     if which == "memory" and not limits.memory:
         where = "with the memory that there is"

@@ -23,7 +23,8 @@ from pursue_gen.tga.network import Kind, Network, Objective
 class Stats:
     """What it took: the name of the engine, discrete states, zones of the result, seconds to decide.
 
-    `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted.
+    `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted. `work`: as
+    `Limits.work` counts it.
     """
 
     engine: str
@@ -31,6 +32,7 @@ class Stats:
     zones: int
     seconds: float
     symbolic_states: int = 0
+    work: int = 0
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,8 @@ def solve(
         chosen = next(other for other in ENGINES if other.available() and other.holds(game))
     outcome = chosen.solve(game, limits, progress)
     counts = outcome.counts
-    stats = Stats(chosen.name, counts.discrete_states, counts.zones, outcome.seconds, counts.symbolic_states)
+    took = outcome.seconds, counts.symbolic_states, counts.work
+    stats = Stats(chosen.name, counts.discrete_states, counts.zones, *took)
     if not outcome.won:
         return Verdict(False, None, stats, None)
     blocks, ranks = outcome.blocks, outcome.ranks

@@ -8,9 +8,9 @@ from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.margin import QUICK, describe, strategy_margin
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.workspace import Options, machines_for, write_workspace
 from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
 
@@ -61,9 +61,7 @@ def make_workspace(
     force: bool = False,
 ) -> Made:
     """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it and `machines_for`."""
-    limits = request.options.limits
-    found = strategy_margin(won.network, won.objective, won.strategy, won.reaction, QUICK, limits)
-    margin = describe(found, won.strategy)
+    margin = margin_text(won, margins(won, False, request.options.limits)[0])
     options = options_for(request, won, margin, extras)
     findings = spots_in_one(scenario, extras.spot_distance)
     if extras.machines is not None:

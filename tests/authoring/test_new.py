@@ -287,7 +287,7 @@ def test_names_that_collide_in_the_network_are_reported(folder: Path) -> None:
 def test_without_a_verdict_in_time_the_scenario_is_written_and_that_is_reported(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pursue_gen.authoring.first_scenario._PATIENCE", 1e-9)
+    monkeypatch.setattr("pursue_gen.authoring.first_scenario._WORK", 1)
     done = pursue("new", "floor", "--yes")
     assert (done.status, done.out) == (0, "floor.pur\n")
     assert "limit" in done.err and "whatever the others do" not in done.err

@@ -11,8 +11,6 @@ from typing import Tuple
 
 import pytest
 
-from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
@@ -207,13 +205,13 @@ def test_a_change_that_only_moves_the_problem_is_no_claim() -> None:
     assert not any(change.what == "distance" for change in explanation.changes)
 
 
-def test_where_there_is_no_time_nothing_is_claimed() -> None:
-    explanation = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, Limits(0.0))
+def test_without_a_budget_nothing_is_claimed() -> None:
+    explanation = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, Limits(work=1))
     assert explanation.changes == explanation.lost == explanation.play == ()
     assert "a later deadline" in explanation.undecided
     text = render(explanation)
-    assert "Not decided in the time: " in text
-    assert "not computed in the time" in text
+    assert "Not decided within the limits: " in text
+    assert "not found within the limits" in text
 
 
 def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
@@ -222,19 +220,6 @@ def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
     slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), Limits(PLENTY))
     (reaction,) = [change for change in slow.changes if change.what == "reaction"]
     assert Fraction(reaction.after) + Fraction(3, 10) == Fraction(reaction.next_lost)
-
-
-def test_without_the_native_engine_the_time_is_kept_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    scenario = parse(CALLED.format(deadline=5), "x.pur")
-    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
-    monkeypatch.setattr(native, "available", lambda: False)
-    assert TimeBudget(Limits(PLENTY)).verdict(network, objective, DEFAULT.reaction).strategy is not None
-    with pytest.raises(PursueError) as stopped:
-        TimeBudget(Limits(1e-4)).verdict(network, objective, DEFAULT.reaction)
-    assert stopped.value.exit_status == 5
-    with pytest.raises(PursueError) as refused:
-        TimeBudget(Limits(PLENTY)).verdict(network, objective, Fraction(-1))
-    assert [finding.code for finding in refused.value.diagnostics] == ["SYN001"]
 
 
 def test_solve_and_ws_explain_a_lost_scenario_after_saying_so(tmp_path: Path) -> None:

@@ -9,9 +9,9 @@ from typing import Tuple
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.explanation.budget import TimeBudget
 from pursue_gen.explanation.play import Play, counter_play
 from pursue_gen.explanation.position import Position, PositionSolver, beginning_at
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import compile_game, initial_state
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
@@ -47,7 +47,7 @@ def test_any_position_is_judged_as_brute_force_judges_it(drawn, delay):
     network, objective = drawn
     regions = RegionGame(compile_game(network, objective, Fraction(delay)))
     winning = regions.winning()
-    oracle = PositionSolver(network, objective, Fraction(delay), TimeBudget(Limits(PLENTY)))
+    oracle = PositionSolver(network, objective, Fraction(delay), Budget(Limits(PLENTY)))
     for state, clocks in sampled(regions, 12):
         assert oracle.lost(Position(state, clocks)) is ((state, clocks) not in winning)
 
@@ -58,7 +58,7 @@ def test_what_is_lost_within_a_time_is_lost_within_more_and_without_a_limit(draw
     network, objective = drawn
     game = compile_game(network, objective, Fraction(delay))
     start = Position(initial_state(game), (Fraction(0),) * len(game.clocks))
-    oracle = PositionSolver(network, objective, Fraction(delay), TimeBudget(Limits(PLENTY)))
+    oracle = PositionSolver(network, objective, Fraction(delay), Budget(Limits(PLENTY)))
     by_horizon = [oracle.lost(start, Fraction(0), horizon) for horizon in (1, 2, 4, 8, 64)]
     assert by_horizon == sorted(by_horizon)
     assert by_horizon[-1] is oracle.lost(start)
@@ -74,7 +74,7 @@ def test_what_comes_after_the_horizon_does_not_count_however_slow_the_controller
         (Edge("l0", "l0", resets=("x",), controllable=False), Edge("l0", "l1", controllable=False), Edge("l1", "l0")),
     )
     network, objective = Network(("x",), (), (), (other, obliged)), Objective(Kind.SAFETY, bad=("A0", "l2"))
-    oracle, zero = PositionSolver(network, objective, Fraction(1), TimeBudget(Limits(PLENTY))), (Fraction(0),)
+    oracle, zero = PositionSolver(network, objective, Fraction(1), Budget(Limits(PLENTY))), (Fraction(0),)
     begin = initial_state(compile_game(network, objective))
     assert oracle.lost(Position(begin, zero), Fraction(0), 1)
     left = Position(replace(begin, locations=(0, 1)), zero)

@@ -11,4 +11,5 @@ def solve(
     memory_mib: int = 0,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
     small_budget: float = 5e5,
+    work: int = 0,
 ) -> Dict[str, Any]: ...

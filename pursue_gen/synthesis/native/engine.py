@@ -67,7 +67,8 @@ class NativeEngine(Engine):
                 progress(reached)
 
         try:
-            result = _core.solve(_tables(game), limits.left, limits.states, limits.memory, report, self.small_budget)
+            tables, most = _tables(game), (limits.left, limits.states, limits.memory)
+            result = _core.solve(tables, *most, report, self.small_budget, limits.work)
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
         except MemoryError:
@@ -91,6 +92,7 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
         zones=result["zones"],
         evaluations=result["evaluations"],
         symbolic_states=result["symbolic_states"],
+        work=result["work"],
     )
     return Outcome(result["won"], tuple(blocks), ranks, counts, result["seconds"])
 

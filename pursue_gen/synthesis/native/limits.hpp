@@ -1,4 +1,4 @@
-// Limits on time, memory and states, and reports of progress.
+// Limits on time, memory, states and work, and reports of progress.
 #pragma once
 
 #include <sys/resource.h>
@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <functional>
 #include <stdexcept>
+
+#include "zones/native/effort.hpp"
 
 namespace pursue {
 
@@ -19,6 +21,7 @@ struct Limits {
     double seconds = 0;                     // 0: none
     std::size_t states = 0;                 // discrete states, 0: none
     std::size_t memory = 0;                 // MiB of the whole process, 0: none
+    std::uint64_t work = 0;                 // zones of `effort`, 0: none
     std::function<void()> poll = [] {};     // called now and then; may throw (Ctrl-C)
     // Called a few times a second, and before a limit is thrown: states, waiting, seconds, MiB. May throw.
     std::function<void(std::size_t, std::size_t, double, std::size_t)> progress;
@@ -41,6 +44,34 @@ inline std::size_t memory_in_use() {
 #endif
 }
 
+// Checks the limits within long work on zones, from its beginning to its end. One at a time per thread.
+class WorkMonitor {
+  public:
+    explicit WorkMonitor(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {
+        effort = {0, INTERVAL, [](void* self) { static_cast<WorkMonitor*>(self)->pause(); }, this};
+    }
+    ~WorkMonitor() { effort = {0, 0, nullptr, nullptr}; }
+    WorkMonitor(const WorkMonitor&) = delete;
+    WorkMonitor& operator=(const WorkMonitor&) = delete;
+
+  private:
+    static constexpr std::uint64_t INTERVAL = 256;  // zones, less than a microsecond each
+
+    void pause() {
+        effort.due = effort.zones + INTERVAL;
+        if (limits_.work && effort.zones > limits_.work) throw Limit("work");
+        const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (limits_.seconds > 0 && now > limits_.seconds) throw Limit("seconds");
+        if (now < next_poll_) return;
+        next_poll_ = now + 0.05;
+        limits_.poll();
+    }
+
+    const Limits& limits_;
+    std::chrono::steady_clock::time_point start_;
+    double next_poll_ = 0;
+};
+
 // Checks the limits between steps, and reports the progress.
 class LimitMonitor {
   public:
@@ -55,6 +86,8 @@ class LimitMonitor {
 
     // To be called often. Throws Limit, and what `poll` and `progress` throw.
     void check(std::size_t states, std::size_t waiting) {
+        ++effort.zones;
+        if (limits_.work && effort.zones > limits_.work) stop("work", states, waiting);
         const double now = spent();
         if (limits_.seconds > 0 && now > limits_.seconds) stop("seconds", states, waiting);
         if (now < next_check_) return;

@@ -102,6 +102,7 @@ py::dict outcome(bool won, Fixpoint<Z>& solver, const Game& game) {
     out["discrete_states"] = reached;
     out["zones"] = zones;
     out["evaluations"] = solver.evaluations();
+    out["work"] = effort.zones;
     return out;
 }
 
@@ -133,12 +134,13 @@ bool fits(const Game& game) {
 }
 
 py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
-               double small_budget) {
+               double small_budget, std::uint64_t work) {
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
     limits.states = states;
     limits.memory = memory;
+    limits.work = work;
     if (!progress.is_none())
         limits.progress = [&progress](std::size_t reached, std::size_t waiting, double spent, std::size_t mib) {
             progress(reached, waiting, spent, mib);
@@ -146,6 +148,7 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     limits.poll = [] {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
+    const WorkMonitor monitor(limits);
     const int dim = game.clocks + 1;
     if (fits<std::int16_t>(game)) {
         if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget);
@@ -168,6 +171,7 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
-               "Decides a compiled game. Raises LimitReached('seconds', 'states' or 'memory'). `small_budget` is the work, in pairs\n"
-               "of zones, that a safety game gets before searches with few moves take turns.");
+               py::arg("work") = 0,
+               "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). `small_budget` is the work, in\n"
+               "zones, that a safety game gets before searches with few moves take turns.");
 }

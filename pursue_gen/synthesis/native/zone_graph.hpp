@@ -188,6 +188,7 @@ class ZoneGraph {
     }
 
     void propagate(Z z, const Transition& transition) {
+        spend(1);
         const Joint& joint = joints_[transition.joint];
         Node<Z>& target = nodes_[transition.target];
         if (!guard(joint, z)) return;

@@ -86,15 +86,22 @@ class _Fixpoint(ABC):
         """The next node; None: a fixpoint."""
         if not self._queue:
             return None
-        self.check()
         number = self._queue.popleft()
         self._queued.discard(number)
+        self.check(1 + self._pairs(number))
         self.evaluations += 1
         return number
 
-    def check(self) -> None:
-        """Raises PursueError at a limit."""
-        self.graph.monitor.check(len(self.graph.nodes), len(self._queue))
+    def check(self, work: int = 1) -> None:
+        """Raises PursueError at a limit; `work` counts for what comes next."""
+        self.graph.monitor.check(len(self.graph.nodes), len(self._queue), work)
+
+    def _pairs(self, number: int) -> int:
+        """Pairs of zones that an evaluation of the node combines."""
+        node = self.graph.nodes[number]
+        targets = {move.target for move in node.controllable + node.uncontrollable if move.target >= 0}
+        led_to = sum(len(self.found[k].zones) + len(self.rest[k].zones) for k in targets)
+        return len(self.rest[number].zones) * led_to
 
     def grow(self, number: int, new: Federation) -> None:
         """Add the new positions (disjoint from what was found), and look again at what leads to the node."""
@@ -129,7 +136,7 @@ class _Fixpoint(ABC):
     def counts(self) -> Counts:
         """What it took so far."""
         zones = sum(len(federation.zones) for federation in self.found)
-        return Counts(len(self.graph.nodes), zones, self.evaluations)
+        return Counts(len(self.graph.nodes), zones, self.evaluations, work=self.graph.monitor.work)
 
 
 def _union(parts: Iterable[Federation]) -> Federation:

@@ -75,14 +75,15 @@ class ZoneGraph:
         """Follow the moves until nothing new is reached; returns the nodes in which more is reached than before."""
         changed: Set[int] = set()
         while self._waiting:
-            self.monitor.check(len(self.nodes), len(self._waiting))
             number = self._waiting.popleft()
             self._queued.discard(number)
             changed.add(number)
             node = self.nodes[number]
             if not node.expanded:
                 self._expand(node)
-            self._follow(number, node.controllable + node.uncontrollable)
+            moves = node.controllable + node.uncontrollable
+            self.monitor.check(len(self.nodes), len(self._waiting), 1 + len(moves))
+            self._follow(number, moves)
         return changed
 
     def widen(self, number: int) -> None:

@@ -1,11 +1,13 @@
 // Federations: finite unions of zones, as vectors. Zones may overlap unless a function says otherwise; no zone: no point.
 //
-// Every function requires zones as `dbm.hpp` has them, and ensures them.
+// Every function requires zones as `dbm.hpp` has them, and ensures them. Those whose work grows with the number of zones
+// call `spend`, and so may throw what its hook throws.
 #pragma once
 
 #include <utility>
 
 #include "zones/native/dbm.hpp"
+#include "zones/native/effort.hpp"
 
 namespace pursue {
 
@@ -15,6 +17,7 @@ using Federation = std::vector<Z>;
 // The points of fed that are not in the zone. Ensures: parts of one zone are disjoint, so a disjoint fed stays disjoint.
 template <class Z>
 Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
+    spend(fed.size());
     Federation<Z> out;
     out.reserve(fed.size() + 2);
     for (const auto& z : fed) subtract(z, zone, out);
@@ -34,6 +37,7 @@ template <class Z>
 Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
     for (const auto& zone : other) {
         if (fed.empty()) break;
+        spend(1);
         if (touches(fed, zone)) fed = minus(fed, zone);
     }
     return fed;
@@ -43,11 +47,13 @@ Federation<Z> minus(Federation<Z> fed, const Federation<Z>& other) {
 template <class Z>
 Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
     Federation<Z> out;
-    for (const auto& zone : b)
+    for (const auto& zone : b) {
+        spend(a.size());
         for (const auto& other : a) {
             out.push_back(other);
             if (!intersect(out.back(), zone)) out.pop_back();
         }
+    }
     return out;
 }
 
@@ -62,6 +68,7 @@ void append(Federation<Z>& a, const Federation<Z>& b) {
 // was so before.
 template <class Z>
 void insert(Federation<Z>& fed, const Z& zone) {
+    spend(fed.size());
     for (const auto& z : fed)
         if (includes(z, zone)) return;
     fed.erase(std::remove_if(fed.begin(), fed.end(), [&](const Z& z) { return includes(zone, z); }), fed.end());
@@ -101,6 +108,7 @@ template <class Z>
 void absorb(Federation<Z>& fed, Z zone) {
     for (bool again = true; again;) {
         again = false;
+        spend(fed.size());
         for (std::size_t k = 0; k < fed.size();) {
             if (!joins(fed[k], zone)) {
                 ++k;
@@ -149,6 +157,7 @@ Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
         Z past = g;
         down(past);
         Federation<Z> safe{past};
+        spend(bad.size());
         for (const auto& b : bad) {
             if (safe.empty()) break;
             if (clearly_disjoint(past, b)) continue;
@@ -181,6 +190,7 @@ Federation<Z> lasting(const Federation<Z>& fed, int delay) {
     for (const auto& zone : fed) {
         Z later = zone;
         up_within(later, delay);
+        spend(1);
         Federation<Z> good{zone};
         for (auto z : minus(Federation<Z>{later}, fed)) {
             if (down_within(z, delay)) good = minus(good, z);

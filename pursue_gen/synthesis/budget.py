@@ -1,0 +1,80 @@
+"""One budget for several games: of work, and of seconds where a person has set a limit."""
+
+from __future__ import annotations
+
+import copy
+import math
+import time
+from dataclasses import replace
+from fractions import Fraction
+from typing import Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.synthesis.limits import NOTHING_YET, SOLVING, Limits, Listener, limit_reached
+from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.tga.network import Network, Objective
+
+_PER_EDGE = 200
+"""Work that counts for an edge of a network: it is translated for the engine, in about the time of so many steps."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+
+class Budget:
+    """How much is left of limits that several games share; a game ends where its part is used up.
+
+    The limit on memory is one for each game. `progress` is called with this phase; `engine` and `whole` as
+    for `solve`.
+    """
+
+    def __init__(
+        self,
+        limits: Limits,
+        progress: Optional[Listener] = None,
+        engine: Optional[str] = None,
+        phase: str = SOLVING,
+        whole: bool = False,
+    ) -> None:
+        self._limits, self._engine, self._games_whole = limits, engine, whole
+        self._whole: Optional[Budget] = None
+        self._progress = progress and (lambda reached: progress(replace(reached, phase=phase)))
+        self._start = time.monotonic()
+        self.work: float = limits.work or math.inf
+
+    @property
+    def used_up(self) -> bool:
+        """True if nothing is left."""
+        late = bool(self._limits.seconds) and self._limits.since(self._start).left < 1e-6
+        return self.work < 1 or late
+
+    def part(self, share: float = 1.0) -> Limits:
+        """That share of what is left."""
+        work = max(1, int(self.work * share)) if self.work < math.inf else 0
+        return replace(self._limits, seconds=self._limits.since(self._start).left * share, spent=0.0, work=work)
+
+    def verdict(self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
+        """The verdict of `solve`. Raises PursueError (exit status 5) where that share of what is left is too little."""
+        limits = self.part(share)
+        if self.used_up:
+            raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
+        self._spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
+        try:
+            verdict = solve(network, objective, reaction, self._engine, limits, self._progress, self._games_whole)
+        except PursueError as problem:
+            if problem.exit_status == _LIMIT_HIT:
+                self._spend(limits.work)
+            raise
+        self._spend(verdict.stats.work)
+        return verdict
+
+    def split(self, share: float) -> Budget:
+        """A budget of that share of what is left; what it spends is spent of this one too."""
+        some = copy.copy(self)
+        some._whole, some._limits, some._start, some.work = self, self.part(share), time.monotonic(), self.work * share
+        return some
+
+    def _spend(self, work: int) -> None:
+        self.work -= work
+        if self._whole is not None:
+            self._whole._spend(work)

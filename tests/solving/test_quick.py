@@ -1,0 +1,165 @@
+"""Default strategies are quick missions; `--within` answers whether a time can be kept."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Tuple
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import load
+from pursue_gen.proof.checker import verify
+from pursue_gen.solving import quick as quick_module
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.quick import quick, within
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import guaranteed, solution
+from pursue_gen.solving.solvers import solved
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.uppaal import read_network, read_query
+from tests.cli.test_commands import pursue
+from tests.conftest import thesis_scenario
+from tests.synthesis.random_games import networks
+
+NOW = SolveOptions()
+FIRST, THIEF = thesis_scenario("1"), thesis_scenario("1").with_name("catch_the_thief.pur")
+needs_native = pytest.mark.skipif(not native.available(), reason="the Python engine finds other strategies")
+LEAST = {"1": "23.3", "2": "23.3", "3": "23.4", "4": "26.4"}
+
+
+def _game(file: Path) -> Tuple[Network, Objective]:
+    scenario = load(str(file))
+    return translate(scenario), scenario_objective(scenario)
+
+
+def _published(folder: Path, name: str) -> Tuple[Network, Objective]:
+    network = read_network((folder / name / "TGA.xml").read_text(), "TGA.xml")
+    return network, read_query((folder / name / "TCTL.q").read_text(), "TCTL.q")
+
+
+def _is_quick(game: Tuple[Network, Objective], least: str) -> None:
+    """It takes at most a tenth longer than the least worst-case time, and wins, as the checker sees it."""
+    found = solved(*game, Rules())
+    guarantee = found.guarantee
+    assert guarantee is not None and guarantee.worst is not None
+    assert guarantee.least <= Fraction(least) <= guarantee.worst <= Fraction(11, 10) * Fraction(least)
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok
+
+
+@needs_native
+@pytest.mark.parametrize("number", LEAST)
+def test_the_thesis_scenarios_are_quick(number: str) -> None:
+    _is_quick(_game(thesis_scenario(number)), LEAST[number])
+
+
+@needs_native
+def test_the_thief_is_caught_quickly() -> None:
+    _is_quick(_game(THIEF), "20.6")
+
+
+@needs_native
+@pytest.mark.parametrize(("name", "least"), [("CT1", "61.9"), ("CT2a", "79.2")])
+def test_published_scenarios_are_quick(reference_dir: Path, name: str, least: str) -> None:
+    _is_quick(_published(reference_dir, name), least)
+
+
+@needs_native
+def test_the_same_strategy_comes_out_however_long_it_takes() -> None:
+    game = _game(THIEF)
+    assert solved(*game, Rules()).strategy == solved(*game, Rules(), SolveOptions(Limits(3600.0))).strategy
+
+
+def test_without_work_the_first_strategy_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = solution(*_game(THIEF), Rules())
+    monkeypatch.setattr(quick_module, "WORK", 1)
+    found = quick(first, NOW)
+    assert found.strategy == first.strategy
+    assert found.guarantee is not None and found.guarantee.worst == guaranteed(first, quick_module.STATES).worst
+
+
+def test_the_first_strategy_can_be_asked_for() -> None:
+    game = _game(THIEF)
+    assert solved(*game, Rules(), SolveOptions(optimize="none")).strategy == solution(*game, Rules()).strategy
+
+
+@pytest.mark.parametrize(("deadline", "won"), [("23.2", False), ("23.31", True), ("40", True)])
+def test_a_time_can_be_kept_or_not(deadline: str, won: bool) -> None:
+    first = solution(*_game(FIRST), Rules())
+    if won:
+        found = within(first, Fraction(deadline), NOW)
+        assert found.within == Fraction(deadline)
+        assert found.guarantee is not None and found.guarantee.worst is not None
+        assert found.guarantee.worst <= Fraction(deadline)
+        return
+    with pytest.raises(PursueError, match=f"within {deadline} time units") as problem:
+        within(first, Fraction(deadline), NOW)
+    assert problem.value.exit_status == 4
+    assert problem.value.diagnostics[0].code == "SYN023"
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(networks((Kind.REACH, Kind.REACH_WHILE_SAFE)), st.sampled_from((0, 1)), st.integers(0, 8))
+def test_on_random_games_what_is_quick_wins_and_what_is_within_agrees(
+    drawn: Tuple[Network, Objective], delay: int, deadline: int
+) -> None:
+    (network, objective), rules = drawn, Rules("controllable", Fraction(delay))
+    if not solve(network, objective, rules.reaction).won:
+        return
+    first = solution(network, objective, rules)
+    found = quick(first, NOW)
+    assert verify(found.network, objective, found.strategy, rules.reaction).ok
+    guarantee = found.guarantee
+    assert guarantee is not None
+    assert guarantee.worst is None or guarantee.least <= guarantee.worst
+    try:
+        kept = within(first, Fraction(deadline), NOW)
+    except PursueError as problem:
+        assert problem.exit_status == 4
+        assert guarantee.worst is None or guarantee.worst > deadline
+    else:
+        assert kept.guarantee is not None and kept.guarantee.worst is not None
+        assert guarantee.least <= deadline and kept.guarantee.worst <= deadline
+
+
+def test_the_command_answers_with_a_sentence_and_a_status(tmp_path: Path) -> None:
+    won = pursue("solve", FIRST, "--within", "23.4", "-o", tmp_path / "plan.txt")
+    assert won.status == 0
+    assert "won within 23.4 time units" in won.err
+    assert "nothing below 23.3 can be promised" in won.err
+    lost = pursue("solve", FIRST, "--within", 20, "--json")
+    assert lost.status == 4
+    verdict = json.loads(lost.out)
+    assert verdict["won"] is False
+    assert verdict["diagnostics"][0]["code"] == "SYN023"
+    assert "it can be guaranteed within 23.302" in verdict["diagnostics"][0]["hint"]
+    assert pursue("ws", FIRST, "--within", 20, "-o", tmp_path / "ws").status == 4
+    assert not (tmp_path / "ws").exists()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [("--within", "soon"), ("--within", "-1"), ("--within", "30", "--optimize", "time")],
+)
+def test_what_makes_no_sense_is_refused(options: Tuple[str, ...]) -> None:
+    assert pursue("solve", FIRST, *options).status == 2
+
+
+def test_a_safety_objective_has_no_time_to_keep() -> None:
+    done = pursue("solve", FIRST.parent.parent / "work_cell" / "work_cell.pur", "--within", 60)
+    assert done.status == 2 and "SYN022" in done.err
+
+
+def test_solve_and_ws_tell_the_same(tmp_path: Path) -> None:
+    first, second = pursue("solve", THIEF), pursue("ws", THIEF, "-o", tmp_path / "thief")
+    for begin in ("Time to the goal:", "Margin:"):
+        told = [line for text in (first.err, second.err) for line in text.splitlines() if line.startswith(begin)]
+        assert len(told) == 2 and told[0] == told[1]
