@@ -4,7 +4,7 @@ An engine's command leads to lower ranks if nothing else is decided before it ta
 out of the command's zone meanwhile, into that of another one with a higher rank, which another robot (or the same one,
 started again) then decides: what was gained is lost, over and over. So that zone begins later: its points that time
 reaches from the first command within the reaction are waited in. That is no loss where time goes on to other points of
-the same zone, as who is there may act anywhere on the way through it.
+the same zone, as who is there may act anywhere on the way through it, or to a zone that ranks no higher.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Iterable, List, Sequence, Tuple
 
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.zones.dbm import Dbm
-from pursue_gen.zones.federation import Federation
+from pursue_gen.zones.federation import Federation, predt
 
 Piece = Tuple[Dbm, Action]
 
@@ -27,7 +27,7 @@ def without_overtaking(
     """The blocks of a reach game and their ranks, with later beginnings where commands may be overtaken.
 
     The pieces of a block must be disjoint. A zone stays as it is where time takes none of its points to a part of it
-    that is out of reach: the checker finds out whether such a strategy wins.
+    that is out of reach, or to another zone that ranks no higher: the checker finds out whether such a strategy wins.
     """
     new_blocks: List[RawBlock] = []
     new_ranks: List[Ranks] = []
@@ -61,7 +61,11 @@ def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List
         after = Federation((zone,)).minus(before)
         # On each line of time the points that are met in flight come first: the other zone lies before this one.
         met = before.intersect_zone(zone)
-        early = met.intersect(after.down())
+        if not met:
+            result.append(((zone, action), rank))
+            continue
+        near, higher = _next(pieces, ranks, zone, rank, late)
+        early = met.intersect(predt(after.union(near.minus(before)), higher))
         if early:
             command = after.union(met.minus(early)).disjoint()
             result += [((part, action), rank) for part in command]
@@ -69,3 +73,16 @@ def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List
         else:
             result.append(((zone, action), rank))
     return result
+
+
+def _next(
+    pieces: Sequence[Piece], ranks: Sequence[int], zone: Dbm, rank: int, late: int
+) -> Tuple[Federation, Federation]:
+    """The other zones that time may reach from this one within a flight: those that rank no higher, and the others."""
+    soon = zone.up_within(late)
+    near: List[Dbm] = []
+    higher: List[Dbm] = []
+    for (other, _), r in zip(pieces, ranks):
+        if other is not zone and soon.intersect(other) is not None:
+            (near if r <= rank else higher).append(other)
+    return Federation(tuple(near)), Federation(tuple(higher))

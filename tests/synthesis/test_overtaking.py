@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import List, Optional, Tuple
 
 import pytest
 from hypothesis import assume, given
@@ -90,3 +90,31 @@ def test_ranks_say_which_command_must_not_be_overtaken() -> None:
     assert kept_apart(pieces, [1, 1], 1) == [(pieces[0], 1), (pieces[1], 1)]
     assert kept_apart([pieces[0], (then, GO)], [1, 2], 1) == [(pieces[0], 1), ((then, GO), 2)]
     assert [(action, rank) for (_, action), rank in kept_apart(pieces, [1, 2], 1)] == [(GO, 1), (AGAIN, 2), (None, 2)]
+
+
+def between(low: int, high: int) -> Dbm:
+    """low < x <= high."""
+    zone = Dbm.of(2, [(0, 1, -2 * low), (1, 0, 2 * high + 1)])
+    assert zone is not None
+    return zone
+
+
+def advice(apart: List[Tuple[Tuple[Dbm, Optional[Tuple[int, ...]]], int]], x: Fraction) -> Optional[Tuple[int, ...]]:
+    """What is said at x, where all said is disjoint."""
+    (action,) = [action for (zone, action), _ in apart if zone.contains((x,))]
+    return action
+
+
+@pytest.mark.parametrize("next_action", [AGAIN, (2,), None])
+def test_a_zone_that_ends_in_flight_waits_for_what_comes_next(next_action: Optional[Tuple[int, ...]]) -> None:
+    pieces = [(between(0, 2), GO), (between(2, 3), AGAIN), (between(3, 9), next_action)]
+    apart = kept_apart(pieces, [1, 2, 2], 1)
+    assert advice(apart, Fraction(5, 2)) is None, "all of it is met by the first command in flight"
+    assert advice(apart, Fraction(1)) == GO and advice(apart, Fraction(5)) == next_action
+
+
+def test_a_zone_that_ends_in_flight_stays_where_what_comes_next_leads_less_far() -> None:
+    pieces = [(between(0, 2), GO), (between(2, 3), AGAIN), (between(3, 9), (2,))]
+    assert advice(kept_apart(pieces, [1, 2, 3], 1), Fraction(5, 2)) == AGAIN
+    alone = kept_apart(pieces[:2], [1, 2], 1)
+    assert advice(alone, Fraction(5, 2)) == AGAIN, "nothing comes next"
