@@ -23,7 +23,7 @@ GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fractio
 SHORT, RUNS = 0.5, 7
 """Games that take less than so many seconds are solved so often, and the median counts."""
 
-MARGIN_STATES = {"family": 5_000}
+MARGIN_STATES = {"family": 5_000, "story": 5_000}
 """Limit of the search for a margin, in symbolic states of the checker; beyond it the margin is only a lower bound."""
 
 Row = Dict[str, Any]
@@ -31,8 +31,9 @@ Row = Dict[str, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """A game to measure: `group` ("thesis", "reference", "family" or "file"), `name`, for families their `size`; `game`
-    is a key of GAMES. The scenario is in `file` (a .pur, or a network beside its TCTL.q), or it is `text`.
+    """A game to measure: `group` ("thesis", "story", "reference", "family" or "file"), `name`, `game` (a key of GAMES).
+
+    Families have a `size`. The scenario is in `file` (a .pur, or a network beside its TCTL.q), or it is `text`.
     """
 
     group: str

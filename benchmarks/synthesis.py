@@ -24,6 +24,9 @@ from benchmarks.tiga import NOTHING, Figures, figures
 
 ROOT = Path(__file__).resolve().parent.parent
 
+STORIES = ROOT / "benchmarks" / "stories"
+"""Ordinary tasks: five places, four agents, two rules, and a deadline or something to avoid."""
+
 QUICK = ("CT1", "EB1", "WC1", "WC2a", "scenario 1", "scenario 4")
 
 
@@ -33,10 +36,13 @@ def reference_folder() -> Path:
 
 
 def scenario_cases() -> Iterator[Case]:
-    """The thesis's five, and the published ones where they are at hand."""
+    """The thesis's five, the stories of this folder, and the published ones where they are at hand."""
     for file in sorted((ROOT / "scenarios" / "thesis").glob("*.pur")):
         for game in GAMES:
             yield Case("thesis", file.stem.replace("_", " "), game, file=str(file))
+    for file in sorted(STORIES.glob("*.pur")):
+        for game in GAMES:
+            yield Case("story", f"{file.stem} story", game, file=str(file))
     for file in sorted(reference_folder().glob("*/TGA.xml")):
         for game in GAMES:
             yield Case("reference", file.parent.name, game, file=str(file))

@@ -66,7 +66,7 @@ def test_values_and_clocks_that_the_native_engine_does_not_hold() -> None:
     game = compile_game(translate(scenario), scenario_objective(scenario))
     assert NATIVE.holds(game)
     assert not NATIVE.holds(replace(game, initial_values=(2**31, *game.initial_values[1:])))
-    assert not NATIVE.holds(replace(game, clocks=tuple(f"c{k}" for k in range(40))))
+    assert not NATIVE.holds(replace(game, clocks=tuple(f"c{k}" for k in range(128))))
 
 
 def played(distance: int, mobile: int, deadline: int, reported: bool) -> Network:

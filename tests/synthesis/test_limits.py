@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
 import time
 from fractions import Fraction
 from pathlib import Path
@@ -22,6 +23,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis import limits as limits_module
+from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.limits import (
     CAREFUL,
     PROVING,
@@ -131,6 +133,33 @@ def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
     with pytest.raises(PursueError) as failure:
         solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(1200, most))
     assert f"the limit of {most} MiB of memory" in told(failure.value)
+
+
+@needs_native
+def test_other_threads_go_on_while_the_native_engine_solves() -> None:
+    scenario = parse(many_walkers(), "crowd.pur")
+    game = compile_game(translate(scenario), scenario_objective(scenario))
+    enough, ended = threading.Event(), threading.Event()
+
+    def report(progress: Progress) -> None:
+        if enough.is_set():
+            raise KeyboardInterrupt
+
+    def work() -> None:
+        with pytest.raises(KeyboardInterrupt):
+            native.NativeEngine().solve(game, Limits(seconds=600), report)
+        ended.set()
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(600)  # so that a thread has the interpreter until it gives it away
+    try:
+        thread = threading.Thread(target=work)
+        thread.start()
+        enough.set()
+        thread.join(500)
+    finally:
+        sys.setswitchinterval(interval)
+    assert ended.is_set()
 
 
 @needs_native

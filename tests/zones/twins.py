@@ -75,7 +75,7 @@ def _native(name: str) -> Twin:
 
     def zone(python: Dbm) -> Any:
         assert binding is not None
-        return binding.Dbm(python.dim, tuple(min(bound, _UNBOUNDED) for bound in python.m))
+        return native_zones(binding, [python])[0]
 
     def federation(python: Federation) -> NativeFederation:
         return NativeFederation(binding, tuple(map(zone, python.zones)))
@@ -101,6 +101,20 @@ twins = pytest.mark.parametrize(
         pytest.param(_native("long"), marks=_built, id="native, 32 bits and padding"),
     ],
 )
+
+
+natives = pytest.mark.parametrize(
+    "binding",
+    [
+        pytest.param(getattr(_zones, "short", None), marks=_built, id="native, 16 bits"),
+        pytest.param(getattr(_zones, "long", None), marks=_built, id="native, 32 bits and padding"),
+    ],
+)
+
+
+def native_zones(binding: Any, zones: Sequence[Dbm]) -> List[Any]:
+    """Python's zones as a native library has them."""
+    return [binding.Dbm(zone.dim, tuple(min(bound, _UNBOUNDED) for bound in zone.m)) for zone in zones]
 
 
 def python(zone: Any) -> Dbm:

@@ -18,7 +18,7 @@ except ImportError:  # no compiler when the package was installed: the Python re
     _core = None  # type: ignore[assignment]
 
 
-_CLOCKS, _NO_BOUND, _VALUES = 39, 1 << 29, 1 << 31
+_CLOCKS, _NO_BOUND, _VALUES = 127, 1 << 29, 1 << 31
 """The bounds of module.cpp: clocks, raw bounds, values of variables."""
 
 _UNBOUNDED = {1 << 30: INF}
@@ -34,7 +34,7 @@ def available() -> bool:
 class NativeEngine(Engine):
     """The engine in C++17, see `module.cpp`.
 
-    `small_budget` is the work, in pairs of zones, that a safety game gets as it is, before searches with few moves take
+    `small_budget` is the work, in zones, that a game gets as it is, before searches with few zones or few moves take
     turns: some tenths of a second.
     """
 
@@ -46,7 +46,7 @@ class NativeEngine(Engine):
         return available()
 
     def holds(self, game: Game) -> bool:
-        """True up to 39 clocks, while sums along a path through all clocks stay below 2²⁹, and values in 32 bits."""
+        """True up to 127 clocks, while sums along a path through all clocks stay below 2²⁹, and values in 32 bits."""
         times = [b for _, _, b in game.start]
         times += [b for automaton in game.automata for place in automaton.invariants for _, b in place]
         times += [b for edge in game.edges for _, _, b in edge.bounds]

@@ -30,7 +30,7 @@ class Fixpoint : public ZoneGraph<Z> {
     using Usable = std::vector<std::pair<int, Federation<Z>>>;  // per joint move, where it may be commanded
 
     // Evaluates a state (again); true: more of it is decided.
-    virtual bool evaluate(Node<Z>& n) = 0;
+    virtual bool evaluate(int k) = 0;
 
     // Whether the start is decided, with this zone of clocks and what is not decided of its state.
     virtual bool decided(const Federation<Z>& rest, const Z& start) const = 0;
@@ -55,7 +55,7 @@ class Fixpoint : public ZoneGraph<Z> {
             monitor_.check(nodes_.size(), waiting_.size());
             ++evaluations_;
             ++work_;
-            if (!evaluate(nodes_[k])) continue;
+            if (!evaluate(k)) continue;
             for (int p : nodes_[k].parents) schedule(p);
             if (k == 0 && decided(nodes_[0].rest, start)) return true;
         }
@@ -101,7 +101,7 @@ class Fixpoint : public ZoneGraph<Z> {
         return true;
     }
 
-    double work_ = 0;  // of the budget, in pairs of zones: the same on every machine
+    double work_ = 0;  // of the budget, in zones or pairs of zones: the same on every machine
 
   private:
     // How many of its automata are deferred, order of arrival, state. An agent that is under way to an end which the

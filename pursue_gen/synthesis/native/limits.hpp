@@ -44,38 +44,15 @@ inline std::size_t memory_in_use() {
 #endif
 }
 
-// Checks the limits within long work on zones, from its beginning to its end. One at a time per thread.
-class WorkMonitor {
-  public:
-    explicit WorkMonitor(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {
-        effort = {0, INTERVAL, [](void* self) { static_cast<WorkMonitor*>(self)->pause(); }, this};
-    }
-    ~WorkMonitor() { effort = {0, 0, nullptr, nullptr}; }
-    WorkMonitor(const WorkMonitor&) = delete;
-    WorkMonitor& operator=(const WorkMonitor&) = delete;
-
-  private:
-    static constexpr std::uint64_t INTERVAL = 256;  // zones, less than a microsecond each
-
-    void pause() {
-        effort.due = effort.zones + INTERVAL;
-        if (limits_.work && effort.zones > limits_.work) throw Limit("work");
-        const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        if (limits_.seconds > 0 && now > limits_.seconds) throw Limit("seconds");
-        if (now < next_poll_) return;
-        next_poll_ = now + 0.05;
-        limits_.poll();
-    }
-
-    const Limits& limits_;
-    std::chrono::steady_clock::time_point start_;
-    double next_poll_ = 0;
-};
-
-// Checks the limits between steps, and reports the progress.
+// Checks the limits between steps and within long work on zones, and reports the progress. One at a time per thread.
 class LimitMonitor {
   public:
-    explicit LimitMonitor(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {}
+    explicit LimitMonitor(const Limits& limits) : limits_(limits), start_(std::chrono::steady_clock::now()) {
+        effort = {0, INTERVAL, [](void* self) { static_cast<LimitMonitor*>(self)->pause(); }, this};
+    }
+    ~LimitMonitor() { effort = {0, 0, nullptr, nullptr}; }
+    LimitMonitor(const LimitMonitor&) = delete;
+    LimitMonitor& operator=(const LimitMonitor&) = delete;
 
     double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
@@ -88,6 +65,8 @@ class LimitMonitor {
     void check(std::size_t states, std::size_t waiting) {
         ++effort.zones;
         if (limits_.work && effort.zones > limits_.work) stop("work", states, waiting);
+        states_ = states;
+        waiting_ = waiting;
         const double now = spent();
         if (limits_.seconds > 0 && now > limits_.seconds) stop("seconds", states, waiting);
         if (now < next_check_) return;
@@ -101,6 +80,13 @@ class LimitMonitor {
     }
 
   private:
+    static constexpr std::uint64_t INTERVAL = 256;  // zones, some microseconds each
+
+    void pause() {
+        effort.due = effort.zones + INTERVAL;
+        check(states_, waiting_);
+    }
+
     [[noreturn]] void stop(const char* which, std::size_t states, std::size_t waiting) const {
         if (limits_.progress) limits_.progress(states, waiting, spent(), memory_in_use());
         throw Limit(which);
@@ -108,6 +94,7 @@ class LimitMonitor {
 
     const Limits& limits_;
     std::chrono::steady_clock::time_point start_;
+    std::size_t states_ = 0, waiting_ = 0;  // at the last step
     double next_check_ = 0, next_report_ = 0;  // seconds: of memory, and of the progress
 };
 

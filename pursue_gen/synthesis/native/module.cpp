@@ -2,6 +2,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <map>
+#include <set>
+
 #include "reach.hpp"
 #include "safety.hpp"
 
@@ -75,47 +78,89 @@ py::bytes matrix(const Z& z, int dim) {
     return py::bytes(reinterpret_cast<const char*>(out.data()), out.size() * sizeof(std::int32_t));
 }
 
+// The states that a play by the strategy can come to, whatever the clocks, with what to do in them.
 template <class Z>
-py::dict outcome(bool won, Fixpoint<Z>& solver, const Game& game) {
-    const int dim = game.clocks + 1;
+using Plan = std::map<int, std::vector<Piece<Z>>>;
+
+template <class Z>
+Plan<Z> followed(Fixpoint<Z>& solver) {
+    Plan<Z> out;
+    std::deque<int> queue{0};
+    std::vector<bool> met(solver.nodes().size(), false);
+    met[0] = true;
+    while (!queue.empty()) {
+        const int k = queue.front();
+        queue.pop_front();
+        solver.check_limits();
+        std::vector<Piece<Z>> pieces = solver.plan(k);
+        if (pieces.empty()) continue;
+        std::set<int> commanded;
+        for (const Piece<Z>& piece : pieces) commanded.insert(piece.joint);
+        for (const Transition& transition : solver.nodes()[k].transitions) {
+            if (met[transition.target] || !solver.nodes()[transition.target].reached) continue;
+            if (solver.joint(transition.joint).controllable && !commanded.count(transition.joint)) continue;
+            met[transition.target] = true;
+            queue.push_back(transition.target);
+        }
+        out.emplace(k, std::move(pieces));
+    }
+    return out;
+}
+
+// What was found, without Python's objects.
+template <class Z>
+struct Found {
+    std::unique_ptr<Fixpoint<Z>> solver;
+    bool won;
+    double seconds;
+    Plan<Z> plan;
+};
+
+template <class Z>
+py::dict outcome(const Found<Z>& found, int dim) {
     py::dict out;
     py::list states;
     std::size_t reached = 0, zones = 0;
-    out["seconds"] = solver.seconds();
-    out["symbolic_states"] = solver.symbolic_states();
-    for (std::size_t k = 0; k < solver.nodes().size(); ++k) {
-        const Node<Z>& node = solver.nodes()[k];
-        if (!node.reached) continue;
-        ++reached;
-        zones += game.kind == Kind::safety ? node.rest.size() : node.plan.size();
-        if (!won) continue;
-        solver.check_limits();
-        py::list actions;
-        for (const auto& action : solver.plan(static_cast<int>(k))) {
-            const py::object edges = action.joint < 0 ? py::object(py::none()) : py::cast(solver.joint(action.joint).edges);
-            actions.append(py::make_tuple(matrix(action.zone, dim), edges, action.rank));
-        }
-        if (!actions.empty()) states.append(py::make_tuple(solver.state(static_cast<int>(k)), actions));
+    for (const Node<Z>& node : found.solver->nodes()) {
+        reached += node.reached;
+        if (!found.won) zones += node.rest.size();
     }
-    out["won"] = won;
+    for (const auto& [k, pieces] : found.plan) {
+        py::list actions;
+        zones += pieces.size();
+        for (const auto& [zone, joint, rank] : pieces) {
+            const py::object edges = joint < 0 ? py::object(py::none()) : py::cast(found.solver->joint(joint).edges);
+            actions.append(py::make_tuple(matrix(zone, dim), edges, rank));
+        }
+        states.append(py::make_tuple(found.solver->state(k), actions));
+    }
+    out["won"] = found.won;
+    out["seconds"] = found.seconds;
     out["states"] = states;
     out["discrete_states"] = reached;
+    out["symbolic_states"] = found.solver->symbolic_states();
     out["zones"] = zones;
-    out["evaluations"] = solver.evaluations();
+    out["evaluations"] = found.solver->evaluations();
     out["work"] = effort.zones;
     return out;
 }
 
+// Without the GIL: other threads go on.
+template <class Z>
+Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget) {
+    const py::gil_scoped_release released;
+    Found<Z> found;
+    if (game.kind == Kind::safety) std::tie(found.won, found.solver) = solve_safety<Z>(game, monitor, small_budget);
+    else std::tie(found.won, found.solver) = solve_reach<Z>(game, monitor, small_budget);
+    found.seconds = monitor.spent();
+    if (found.won) found.plan = followed(*found.solver);
+    return found;
+}
+
 template <int N, class R>
 py::dict solve_with(const Game& game, const Limits& limits, double small_budget) {
-    using Z = Dbm<N, R>;
-    if (game.kind == Kind::safety) {
-        const auto [won, solver] = solve_safety<Z>(game, limits, small_budget);
-        return outcome<Z>(won, *solver, game);
-    }
-    Reach<Z> solver(game, limits);
-    const bool won = solver.run();
-    return outcome<Z>(won, solver, game);
+    LimitMonitor monitor(limits);
+    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget), game.clocks + 1);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -143,12 +188,13 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     limits.work = work;
     if (!progress.is_none())
         limits.progress = [&progress](std::size_t reached, std::size_t waiting, double spent, std::size_t mib) {
+            const py::gil_scoped_acquire held;
             progress(reached, waiting, spent, mib);
         };
     limits.poll = [] {
+        const py::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
-    const WorkMonitor monitor(limits);
     const int dim = game.clocks + 1;
     if (fits<std::int16_t>(game)) {
         if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget);
@@ -161,7 +207,8 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget);
     if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget);
     if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget);
-    throw std::invalid_argument("more than 39 clocks");
+    if (dim <= 128) return solve_with<128, wide_t>(game, limits, small_budget);
+    throw std::invalid_argument("more than 127 clocks");
 }
 
 }  // namespace
@@ -173,5 +220,5 @@ PYBIND11_MODULE(_core, module) {
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
                py::arg("work") = 0,
                "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). `small_budget` is the work, in\n"
-               "zones, that a safety game gets before searches with few moves take turns.");
+               "zones, that the game gets as it is, before searches take turns.");
 }

@@ -1,6 +1,8 @@
 // Reach, and reach while safe: the least fixpoint of winning positions, W.
 #pragma once
 
+#include <memory>
+
 #include "fixpoint.hpp"
 
 namespace pursue {
@@ -8,25 +10,84 @@ namespace pursue {
 template <class Z>
 class Reach : public Fixpoint<Z> {
   public:
-    Reach(const Game& game, const Limits& limits) : Fixpoint<Z>(game, limits, Restricted::controllable) {}
+    enum class Verdict { open, won, lost };
 
-    // Whether the controller wins. With few moves first; after a loss, states that are not won get all of theirs.
-    bool run() {
-        if (!this->enter_start()) return false;
+    // `most`: in so many zones at most is kept, in each discrete state, what is not won; 0: in as many as it takes. Fewer
+    // zones hold more points, so what is won is won, and what is lost may only be lost so.
+    Reach(const Game& game, LimitMonitor& monitor, std::size_t most)
+        : Fixpoint<Z>(game, monitor, Restricted::controllable), most_(most) {}
+
+    // Goes on until the budget is used up, with few moves first; after a loss, states that are not won get all of theirs.
+    // `won` and `lost` are final.
+    Verdict resume(double budget) {
+        if (nodes_.empty() && !this->enter_start()) return Verdict::lost;
+        spent_ = 0;
+        const auto end = this->symbolic_states() + static_cast<std::size_t>(budget / per_state);
         while (true) {
-            for (int k : this->explore()) this->schedule(k);
-            if (this->iterate()) return true;
-            const std::size_t count = nodes_.size();
-            for (std::size_t k = 0; k < count; ++k)
-                if (nodes_[k].reached && !nodes_[k].rest.empty()) this->expand(static_cast<int>(k), true);
-            if (this->queue_.empty()) return false;
+            for (int k : this->explore(end)) this->schedule(k);
+            if (!this->queue_.empty()) return Verdict::open;
+            const bool won = this->iterate(budget - spent_);
+            spent_ += this->work_;
+            if (won) return Verdict::won;
+            if (!this->converged()) return Verdict::open;
+            if (!open_states()) return Verdict::lost;
         }
     }
 
-    std::vector<Piece<Z>> plan(int k) override { return nodes_[k].plan; }
+    double work() const { return spent_; }  // of the last `resume`
+
+    // Keeps what is not won in more zones from now on.
+    void refine(std::size_t most) {
+        most_ = most;
+        for (std::size_t k = 0; k < nodes_.size(); ++k)
+            if (nodes_[k].coarse) this->schedule(static_cast<int>(k));
+    }
+
+    // The points in the order in which they were won; first won, first served.
+    std::vector<Piece<Z>> plan(int k) override {
+        std::vector<Piece<Z>> out;
+        if (static_cast<std::size_t>(k) >= steps_.size()) return out;
+        for (std::size_t s = 0; s < steps_[k].size(); ++s) {
+            const Step& step = steps_[k][s];
+            // What the step before has won is won again where it was not kept.
+            const Federation<Z> before = most_ && s > 0 ? steps_[k][s - 1].won : Federation<Z>{};
+            Federation<Z> rest = step.won, taken = before;
+            for (const auto& [joint, zones] : step.commands) {
+                // Not what is left of `won`: that is in pieces.
+                const Federation<Z> here = most_ ? disjoint(minus(intersection(zones, step.open), taken))
+                                                 : disjoint(intersection(rest, zones));
+                for (const Z& z : here) out.push_back({z, joint, step.rank});
+                if (most_) append(taken, zones);
+                else rest = reduced(minus(rest, zones));
+            }
+            if (most_) rest = reduced(minus(rest, reduced(taken)));
+            for (const Z& z : disjoint(rest)) out.push_back({z, -1, step.rank});
+        }
+        return out;
+    }
 
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_;
+    using typename Fixpoint<Z>::Usable;
+
+    static constexpr double per_state = 24;  // the work of a budget that exploring a state stands for
+
+    // What was won at a time of what was open (in a coarse search), and where which command is right.
+    struct Step {
+        int rank;
+        Federation<Z> open, won;
+        Usable commands;
+    };
+
+    // Whether there was something to open.
+    bool open_states() {
+        const std::size_t count = nodes_.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            this->check_limits();
+            if (nodes_[k].reached && !nodes_[k].rest.empty()) this->expand(static_cast<int>(k), true);
+        }
+        return !this->queue_.empty();
+    }
 
     // All of it is won.
     bool decided(const Federation<Z>& rest, const Z& start) const override {
@@ -36,7 +97,8 @@ class Reach : public Fixpoint<Z> {
     const Federation<Z>& winning(Node<Z>& n) const override { return this->gathered(n); }
     const Federation<Z>& losing(Node<Z>& n) const override { return n.rest; }
 
-    bool evaluate(Node<Z>& n) override {
+    bool evaluate(int k) override {
+        Node<Z>& n = nodes_[k];
         if (n.lost) return false;
         if (n.won) return this->decide_all(n);
         const auto won = [&](const Transition& transition) {
@@ -44,21 +106,51 @@ class Reach : public Fixpoint<Z> {
             return !target.done.empty() || !target.fresh.empty();
         };
         if (n.rest.empty() || std::none_of(n.transitions.begin(), n.transitions.end(), won)) return false;
+        const auto before = effort.zones;
         const Federation<Z> unsafe = this->upre(n);
         const auto usable = this->cpre(n, unsafe);
         // X need not be added: whoever can wait for X can wait for what made X winning.
         Federation<Z> good = minus(forced(n), unsafe);
         for (const auto& [joint, zones] : usable) append(good, zones);
         const Federation<Z> fresh = reduced(intersection(predt(good, unsafe), n.rest));
-        if (fresh.empty()) return false;
+        const Federation<Z> open = most_ ? n.rest : Federation<Z>{};
+        const bool grown = !fresh.empty() && take(n, fresh);
+        if (grown) record(k, open, fresh, usable, unsafe);
+        this->work_ += static_cast<double>(effort.zones - before);
+        return grown;
+    }
+
+    // Takes fresh points of the rest off it; false: they are so few that the rest, in as many zones as it may have, stays.
+    bool take(Node<Z>& n, const Federation<Z>& fresh) {
         Federation<Z> rest, cut;
+        std::vector<Federation<Z>> parts;
         for (const Z& r : n.rest)
-            if (touches(fresh, r)) append(cut, minus(Federation<Z>{r}, fresh));
-            else rest.push_back(r);
+            if (touches(fresh, r)) {
+                parts.push_back(minus(Federation<Z>{r}, fresh));
+                append(cut, parts.back());
+            } else {
+                parts.push_back({r});
+                rest.push_back(r);
+            }
         for (const Z& z : cut) absorb(rest, z);
+        n.coarse = most_ && rest.size() > most_;
+        if (n.coarse) {
+            rest.clear();
+            bool grown = false;
+            for (std::size_t r = 0; r < parts.size(); ++r) {
+                if (parts[r].empty()) continue;
+                rest.push_back(boxed(n.rest[r], parts[r]));
+                grown = grown || !includes(rest.back(), n.rest[r]);
+            }
+            if (!grown && rest.size() == n.rest.size()) return false;
+        }
         n.rest = std::move(rest);
-        record_commands(n, fresh, usable, unsafe);
-        append(n.fresh, fresh);
+        if (most_) {
+            n.done = {n.hull};
+            for (const Z& r : n.rest) n.done = reduced(intersection(n.done, around(n.hull, r)));
+        } else {
+            append(n.fresh, fresh);
+        }
         return true;
     }
 
@@ -73,20 +165,48 @@ class Reach : public Fixpoint<Z> {
         return out;
     }
 
-    // Adds what to do at points that are won now.
-    void record_commands(Node<Z>& n, const Federation<Z>& fresh, const typename Fixpoint<Z>::Usable& usable,
-                         const Federation<Z>& unsafe) {
-        Federation<Z> rest = fresh;
+    void record(int k, const Federation<Z>& open, const Federation<Z>& fresh, const Usable& usable,
+                const Federation<Z>& unsafe) {
+        Step step{rank_++, open, fresh, {}};
         for (const auto& [joint, zones] : usable) {
-            const Federation<Z> now = minus(zones, unsafe);
-            for (const Z& z : disjoint(intersection(rest, now))) n.plan.push_back({z, joint, rank_});
-            rest = minus(rest, now);
+            Federation<Z> now;
+            for (const Z& z : minus(zones, unsafe))
+                if (touches(fresh, z)) now.push_back(z);
+            if (!now.empty()) step.commands.emplace_back(joint, reduced(now));
         }
-        for (const Z& z : disjoint(rest)) n.plan.push_back({z, -1, rank_});
-        ++rank_;
+        steps_.resize(nodes_.size());
+        steps_[k].push_back(std::move(step));
     }
 
+    std::size_t most_;
+    double spent_ = 0;  // of the budget, since `resume`
     int rank_ = 1;
+    std::vector<std::vector<Step>> steps_;
 };
+
+// First the game as it is, for `small_budget`, which is enough for many. Then two searches take turns, each with twice the
+// work of its turn before: one keeps few zones per state, more of them where it ends without a win; what it wins is won.
+template <class Z>
+std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMonitor& monitor, double small_budget) {
+    using Verdict = typename Reach<Z>::Verdict;
+    constexpr std::size_t largest = 8;
+    auto exact = std::make_unique<Reach<Z>>(game, monitor, 0);
+    const Verdict first = exact->resume(small_budget);
+    if (first != Verdict::open) return {first == Verdict::won, std::move(exact)};
+    std::size_t most = 1;
+    auto coarse = std::make_unique<Reach<Z>>(game, monitor, most);
+    for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
+        for (double left = budget; coarse && left > 0; left -= std::max(coarse->work(), 1.0)) {
+            const Verdict verdict = coarse->resume(left);
+            if (verdict == Verdict::won) return {true, std::move(coarse)};
+            if (verdict == Verdict::open) break;
+            if (most < largest) coarse->refine(most *= 2);
+            else coarse.reset();
+            if (!coarse) break;
+        }
+        const Verdict verdict = exact->resume(budget);
+        if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(exact)};
+    }
+}
 
 }  // namespace pursue

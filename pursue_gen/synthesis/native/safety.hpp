@@ -10,9 +10,12 @@ namespace pursue {
 template <class Z>
 class Safety : public Fixpoint<Z> {
   public:
-    using Fixpoint<Z>::Fixpoint;
-
     enum class Verdict { open, won, lost };
+
+    // `most`: in so many zones at most is kept, in each discrete state, what is lost; 0: in as many as it takes. Fewer zones
+    // hold more points, so what is won is won, and what is lost may only be lost so.
+    Safety(const Game& game, LimitMonitor& monitor, Restricted restricted, std::size_t most = 0)
+        : Fixpoint<Z>(game, monitor, restricted), most_(most) {}
 
     // Goes on until the budget is used up. `won` and `lost` are final. A search with few moves of the controller that loses
     // returns `open`, as they may be too few, and is `finished`.
@@ -36,6 +39,23 @@ class Safety : public Fixpoint<Z> {
     }
 
     bool finished() const { return finished_; }
+    double work() const { return this->work_; }  // of the last `resume`
+
+    // Begins again, with what is lost in more zones (0: as many as it takes).
+    void refine(std::size_t most) {
+        most_ = most;
+        finished_ = false;
+        std::vector<int> all;
+        for (std::size_t k = 0; k < nodes_.size(); ++k) {
+            Node<Z>& n = nodes_[k];
+            if (!n.reached) continue;
+            n.done.clear();
+            n.fresh.clear();
+            n.rest = {n.hull};
+            all.push_back(static_cast<int>(k));
+        }
+        schedule_all(all);
+    }
 
     // Safe points: where waiting for ever is safe, wait; else the command that a relaxed plan prefers, else any safe one.
     std::vector<Piece<Z>> plan(int k) override {
@@ -53,7 +73,8 @@ class Safety : public Fixpoint<Z> {
         Federation<Z> to_avoid = unsafe;
         append(to_avoid, time_blocked(n));
         const Federation<Z> must_act = pasts(to_avoid);  // from here the controller has to act some time
-        Federation<Z> safe = n.rest, urgent = reduced(intersection(must_act, safe));
+        Federation<Z> safe = most_ ? disjoint(minus(Federation<Z>{n.hull}, dangers(n, unsafe, usable).lost())) : n.rest;
+        Federation<Z> urgent = reduced(intersection(must_act, safe));
         for (const auto& [joint, zones] : usable) {
             const Federation<Z> here = disjoint(intersection(urgent, minus(zones, unsafe)));
             for (const Z& z : here) out.push_back({z, joint, 0});
@@ -86,11 +107,32 @@ class Safety : public Fixpoint<Z> {
     // What is lost against few moves of the environment is lost against all of them, so the fixpoint goes on.
     void open_all() {
         this->all_ = true;
-        for (std::size_t k = 0, count = nodes_.size(); k < count; ++k)
+        for (std::size_t k = 0, count = nodes_.size(); k < count; ++k) {
+            this->check_limits();
             if (nodes_[k].reached) this->expand(static_cast<int>(k), true);
+        }
         schedule_all(this->explore());
     }
 
+    // What is to be avoided, from where time leads there, and from where a move comes before.
+    struct Dangers {
+        Federation<Z> to_avoid, past, ways;
+
+        Federation<Z> lost() const { return minus(past, ways); }
+    };
+
+    Dangers dangers(const Node<Z>& n, const Federation<Z>& unsafe, const typename Fixpoint<Z>::Usable& usable) const {
+        const Federation<Z> bound = time_blocked(n);
+        if (unsafe.empty() && bound.empty()) return {};
+        Federation<Z> escapes;
+        for (const auto& [joint, zones] : usable) append(escapes, zones);
+        Federation<Z> to_avoid = minus(bound, escapes);
+        append(to_avoid, unsafe);
+        Federation<Z> ways = predt(minus(escapes, to_avoid), to_avoid);
+        return {to_avoid, pasts(to_avoid), std::move(ways)};
+    }
+
+    std::size_t most_;
     bool finished_ = false;
 
     // Stuck before escapes are taken off: at the bound of an automaton that the environment cannot move.
@@ -121,17 +163,15 @@ class Safety : public Fixpoint<Z> {
 
     // Of what is not lost yet: past(E) \ Predt(cPre(not L), E). L need not be in E: whoever comes to L by waiting
     // comes to what made it losing.
-    bool evaluate(Node<Z>& n) override {
+    bool evaluate(int k) override {
+        Node<Z>& n = nodes_[k];
         if (n.rest.empty()) return false;
         if (n.lost) return this->decide_all(n);
-        const Federation<Z> unsafe = this->upre(n), bound = time_blocked(n);
-        if (unsafe.empty() && bound.empty()) return false;
-        Federation<Z> escapes;
-        for (const auto& [joint, zones] : this->cpre(n, unsafe)) append(escapes, zones);
-        Federation<Z> to_avoid = minus(bound, escapes);
-        append(to_avoid, unsafe);
-        const Federation<Z> danger = pasts(to_avoid), ways = predt(minus(escapes, to_avoid), to_avoid);
-        this->work_ += static_cast<double>(n.rest.size() + to_avoid.size()) *
+        const Federation<Z> unsafe = this->upre(n);
+        const Dangers found = dangers(n, unsafe, this->cpre(n, unsafe));
+        if (found.to_avoid.empty()) return false;
+        const Federation<Z>&danger = found.past, &ways = found.ways;
+        this->work_ += static_cast<double>(n.rest.size() + found.to_avoid.size()) *
                        static_cast<double>(danger.size() + ways.size());
         Federation<Z> lost, rest, cut;
         for (const Z& r : n.rest) {
@@ -146,28 +186,47 @@ class Safety : public Fixpoint<Z> {
             append(lost, gone);
         }
         if (lost.empty()) return false;
+        if (most_) return lose(n, lost);
         for (const Z& z : cut) absorb(rest, z);
         n.rest = std::move(rest);
         append(n.fresh, lost);
         return true;
     }
+
+    // Adds to what is lost, in as many zones as it may have.
+    bool lose(Node<Z>& n, const Federation<Z>& lost) {
+        for (const Z& z : lost) absorb(n.done, z);
+        if (n.done.size() > most_) n.done = {boxed(n.hull, n.done)};
+        n.rest = {n.hull};
+        for (const Z& z : n.done) n.rest = reduced(intersection(n.rest, around(n.hull, z)));
+        return true;
+    }
 };
 
 // Small games, for which `small_budget` is enough work, are decided as they are. Otherwise two searches take turns, each
-// with twice the work of its turn before: one keeps the controller to few moves, so that what it wins is won; the other
-// keeps the environment to few, so that what it loses is lost, and plays the whole game when those are not enough.
+// with twice the work of its turn before: one keeps the controller to few moves and what is lost to few zones, more where
+// it loses, so that what it wins is won; the other keeps the environment to few, so that what it loses is lost, and plays the whole game when those are not enough.
 template <class Z>
-std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, const Limits& limits, double small_budget) {
+std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, LimitMonitor& monitor,
+                                                         double small_budget) {
     using Verdict = typename Safety<Z>::Verdict;
-    auto small = std::make_unique<Safety<Z>>(game, limits, Restricted::none);
+    constexpr std::size_t largest = 8;
+    auto small = std::make_unique<Safety<Z>>(game, monitor, Restricted::none);
     const Verdict first = small->try_small(small_budget);
     if (first != Verdict::open) return {first == Verdict::won, std::move(small)};
     small.reset();
-    auto winning = std::make_unique<Safety<Z>>(game, limits, Restricted::controllable);
-    auto losing = std::make_unique<Safety<Z>>(game, limits, Restricted::uncontrollable);
+    std::size_t most = 1;  // zones of what is lost
+    auto winning = std::make_unique<Safety<Z>>(game, monitor, Restricted::controllable, most);
+    auto losing = std::make_unique<Safety<Z>>(game, monitor, Restricted::uncontrollable);
     for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
-        if (winning && winning->resume(budget) == Verdict::won) return {true, std::move(winning)};
-        if (winning && winning->finished()) winning.reset();
+        for (double left = budget; winning && left > 0; left -= std::max(winning->work(), 1.0)) {
+            const Verdict verdict = winning->resume(left);
+            if (verdict == Verdict::won) return {true, std::move(winning)};
+            if (!winning->finished()) break;
+            if (most) winning->refine(most = most < largest ? 2 * most : 0);
+            else winning.reset();
+            if (!winning) break;
+        }
         const Verdict verdict = losing->resume(budget);
         if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(losing)};
     }

@@ -36,7 +36,7 @@ struct Node {
     std::vector<int> parents;
     Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
     Federation<Z> done, fresh;                // the other points: gathered, and not gathered yet
-    std::vector<Piece<Z>> plan;              // reach: in the order in which the points were won
+    bool coarse = false;                      // reach: more is won than `rest` says
 };
 
 template <class Z>
@@ -44,14 +44,13 @@ class ZoneGraph {
   public:
     using R = typename Z::raw_t;
 
-    ZoneGraph(const Game& game, const Limits& limits, Restricted restricted)
-        : game_(game), restricted_(restricted), monitor_(limits), policy_(game), max_constants_(game), joints_(game),
+    ZoneGraph(const Game& game, LimitMonitor& monitor, Restricted restricted)
+        : game_(game), restricted_(restricted), monitor_(monitor), policy_(game), max_constants_(game), joints_(game),
           states_(game.automata.size() + game.variables.size()) {}
 
     const std::deque<Node<Z>>& nodes() const { return nodes_; }
     Discrete state(int k) const { return states_[k]; }
     const Joint& joint(int k) const { return joints_[k]; }
-    double seconds() const { return monitor_.spent(); }
     std::size_t symbolic_states() const { return symbolic_states_; }  // zones whose successors were computed
     void check_limits() { monitor_.check(nodes_.size(), queue_.size()); }
 
@@ -276,7 +275,7 @@ class ZoneGraph {
     const Game& game_;
     const Restricted restricted_;
     bool all_ = false;  // new states get all their moves at once
-    LimitMonitor monitor_;
+    LimitMonitor& monitor_;
     Policy policy_;
     MaxConstants max_constants_;
     Joints joints_;

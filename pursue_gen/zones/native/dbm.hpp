@@ -270,13 +270,18 @@ void subtract(const Z& a, const Z& b, std::vector<Z>& out) {
         return;
     }
     Z rest = a;
-    for (int i = 0; i < Z::size; ++i)
-        for (int j = 0; j < Z::size; ++j) {
-            if (i == j || b.at(i, j) >= rest.at(i, j)) continue;
-            out.push_back(rest);
-            if (!constrain(out.back(), j, i, complement(b.at(i, j)))) out.pop_back();
-            if (!constrain(rest, i, j, b.at(i, j))) return;
-        }
+    const auto cut = [&](int i, int j) {
+        if (i == j || b.at(i, j) >= rest.at(i, j)) return true;
+        out.push_back(rest);
+        if (!constrain(out.back(), j, i, complement(b.at(i, j)))) out.pop_back();
+        return constrain(rest, i, j, b.at(i, j));
+    };
+    // Bounds on single clocks first: those on differences often follow from them, and then cut nothing.
+    for (int x = 1; x < Z::size; ++x)
+        if (!cut(0, x) || !cut(x, 0)) return;
+    for (int i = 1; i < Z::size; ++i)
+        for (int j = 1; j < Z::size; ++j)
+            if (!cut(i, j)) return;
 }
 
 }  // namespace pursue

@@ -148,6 +148,41 @@ bool contains(const Federation<Z>& big, const Z& zone) {
     return minus(Federation<Z>{zone}, big).empty();
 }
 
+// What is in the zone and within the bounds that each clock has in the parts, whatever the differences of clocks.
+// Requires: at least one part, all of them in the zone. Ensures: a zone that includes the parts.
+template <class Z>
+Z boxed(Z zone, const Federation<Z>& parts) {
+    assert(!parts.empty());
+    Z whole = parts[0];
+    for (const Z& part : parts) whole = hull(whole, part);
+    for (int x = 1; x < Z::size; ++x) {
+        constrain(zone, 0, x, whole.at(0, x));
+        constrain(zone, x, 0, whole.at(x, 0));
+    }
+    check(zone);
+    return zone;
+}
+
+// The points of the zone that are outside of `inner`, in zones as large as can be, which may overlap.
+template <class Z>
+Federation<Z> around(const Z& zone, const Z& inner) {
+    Federation<Z> out;
+    // Bounds on clocks first: those on differences often follow from them.
+    Z rest = zone;
+    const auto cut = [&](int i, int j) {
+        if (i == j || inner.at(i, j) >= rest.at(i, j)) return true;
+        out.push_back(zone);
+        if (!constrain(out.back(), j, i, complement(inner.at(i, j)))) out.pop_back();
+        return constrain(rest, i, j, inner.at(i, j));
+    };
+    for (int x = 1; x < Z::size; ++x)
+        if (!cut(0, x) || !cut(x, 0)) return {zone};
+    for (int i = 1; i < Z::size; ++i)
+        for (int j = 1; j < Z::size; ++j)
+            if (!cut(i, j)) return {zone};
+    return out;
+}
+
 // { q | some t >= 0: q+t in good, and q+t' not in bad for all t' in [0, t] } (Cassez et al. 2005).
 template <class Z>
 Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {

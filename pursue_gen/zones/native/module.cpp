@@ -107,6 +107,8 @@ void bind_dbm(py::module_& module) {
             return D(a.dim, hull(a.z, b.z));
         })
         .def("minus", [](const D& a, const D& b) { return bound(minus(Federation<Z>{a.z}, b.z), a.dim); })
+        .def("boxed", [](const D& d, const Zones<Z>& parts) { return D(d.dim, boxed(d.z, plain(parts))); })
+        .def("around", [](const D& a, const D& b) { return bound(around(a.z, b.z), a.dim); })
         .def("up", [](const D& d) { return d.with([](Z& z) { up(z); }); })
         .def("down", [](const D& d) { return d.with([](Z& z) { down(z); }); })
         .def("up_within", [](const D& d, int delay) { return d.with([&](Z& z) { up_within(z, delay); }); })
@@ -146,10 +148,20 @@ void bind_federation(py::module_& module) {
     module.def("lasting", [](const F& a, int delay) { return bound(lasting(plain(a), delay), dim_of(a, a)); });
 }
 
+// Calls a function that may look at so many zones; raises RuntimeError where it looks at more.
+py::object within_effort(std::uint64_t zones, const py::function& function) {
+    struct Guard {
+        ~Guard() { effort = {0, 0, nullptr, nullptr}; }
+    } const guard;
+    effort = {0, zones, [](void*) { throw std::runtime_error("enough"); }, nullptr};
+    return function();
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_zones, module) {
     module.doc() = "The native zone library, for tests.";
+    module.def("within_effort", &within_effort);
     py::module_ narrow = module.def_submodule("short", "16-bit bounds, three clocks.");
     py::module_ wide = module.def_submodule("long", "32-bit bounds, seven clocks.");
     bind_dbm<Dbm<4, std::int16_t>>(narrow);
