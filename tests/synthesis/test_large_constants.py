@@ -124,3 +124,16 @@ def test_numbers_without_end_are_an_error_with_a_code() -> None:
     for number in (2**200, -(2**200), 10**400):
         with pytest.raises(PursueError, match="too large"):
             raw(number, False)
+
+
+@needs_native
+def test_many_agents_with_a_clock_each_are_no_fault() -> None:
+    bystanders = 50
+    text = SCENARIO.format(distance=2, mobile=1, deadline=5)
+    lines = text.splitlines()
+    events = [f'event "wave{k}"' for k in range(bystanders)]
+    agents = [f'agent "person{k}" location desk can_do wave{k}' for k in range(bystanders)]
+    scenario = parse("\n".join([*lines[:5], *events, *lines[5:-1], *agents, lines[-1]]) + "\n", "crowd.pur")
+    game = compile_game(translate(scenario), scenario_objective(scenario))
+    assert len(game.clocks) > bystanders and NATIVE.holds(game)
+    assert NATIVE.solve(game).won == (verdict(played(2, 1, 5, False), Fraction(0)))
