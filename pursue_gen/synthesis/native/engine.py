@@ -68,7 +68,8 @@ class NativeEngine(Engine):
 
         try:
             tables, most = _tables(game), (limits.left, limits.states, limits.memory)
-            result = _core.solve(tables, *most, report, self.small_budget, limits.work)
+            # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
+            result = _core.solve(tables, *most, report, max(self.small_budget, limits.work), limits.work)
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
         except MemoryError:
