@@ -157,7 +157,7 @@ def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name
         assert sum(line.text.startswith("callBot") for line in explanation.play) == 2
     if name == "CT3a":
         assert found["agent", "thief"][0] == "2"
-        assert "so it can go on for ever" in explanation.play[-1].text
+        assert "it can be prevented whatever the robots do" in explanation.play[-1].text
 
 
 def told(name: str) -> str:

@@ -118,7 +118,7 @@ def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
 @pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_report_and_workspaces_tell_the_margin(tmp_path: Path) -> None:
     file = thesis_scenario("1")
-    assert "ideal game: Margin: it still wins when commands take effect 0.95" in pursue("report", file).out
-    assert json.loads(pursue("report", file, "--json").out)["margins"]["ideal"] == {"wins": "19/20", "fails": "1"}
+    assert "ideal game: Margin 0: it loses when a command takes effect 0.05" in pursue("report", file).out
+    assert json.loads(pursue("report", file, "--json").out)["margins"]["ideal"] == {"wins": "0", "fails": "1/20"}
     pursue("ws", file, "-o", tmp_path / "ws")
     assert "it still wins when commands take effect 10 time units late" in (tmp_path / "ws" / "README.md").read_text()
