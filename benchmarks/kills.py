@@ -156,15 +156,15 @@ def mission(number: int, seed: int, workspaces: Sequence[Tuple[str, Path]], unit
     return Mission(number, scenario, found, why, tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills))
 
 
-def measure(missions: int, seed: int, jobs: int, unit: float, names: Sequence[str]) -> List[Mission]:
-    """Play and judge so many missions, `jobs` at a time."""
+def measure(numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Sequence[str]) -> List[Mission]:
+    """Play and judge the missions with these numbers, `jobs` at a time."""
     with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
         workspaces = []
         for name in names:
             text = (ROOT / "scenarios" / f"{name}.pur").read_text(encoding="utf-8")
             workspaces.append((name, generated(text, Path(name).name, Path(home) / Path(name).name, RULES)))
         done: List[Mission] = []
-        for each in pool.map(lambda number: mission(number, seed, workspaces, unit), range(missions)):
+        for each in pool.map(lambda number: mission(number, seed, workspaces, unit), numbers):
             done.append(each)
             kills = ", ".join(each.kills)
             print(f"{each.number:4} {each.scenario:24} {each.outcome:8} {each.why} [{kills}]", flush=True)
@@ -221,6 +221,7 @@ def options() -> argparse.ArgumentParser:
     """The command line."""
     parser = argparse.ArgumentParser(description="Plays missions on ROS whose nodes are killed, and judges them.")
     parser.add_argument("--missions", type=int, default=300, help="so many (300)")
+    parser.add_argument("--first", type=int, default=0, metavar="NUMBER", help="the number of the first one (0)")
     parser.add_argument("--seed", type=int, default=1, help="of the kills (1)")
     parser.add_argument("--jobs", type=int, default=2, help="missions at a time (2)")
     parser.add_argument("--unit", type=float, default=0.5, help="seconds per time unit (0.5)")
@@ -237,7 +238,8 @@ def main() -> int:
 
     given = options().parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that no process stays behind
-    done = measure(given.missions, given.seed, given.jobs, given.unit, given.scenarios)
+    numbers = range(given.first, given.first + given.missions)
+    done = measure(numbers, given.seed, given.jobs, given.unit, given.scenarios)
     found = {**results(done, given.seed, given.unit), "machine": given.machine, "date": given.date}
     text = page(found)
     print(text)
