@@ -205,6 +205,7 @@ def page(found: Dict[str, Any]) -> str:
         f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
         f"unit, reaction {float(RULES.reaction)}; {found['machine']}, {found['date']}.",
         "",
+        *([found["remark"], ""] if found.get("remark") else []),
         "| scenario | " + " | ".join(heads) + " |",
         "| --- |" + " --- |" * len(heads),
         *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
