@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Mapping, Optional, Tuple
 
@@ -12,17 +13,21 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.replay.orders import Orders, of_strategy
-from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
-from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_runtime.bounded import BadText, exact, read_yaml, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
+_OTHER_PLAN = (
+    "the plan that was played is not the one that is found now (it was given, or made by another solver or version); "
+    "name the workspace: --workspace DIR"
+)
 NAME_IT = "name the scenario: pursue-gen replay FILE SCENARIO"
 
 
@@ -30,7 +35,7 @@ NAME_IT = "name the scenario: pursue-gen replay FILE SCENARIO"
 class Game:
     """What is checked against. `orders` None: the strategy is not known, and `why_not` says why.
 
-    `given`: the strategy is the workspace's own, not one that was solved again.
+    `given`: the strategy is known to be the workspace's own.
     """
 
     scenario: Scenario
@@ -43,7 +48,10 @@ class Game:
 
 @dataclass(frozen=True)
 class Source:
-    """Where a game comes from: a scenario's text, its rules, who commands, and a plan's text where there is one."""
+    """Where a game comes from: a scenario's text, its rules, who commands, and a plan's text where there is one.
+
+    `asked`: what the solver was asked for; `digest`: the SHA-256 of the plan that was played, empty where unknown.
+    """
 
     name: str
     text: str
@@ -52,6 +60,8 @@ class Source:
     controllers: str = DISTRIBUTED
     reach_obj: str = DEDICATED
     plan: Optional[Tuple[str, str]] = None
+    asked: SolveOptions = DEFAULT
+    digest: str = ""
 
 
 def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]] = None) -> Source:
@@ -62,10 +72,14 @@ def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]
         played_by = Rules(str(rules["ends"]), exact(rules["reaction"]), slack)
         name, text = str(data["name"]), str(data["scenario"])
         shape = str(data.get("controllers", DISTRIBUTED)), str(data.get("reach_obj", DEDICATED))
+        made = dict(data.get("plan") or {})
+        within = None if made.get("within") is None else exact(made["within"])
+        optimize = None if made.get("optimize") is None else str(made["optimize"])
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         message = f"{file} does not describe a game: {problem!r}"
         raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
-    return Source(name, text, file, played_by, *shape, plan)
+    asked = SolveOptions(optimize=optimize, within=within)
+    return Source(name, text, file, played_by, *shape, plan, asked, str(made.get("sha256", "")))
 
 
 def from_workspace(folder: Path) -> Source:
@@ -92,7 +106,7 @@ def read_game(text: str, file: str) -> Mapping[str, Any]:
 
 
 def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Game:
-    """The game; its strategy is the plan of the source, or solved again where there is none.
+    """The game; its strategy is the plan of the source, or solved again where there is none: if it is the same plan.
 
     Raises PursueError for a scenario or a plan with errors; that no strategy is found is no error.
     """
@@ -104,9 +118,14 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
         strategy = read_plan(source.plan[0], network, source.plan[1])
     else:
         try:
-            strategy = solved(ideal, objective, source.rules, SolveOptions(limits, progress=progress)).strategy
+            asked = replace(source.asked, limits=limits, progress=progress)
+            won = solved(ideal, objective, source.rules, asked)
         except PursueError as problem:
             return Game(scenario, network, objective, None, problem.diagnostics[0].message)
+        plan = write_plan(won.strategy, won.network, objective)
+        if source.digest not in ("", hashlib.sha256(plan.encode()).hexdigest()):
+            return Game(scenario, network, objective, None, _OTHER_PLAN)
+        network, strategy = won.network, won.strategy
     subs = partition(strategy, network, scenario.agents, source.controllers, source.reach_obj)
     orders = of_strategy(strategy, subs, source.rules.reaction)
-    return Game(scenario, network, objective, orders, given=source.plan is not None)
+    return Game(scenario, network, objective, orders, given=source.plan is not None or bool(source.digest))

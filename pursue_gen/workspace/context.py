@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, Mapping, Sequence
+from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.scenario import Agent, Scenario
@@ -41,6 +41,7 @@ class Options:
     the original has it). `reach_obj`: who gets the commands of the objective: dedicated (a controller of their own),
     all, or a robot's name. `reaction`: how late a command may come, in time units, as the strategy was made for;
     `ends` and `slack`: the rest of the rules of that game (see `solving.rules.Rules`), for new plans.
+    `optimize` and `within`: what its solver was asked for (see `solving.options.SolveOptions`), to solve it again.
     `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
@@ -52,6 +53,8 @@ class Options:
     reaction: Fraction = Fraction(1, 10)
     ends: str = "reported"
     slack: Mapping[str, int] = field(default_factory=dict)
+    optimize: Optional[str] = None
+    within: Optional[Fraction] = None
     margin: str = ""
     time_unit: float = 1.0
     machines: Machines = ONE_MACHINE

@@ -60,13 +60,14 @@ def generate(
     templates = templates_dir()
     jinja = environment(templates)
     trace = expected.first_report(network)
+    plan = write_plan(strategy, network, objective)
     values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
     data = {
         "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
-        "game": game_file.render(scenario, options, __version__).encode(),
+        "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
         "ui": _ui_settings(values, scenario),
         "controllers": _controllers(values),
@@ -80,7 +81,7 @@ def generate(
     for package in packages:
         for path, content in files_of(package, values, jinja, templates).items():
             files[f"src/{package.name}/{path}"] = content
-    files.update(_top_files(scenario, network, objective, strategy))
+    files.update(_top_files(scenario, network, objective, plan))
     names = [package.name for package in packages]
     files.update(deploy.docker_files(jinja, values, names) if options.docker else {})
     files.update(deploy.systemd_files(jinja, values, options.machines) if options.systemd else {})
@@ -217,13 +218,13 @@ def _controllers(values: Mapping[str, Any]) -> bytes:
     return yaml_text({"format": 1, "controllers": inline(values["controllers"])}, [head]).encode()
 
 
-def _top_files(scenario: Scenario, network: Network, objective: Objective, strategy: Strategy) -> Dict[str, bytes]:
+def _top_files(scenario: Scenario, network: Network, objective: Objective, plan: str) -> Dict[str, bytes]:
     """The files next to src/: scenario, network, query, plan."""
     return {
         f"{scenario.name}.pur": scenario.text.encode(),
         "TGA.xml": write_network(network, objective).encode(),
         "TCTL.q": write_query(objective).encode(),
-        "UPPAAL_plan.txt": write_plan(strategy, network, objective).encode(),
+        "UPPAAL_plan.txt": plan.encode(),
     }
 
 

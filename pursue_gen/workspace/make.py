@@ -45,6 +45,8 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         won.reaction,
         won.rules.ends,
         won.rules.slack,
+        request.options.optimize,
+        won.within,
         margin,
         docker=extras.docker,
         systemd=extras.systemd,

@@ -46,7 +46,8 @@ def delivery(deadline: int) -> Scenario:
 
 
 def won_page(scenario: Scenario, runs: int = 0) -> str:
-    return report_page(won_report(scenario, solved_both(scenario, SolveOptions()), ReportOptions(runs=runs), NO_LIMITS))
+    first = SolveOptions(optimize="none")
+    return report_page(won_report(scenario, solved_both(scenario, first), ReportOptions(runs=runs), NO_LIMITS))
 
 
 @pytest.fixture(scope="module")

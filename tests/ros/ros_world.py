@@ -188,11 +188,14 @@ def end(process: "subprocess.Popen[bytes]") -> None:
 def generated(
     name: str, folder: Path, controllers: str = "distributed", slack: Optional[Mapping[str, int]] = None
 ) -> Path:
-    """Writes the workspace of scenarios/<name>.pur; a general controller plays the ideal game, as in the original."""
+    """Writes the workspace of scenarios/<name>.pur; the first strategy found plays it.
+
+    A general controller plays the ideal game, as in the original.
+    """
     scenario = load(str(SCENARIOS / f"{name}.pur"))
     rules = IDEAL if controllers == "general" else Rules(slack=slack or {})
     won = solve_scenario(scenario, rules)
-    options = Options(controllers=controllers, reaction=rules.reaction)
+    options = Options(controllers=controllers, reaction=rules.reaction, optimize="none")
     return write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
 
 
