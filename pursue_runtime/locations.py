@@ -1,7 +1,7 @@
 """Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`).
 
-The only place for these two prefixes, and for that of the variable of an agent's position; the generator has them from
-here.
+The only place for these two prefixes, and for those of the variable of an agent's position and of its clock; the
+generator has them from here.
 """
 
 from __future__ import annotations
@@ -52,6 +52,11 @@ def place_of(location: str) -> str:
 def position_variable(agent: str) -> str:
     """Return the variable that holds where an agent is."""
     return f"P{agent}"
+
+
+def automaton_clock(name: str) -> str:
+    """Return the clock of an agent (how long since its last movement or action began or ended), or of `obj`."""
+    return f"C{name}"
 
 
 def in_words(location: str) -> str:

@@ -9,16 +9,22 @@ from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Named
 
 from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
+from pursue_runtime.locations import automaton_clock
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 
 Payload = TypeVar("Payload")
 
 
+Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
+"""The state of an entry: the automata and variables that it names, and the location or value of each."""
+
+
 class StateTable(Generic[Payload]):
     """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are.
 
-    `names`: the automata and variables that entries name; nothing else matters to what is entered.
+    Entries may name different sets. Those that apply in one state are meant to name the same: nothing else matters
+    there. `names`: the automata and variables that any entry names.
     """
 
     def __init__(self, entries: Iterable[Tuple[Mapping[str, object], Payload]]) -> None:
@@ -28,18 +34,54 @@ class StateTable(Generic[Payload]):
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(str(state[name]) for name in names), []).append(payload)
         self.names: FrozenSet[str] = frozenset(name for names in self._tables for name in names)
+        # With many sets of names, what all of them name tells the few that are worth a look in a state.
+        several = len(self._tables) > 1
+        self._common = tuple(sorted(frozenset.intersection(*map(frozenset, self._tables)))) if several else ()
+        self._candidates: Dict[Tuple[str, ...], Tuple[Tuple[str, ...], ...]] = {}
+        for names, table in self._tables.items():
+            places = [names.index(name) for name in self._common]
+            for parts in {tuple(parts[place] for place in places) for parts in table}:
+                self._candidates[parts] = (*self._candidates.get(parts, ()), names)
 
     def find(self, state: SystemState) -> List[Payload]:
         """What was entered for this state, in order of entry."""
-        locations, values = state.locations, state.values
-        found: List[Payload] = []
-        for names, table in self._tables.items():
-            parts = [locations[name] if name in locations else str(values.get(name, "")) for name in names]
-            found += table.get(tuple(parts), [])
-        return found
+        return [payload for names, parts in self.applying(state) for payload in self._tables[names][parts]]
+
+    def applying(self, state: SystemState) -> List[Entry]:
+        """The states of the entries that apply in this state, each once."""
+        candidates = self._candidates.get(_parts(state, self._common), ())
+        looked_up = ((names, _parts(state, names)) for names in candidates)
+        return [(names, parts) for names, parts in looked_up if parts in self._tables[names]]
+
+    def names_in(self, state: SystemState) -> FrozenSet[str]:
+        """The automata and variables that matter in this state: those that the entries name which apply."""
+        return frozenset(name for names, _ in self.applying(state) for name in names)
+
+    def sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
+        """True if the event between two states changed nothing that matters to the entries which apply in both.
+
+        The same entries apply, so what they name is as it was, and no clock was reset but those of automata that they
+        do not name. Where no entry applies there is nothing that could stand: everything is new.
+        """
+        applying = self.applying(before)
+        if not applying or applying != self.applying(state):
+            return False
+        named = {name for names, _ in applying for name in names}
+        foreign = {automaton_clock(name) for name in state.locations if name not in named}
+        aged = before.clocks_at(state.stamp)
+        return all(
+            clock in foreign or abs(value - aged.get(clock, INFINITY)) < EPSILON
+            for clock, value in state.clocks.items()
+        )
 
     def __len__(self) -> int:
         return sum(len(table) for table in self._tables.values())
+
+
+def _parts(state: SystemState, names: Iterable[str]) -> Tuple[str, ...]:
+    """The location or value of each of these automata and variables."""
+    locations, values = state.locations, state.values
+    return tuple([locations[name] if name in locations else str(values.get(name, "")) for name in names])
 
 
 class Command(NamedTuple):
@@ -114,21 +156,16 @@ class Strategy:
         return first
 
     def sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
-        """True if the event between two states changed nothing that the strategy reads: what was decided stands.
+        """True if what was decided in the first of two states stands in the second: the event between them changed
+        nothing that matters where this controller has commands.
 
-        The strategy names all automata that matter to it; the others may do what they like.
+        Where it has none, nothing was decided: as soon as one of its states comes, that is new.
         """
-        if state.seq != before.seq + 1 or not state.event or state.plan != before.plan or not self.names:
+        if state.seq != before.seq + 1 or not state.event or state.plan != before.plan:
             return False
         if (before.status, state.status) != (RUNNING, RUNNING):
             return False
-        was, now = before.discrete(), state.discrete()
-        if any(was.get(name) != now.get(name) for name in self.names):
-            return False
-        if state.agent not in self.names:
-            return True
-        aged = before.clocks_at(state.stamp)
-        return all(abs(value - aged.get(clock, INFINITY)) < EPSILON for clock, value in state.clocks.items())
+        return self._table.sees_nothing_new(before, state)
 
     def lateness(self, state: SystemState) -> float:
         """Seconds by which a command may be sent after its moment: the reaction that the proof allows for."""

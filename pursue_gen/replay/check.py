@@ -9,7 +9,7 @@ from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import with_missing
-from pursue_gen.replay.moves import Move, Moves, after, changed, place_of
+from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Orders, in_time, of_plan
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
@@ -21,7 +21,7 @@ from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemSt
 @dataclass(frozen=True)
 class ReplayedStep:
     """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
-    recorded). `since`: the last state before it in which something happened that the plan in force sees."""
+    recorded). `since`: the first state before it of which all that was decided there still stood."""
 
     before: SystemState
     state: SystemState
@@ -62,9 +62,10 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
     moves = Moves(game.network)
     known = {state.seq for state in record.states}
-    states, late = with_beginnings(with_missing(record.states, record.words, moves), moves)
+    orders, unread = _orders_in(record, game)
+    states, late = with_beginnings(with_missing(record.states, record.words, moves, orders), moves)
     record = replace(record, states=tuple(states))
-    checker = _Checker(record, game, moves, tolerance)
+    checker = _Checker(record, game, moves, orders, tolerance)
     checker.run()
     steps = checker.steps
     said = match_words(record, [(step.since, step.before, step.state) for step in steps])
@@ -73,7 +74,7 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
     text = "not recorded: the words that were recorded lead to it"
     findings += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
-    findings += [*checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
+    findings += [*unread, *checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
         done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
@@ -96,13 +97,32 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     return Findings(tuple(steps), tuple(findings), last.status, last.reason, start, length, counts)
 
 
+def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], List[Finding]]:
+    """The strategies that were played, by the number of their plan, and what is to say of those that are not known."""
+    orders: Dict[int, Orders] = {}
+    findings: List[Finding] = []
+    if game.orders is not None:
+        orders[0] = game.orders
+    else:
+        why = f"what was commanded is not checked against a strategy: {game.why_not}"
+        findings.append(Finding(NOTE, "strategy", 0, why))
+    for number, data in record.plans.items():
+        try:
+            orders[number] = of_plan(data)
+        except ValueError as problem:
+            findings.append(Finding(FAULT, "plan", 0, f"plan {number} cannot be read: {problem}"))
+    return orders, findings
+
+
 class _Checker:
-    def __init__(self, record: MissionRecord, game: Game, moves: Moves, tolerance: float) -> None:
+    def __init__(
+        self, record: MissionRecord, game: Game, moves: Moves, orders: Mapping[int, Orders], tolerance: float
+    ) -> None:
         self.moves = moves
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
         self.turns: List[Done] = []
-        self.orders: Dict[int, Orders] = {}
+        self.orders = orders
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
         self._zeros: Dict[str, float] = {}
@@ -110,7 +130,6 @@ class _Checker:
 
     def run(self) -> None:
         """The states one by one."""
-        self._read_orders()
         before: Optional[SystemState] = None
         for state in self._record.states:
             if not self.moves.knows(place_of(state)):
@@ -131,18 +150,6 @@ class _Checker:
 
     def _report(self, level: str, kind: str, state: SystemState, text: str) -> None:
         self.findings.append(Finding(level, kind, state.seq, text))
-
-    def _read_orders(self) -> None:
-        if self._game.orders is not None:
-            self.orders[0] = self._game.orders
-        else:
-            why = f"what was commanded is not checked against a strategy: {self._game.why_not}"
-            self.findings.append(Finding(NOTE, "strategy", 0, why))
-        for number, data in self._record.plans.items():
-            try:
-                self.orders[number] = of_plan(data)
-            except ValueError as problem:
-                self.findings.append(Finding(FAULT, "plan", 0, f"plan {number} cannot be read: {problem}"))
 
     # One state after the other ----------------------------------------------------------------------------------------
 
@@ -210,12 +217,11 @@ class _Checker:
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
 
     def _is_seen(self, before: SystemState, state: SystemState, move: Move) -> bool:
-        """True where the move changes something of which the plan in force speaks."""
+        """True unless what was decided before the move stands after it."""
         if (before.status, before.plan) != (RUNNING, state.plan) or state.status != RUNNING:
             return True
         orders = self.orders.get(state.plan)
-        named = None if orders is None else orders.cover.names
-        return any(not named or name in named for name in changed(move, place_of(before)))
+        return orders is None or not orders.stands(move, place_of(before), self.moves)
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
         """True where robots whose way was blocked turn round with a new plan, as the only change."""

@@ -6,10 +6,11 @@ were recorded say what happened meanwhile, and the clocks of the later state whe
 
 from __future__ import annotations
 
-from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.replay.beginnings import EXACT
-from pursue_gen.replay.moves import DiscreteState, Moves, after, place_of
+from pursue_gen.replay.moves import DiscreteState, Move, Moves, after, place_of
+from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import RecordedWord
 from pursue_runtime.state import LIVE, RUNNING, SystemState
 
@@ -29,45 +30,77 @@ class _Step(NamedTuple):
     resets: Tuple[str, ...]
 
 
-def with_missing(states: Sequence[SystemState], words: Sequence[RecordedWord], moves: Moves) -> Sequence[SystemState]:
-    """Add the states that are missing between two others, where the recorded words lead from one to the other."""
+def with_missing(
+    states: Sequence[SystemState], words: Sequence[RecordedWord], moves: Moves, orders: Mapping[int, Orders]
+) -> Sequence[SystemState]:
+    """Add the states that are missing between two others, where the recorded words lead from one to the other.
+
+    `orders`: the strategies by the number of their plan, as far as they are known.
+    """
     found: List[SystemState] = []
+    since = 0  # the number of the first state of which all that was decided there stands
     for state in states:
+        gap = [state]
         if found and found[-1].seq + 1 < state.seq <= found[-1].seq + LONGEST + 1:
-            found += _missing(found[-1], state, words, moves)
-        found.append(state)
+            gap = [*_missing(found[-1], since, state, words, _Plays(moves, orders.get(state.plan))), state]
+        for each in gap:
+            plays = _Plays(moves, orders.get(each.plan))
+            since = plays.since_in(each, found[-1], since) if found else each.seq
+            found.append(each)
     return found
 
 
 def _missing(
-    before: SystemState, state: SystemState, words: Sequence[RecordedWord], moves: Moves
+    before: SystemState, since: int, state: SystemState, words: Sequence[RecordedWord], plays: _Plays
 ) -> List[SystemState]:
     """The states between these two; none where no play of the words fits."""
-    if before.status not in LIVE or before.plan != state.plan or not moves.knows(place_of(before)):
+    if before.status not in LIVE or before.plan != state.plan or not plays.moves.knows(place_of(before)):
         return []
     between = [word for word in words if before.stamp - AROUND <= word.at <= state.stamp + AROUND and word.event]
-    for steps in _plays(place_of(before), before.seq, state, between, moves):
+    for steps in plays.to(state, place_of(before), before.seq, since, between):
         made = _states(before, state, steps)
         if made:
             return made
     return []
 
 
-def _plays(
-    place: DiscreteState, seq: int, state: SystemState, words: Sequence[RecordedWord], moves: Moves
-) -> Iterator[List[_Step]]:
-    """The plays of these words, in their order, that lead from the place of this number to the state."""
-    if seq == state.seq:
-        if place == place_of(state):
-            yield []
-        return
-    for number, word in enumerate(words):
-        if word.seq not in (None, seq) or (seq + 1 == state.seq and word.event != state.event):
-            continue
-        for move in moves.of(place, word.event, word.agent):
-            there, resets = after(move, place)
-            for others in _plays(there, seq + 1, state, words[number + 1 :], moves):
-                yield [_Step(word, move[0][0], there, resets), *others]
+class _Plays:
+    """Plays of words: a command counts as long as what was decided in the state of its number stands."""
+
+    def __init__(self, moves: Moves, orders: Optional[Orders]) -> None:
+        self.moves, self._orders = moves, orders
+
+    def to(
+        self, state: SystemState, place: DiscreteState, seq: int, since: int, words: Sequence[RecordedWord]
+    ) -> Iterator[List[_Step]]:
+        """The plays of these words, in their order, that lead from the place of this number to the state."""
+        if seq == state.seq:
+            if place == place_of(state):
+                yield []
+            return
+        for number, word in enumerate(words):
+            counts = word.seq is None or since <= word.seq <= seq
+            if not counts or (seq + 1 == state.seq and word.event != state.event):
+                continue
+            for move in self.moves.of(place, word.event, word.agent):
+                there, resets = after(move, place)
+                first = since if self._stands(move, place) else seq + 1
+                for others in self.to(state, there, seq + 1, first, words[number + 1 :]):
+                    yield [_Step(word, move[0][0], there, resets), *others]
+
+    def since_in(self, state: SystemState, before: SystemState, since: int) -> int:
+        """The number of the first state of which all that was decided there stands in this one."""
+        if state.seq == before.seq:
+            return since
+        place, known = place_of(before), (RUNNING, RUNNING, state.plan, before.seq + 1)
+        if (before.status, state.status, before.plan, state.seq) != known or not self.moves.knows(place):
+            return state.seq
+        found = self.moves.of(place, state.event, state.agent)
+        stands = any(self._stands(move, place) for move in found if after(move, place)[0] == place_of(state))
+        return since if stands else state.seq
+
+    def _stands(self, move: Move, place: DiscreteState) -> bool:
+        return self._orders is not None and self._orders.stands(move, place, self.moves)
 
 
 def _states(before: SystemState, state: SystemState, steps: Sequence[_Step]) -> List[SystemState]:

@@ -7,6 +7,7 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
+from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import SystemState
 
@@ -37,13 +38,14 @@ class Untimely(NamedTuple):
 
 
 class Moves:
-    """The joint moves of one network."""
+    """The joint moves of one network. `clocks`: those of each automaton."""
 
     def __init__(self, network: Network) -> None:
         self.network = network
         self.initial = DiscreteState(
             {automaton.name: automaton.initial for automaton in network.automata}, dict(network.variables)
         )
+        self.clocks = {automaton.name: clocks_of(automaton) for automaton in network.automata}
         self._edges: Dict[Tuple[str, str], List[Edge]] = {}
         self._invariants: Dict[Tuple[str, str], Tuple[ClockBound, ...]] = {}
         for automaton in network.automata:
@@ -163,12 +165,3 @@ def after(move: Move, place: DiscreteState) -> Tuple[DiscreteState, Tuple[str, .
         values.update(edge.assign)
         resets.update(dict.fromkeys(edge.resets))
     return DiscreteState(locations, values), tuple(resets)
-
-
-def changed(move: Move, place: DiscreteState) -> Tuple[str, ...]:
-    """The automata whose location, variables or clocks the move changes."""
-    return tuple(
-        name
-        for name, edge in move
-        if edge.source != edge.target or edge.resets or any(place.values[v] != value for v, value in edge.assign)
-    )

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Sequence, Tuple, TypeVar
 
 from pursue_gen.partition import SubStrategy
-from pursue_gen.replay.moves import DiscreteState
+from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.words import event_word
@@ -15,6 +15,9 @@ from pursue_runtime.bounded import exact
 
 EPSILON = 1e-6
 Payload = TypeVar("Payload")
+
+Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
+"""The automata and variables that an entry names, and the location or value of each."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +35,6 @@ class PlanTable(Generic[Payload]):
     def __init__(self) -> None:
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
 
-    @property
-    def names(self) -> FrozenSet[str]:
-        """The automata and variables that entries name."""
-        return frozenset(name for names in self._tables for name in names)
-
     def add(self, state: Mapping[str, object], payload: Payload) -> None:
         """Adds an entry."""
         names = tuple(sorted(state))
@@ -44,12 +42,13 @@ class PlanTable(Generic[Payload]):
 
     def find(self, place: DiscreteState) -> List[Payload]:
         """What was put there."""
+        return [payload for names, parts in self.holding(place) for payload in self._tables[names][parts]]
+
+    def holding(self, place: DiscreteState) -> List[Entry]:
+        """What the entries name that hold there, each once."""
         everything = {**place.locations, **{name: str(value) for name, value in place.values.items()}}
-        return [
-            payload
-            for names, table in self._tables.items()
-            for payload in table.get(tuple(everything.get(name, "") for name in names), ())
-        ]
+        named = ((names, tuple(everything.get(name, "") for name in names)) for names in self._tables)
+        return [(names, parts) for names, parts in named if parts in self._tables[names]]
 
 
 @dataclass(frozen=True)
@@ -61,6 +60,15 @@ class Orders:
     cover: PlanTable[Tuple[Zone, ...]] = field(default_factory=PlanTable)
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
+
+    def stands(self, move: Move, place: DiscreteState, moves: Moves) -> bool:
+        """True where what was decided before the move stands after it: the same blocks hold, and the move resets no
+        clock of an automaton that they name."""
+        there, resets = after(move, place)
+        holding = self.cover.holding(place)
+        if not holding or holding != self.cover.holding(there):
+            return False
+        return not any(moves.clocks.get(name, set()).intersection(resets) for names, _ in holding for name in names)
 
 
 def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:

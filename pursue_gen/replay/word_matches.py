@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bisect
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.replay.moves import DiscreteState, Moves
@@ -35,11 +35,15 @@ APART = 60.0
 
 @dataclass(frozen=True)
 class WordMatches:
-    """The word of each step (by the number of its state), the states by number, and the words that led to nothing."""
+    """The word of each step (by the number of its state), the states by number, and the words that led to nothing.
+
+    `standing`: the numbers of the states in which what was decided before them stands.
+    """
 
     words: Mapping[int, RecordedWord]
     states: Mapping[int, SystemState]
     unmatched: Tuple[RecordedWord, ...]
+    standing: FrozenSet[int] = frozenset()
 
     def of(self, seq: int) -> Optional[RecordedWord]:
         """The word that led to this state."""
@@ -70,7 +74,8 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, System
     for state in record.states:
         states.setdefault(state.seq, state)
     left = [word for place, word in enumerate(record.words) if place not in used and not _control(word)]
-    return WordMatches(found, states, tuple(left))
+    standing = frozenset(before.seq for since, before, _ in steps if since.seq != before.seq)
+    return WordMatches(found, states, tuple(left), standing)
 
 
 def _control(word: RecordedWord) -> bool:
@@ -110,11 +115,14 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
         return now.seq, "it is no word"
     if word.seq is None:
         return now.seq, _impossible(now, word, moves) or "its moment had not come, or the observer did not receive it"
-    state, following = said.states.get(word.seq), said.states.get(word.seq + 1)
-    taken = said.of(word.seq + 1)
+    number = word.seq + 1
+    while number in said.standing:
+        number += 1
+    state, following = said.states.get(word.seq), said.states.get(number)
+    taken = [said.of(each) for each in range(word.seq + 1, number + 1)]
     if state is None:
         return word.seq, f"state {word.seq} is not in the recording"
-    if taken is not None and (taken.agent, taken.event) == (word.agent, word.event):
+    if any(each is not None and (each.agent, each.event) == (word.agent, word.event) for each in taken):
         return word.seq, "it was published again, and had been taken"
     if following is not None:
         what = f"{following.event} by {following.agent}" if following.event else "another status"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.words import event_word
@@ -52,21 +52,18 @@ class Commands:
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(state[name] for name in names), []).append(held)
 
-    @property
-    def names(self) -> FrozenSet[str]:
-        """The automata and variables that entries name."""
-        return frozenset(name for names in self._tables for name in names)
-
     def find(self, state: Mapping[str, str], agent: str, event: str) -> List[ZonedCommand]:
         """The commands by which the agent does the event in this state."""
         return [held for held in self.all_in(state) if (held.agent, held.event) == (agent, event)]
 
     def all_in(self, state: Mapping[str, str]) -> List[ZonedCommand]:
         """All commands in this state."""
-        found: List[ZonedCommand] = []
-        for names, table in self._tables.items():
-            found += table.get(tuple(state.get(name, "") for name in names), [])
-        return found
+        return [held for names, parts in self.holding(state) for held in self._tables[names][parts]]
+
+    def holding(self, state: Mapping[str, str]) -> List[Tuple[Tuple[str, ...], Tuple[str, ...]]]:
+        """What the blocks with commands name that hold in this state, and the locations and values of that."""
+        named = ((names, tuple(state.get(name, "") for name in names)) for names in self._tables)
+        return [(names, parts) for names, parts in named if parts in self._tables[names]]
 
 
 def commands_of(strategy: Strategy) -> Commands:

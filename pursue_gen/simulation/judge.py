@@ -14,6 +14,7 @@ from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, commands_in
 from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import ClockBound
+from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
 from pursue_runtime.state import LIVE, SystemState
@@ -125,18 +126,18 @@ class Judge:
             self._entered = self._decided_since = now
 
     def _is_seen(self, before: SystemState, state: SystemState, move: JointMove) -> bool:
-        """True if the step changes something of which the plan in force speaks: else what was commanded still is."""
+        """True unless the blocks that hold are the same ones, and the move resets no clock of an automaton that they
+        name: then what was commanded still is."""
         plan = self._plans.get(state.plan)
         if plan is None or (before.status, state.status, before.plan) != ("running", "running", state.plan):
             return True
-        changed = {
-            part.automaton
-            for part in move.moves
-            if part.edge.source != part.edge.target
-            or part.edge.resets
-            or any(before.values.get(name) != value for name, value in part.edge.assign)
-        }
-        return not plan.names or not changed.isdisjoint(plan.names)
+        holding = plan.holding(before.discrete())
+        if not holding or holding != plan.holding(state.discrete()):
+            return True
+        named = {name for names, _ in holding for name in names}
+        network = self._arena.network
+        reset = {network.clocks[index - 1] for index in move.resets}
+        return any(reset & clocks_of(automaton) for automaton in network.automata if automaton.name in named)
 
     def _off_model(self, move: JointMove, clocks: Mapping[str, float], what: str) -> None:
         guard = move.moves[0].edge.guard.clocks

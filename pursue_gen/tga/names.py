@@ -24,10 +24,8 @@ in_words = locations.in_words
 """Where an agent is, in English."""
 
 
-def agent_clock(agent: str) -> str:
-    """The clock of an agent: how long since its last action or movement began or ended."""
-    return f"C{agent}"
-
+agent_clock = locations.automaton_clock
+"""The clock of an agent: how long since its last action or movement began or ended."""
 
 agent_position = locations.position_variable
 """The variable that holds where an agent is."""

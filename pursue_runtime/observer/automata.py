@@ -6,7 +6,7 @@ Times are seconds of ROS time, delays are time units.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Dict, Iterable, List, MutableMapping, Optional, Set, Tuple
+from typing import Dict, Iterable, List, MutableMapping, Optional, Tuple
 from weakref import WeakKeyDictionary
 
 from transitions import Machine
@@ -108,16 +108,6 @@ class Automata:
             self._machines[name].take(edge)
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
-
-    def changed(self, moves: Iterable[Move]) -> Set[str]:
-        """Return the automata whose location, variables or clocks the moves of one event change."""
-        return {
-            name
-            for name, edge in moves
-            if edge.source != edge.target
-            or edge.resets
-            or any(self._values[variable] != value for variable, value in edge.assign.items())
-        }
 
     def turn(self, moves: Iterable[Move], now: float) -> None:
         """Apply moves of robots that turned round on their way at that time: their edges start at its other end."""

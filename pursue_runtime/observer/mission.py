@@ -67,7 +67,7 @@ class Mission:
     ) -> None:
         self.model, self.name = model, name
         self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
-        self._since = 0  # nothing has happened after this state that the plan in force sees
+        self._since = 0  # what was decided in the state of this number, or later, stands
         self.counts = dict.fromkeys(COUNTED, 0)
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
@@ -297,7 +297,7 @@ class Mission:
         return None
 
     def _is_current(self, seq: int) -> bool:
-        """Return True for the number of the state, or of an earlier one after which the plan has seen nothing new."""
+        """Return True for the number of the state, or of an earlier one: what was decided there stands."""
         return self._since <= seq <= self.seq
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
@@ -313,7 +313,7 @@ class Mission:
         """Apply the moves, and then internal edges of objectives that are enabled."""
         states: List[SystemState] = []
         while moves:
-            is_seen = any(map(self._is_named, self._automata.changed(moves)))
+            before = self.state(now)
             self._automata.take(moves, now)
             self.robots.on_moves(moves)
             for name, _ in moves:
@@ -322,7 +322,6 @@ class Mission:
                 self.ways.turns.pop(name, None)
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
-            self._since = self.seq if is_seen else self._since
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
@@ -330,6 +329,8 @@ class Mission:
             self._log("info", f"state {self.seq}: {self._event} by {self._agent}")
             moves = self._evaluate(now, why)
             states.append(self.state(now))
+            if not self._sees_nothing_new(before, states[-1]):
+                self._since = self.seq
         return states
 
     def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
@@ -367,7 +368,7 @@ class Mission:
 
         `patience`: the time units for which clocks may be outside what the plan covers.
         """
-        relied_on = {name: why for name, why in self.lost.items() if self._is_named(name)}
+        relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
         trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
@@ -398,10 +399,18 @@ class Mission:
             self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
         self.status, self.reason = HOLDING if reasons else RUNNING, reason
 
-    def _is_named(self, name: str) -> bool:
-        """Return True unless the plan in force speaks of others only: this automaton cannot matter to it."""
-        named = self._cover.names if self._cover is not None else ()
+    def _matters(self, name: str, now: float) -> bool:
+        """Return True unless what the plan in force does in this state holds whatever the automaton does."""
+        if self._cover is None:
+            return True
+        named = self._cover.names_in(self.state(now)) or self._cover.names
         return not named or name in named
+
+    def _sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
+        """Return True if commands that were decided before a move stand after it, as controllers see it too."""
+        if self._cover is None or (before.status, state.status) != (RUNNING, RUNNING):
+            return False
+        return self._cover.sees_nothing_new(before, state)
 
     @property
     def _cover_grace(self) -> float:

@@ -95,3 +95,49 @@ def test_instructions_of_people_stand_as_well() -> None:
     assert view.due(105.15, 0.05) == ["bot:bot_a2b@2"]
     view.on_state(state(3, 105.18, "bot_waves", "bot", (0.0, 0.08)), 105.18)
     assert view.due(105.19, 0.09) == []
+
+
+STAGES = """
+format: 1
+controller: controller_bot
+commands_agents: [bot]
+reaction: 0.2
+strategy:
+- state: {bot: a, rule: first}
+  commands:
+  - {do: bot_a2b, agent: bot, from: a, to: going_a_to_b, when: ["5 <= Cbot && Cbot <= 5.05"]}
+- state: {bot: a, guest: a, rule: second}
+  commands:
+  - {do: bot_a2c, agent: bot, from: a, to: going_a_to_c, when: ["2 <= Cguest"]}
+"""
+
+
+def test_a_later_stage_is_decided_at_its_beginning_and_by_what_it_names() -> None:
+    bot = CommandScheduler(Strategy(read(STAGES)))
+    bot.on_state(state(1, 100.0), 100.0)
+    bot.on_state(state(2, 102.0, "guest_a2b", "guest", (2.0, 0.0)), 102.0)
+    assert not bot.is_new and bot.next_wakeup() == (105.0, None)
+    bot.on_state(state(3, 103.0, "done", "rule", (3.0, 1.0), "second"), 103.0)
+    assert bot.is_new and bot.next_wakeup() == (104.0, None)
+    bot.on_state(state(4, 103.5, "guest_a2b", "guest", (3.5, 0.0), "second"), 103.5)
+    assert bot.is_new and bot.next_wakeup() == (None, None)
+
+
+def test_a_clock_that_somebody_else_starts_again_is_new_where_its_agent_is_named() -> None:
+    for clocks, stands in (((0.0, 5.1), False), ((5.1, 0.0), True)):
+        bot = player()
+        bot.on_state(state(1, 100.0), 100.0)
+        assert bot.on_timer(105.0) == ("bot", "bot_a2b", 1)
+        bot.on_state(state(2, 105.1, "guest_a2b", "guest", clocks), 105.1)
+        assert bot.is_new is not stands
+        assert (bot.on_timer(105.15) == ("bot", "bot_a2b", 2)) is stands
+
+
+def test_instructions_follow_the_stage_that_has_begun() -> None:
+    model = Model(model_data(mover("bot", "human", 3), mover("guest", "agent", 3)))
+    view = MissionView(model, IdleEnvironment(), Strategy(read(STAGES)))
+    view.on_state(state(1, 100.0, event="_start_"), 100.0)
+    view.on_state(state(2, 104.0, "guest_a2b", "guest", (4.0, 0.0)), 104.0)
+    view.on_state(state(3, 104.9, "done", "rule", (4.9, 0.9), "second"), 104.9)
+    assert view.due(105.0, 0.0) == [] and view.next_moments(105.0)[0] == 106.0
+    assert view.due(106.0, 1.0) == ["bot:bot_a2c@3"]

@@ -76,3 +76,71 @@ def test_a_plan_that_names_everybody_is_as_before() -> None:
     made.hear("_start_", 0.0)
     made.hear("thief_leaves", 12.0)
     assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
+
+
+STAGES = """
+format: 1
+cover:
+- state: {bot: a, rule: first, reachObj: initial_location}
+  zones: [always]
+- state: {bot: going_a_to_b, rule: first, reachObj: initial_location}
+  zones: [always]
+- state: {bot: b, thief: gone, reachObj: initial_location}
+  zones: [Cthief <= 30]
+- state: {bot: b, thief: b, reachObj: initial_location}
+  zones: [always]
+"""
+"""Only when the bot is in b does it matter where the thief is."""
+
+
+def stages(text: str = WALKING) -> Journey:
+    made = Journey(text, STAGES, on_uncovered="plan", controllers=("one",), lost_after=8.0)
+    made.hear("_start_", 0.0)
+    return made
+
+
+def test_who_is_lost_holds_the_mission_as_soon_as_a_stage_names_it() -> None:
+    made = stages()
+    assert made.hear("thief_leaves", 12.0).locations["thief"] == "gone"
+    for moment in (16.2, 24.5):
+        made.mission.on_time(moment)
+    state = made.hear("bot:bot_a2b@1", 25.0)
+    assert (state.lost, state.status, made.mission.plan_request) == (("thief",), "running", None)
+    state = made.hear("bot_going_a_to_b2b", 28.5)
+    assert state.status == "holding" and state.reason.startswith("thief is late by 8 time units; looking for another")
+    assert made.mission.plan_request is not None and made.mission.plan_request.excused == ("thief",)
+
+
+def test_a_command_is_stale_as_soon_as_another_stage_has_begun() -> None:
+    made = stages()
+    made.hear("bot:bot_a2b@1", 2.0)
+    made.hear("thief_leaves", 4.5)
+    assert made.mission.counts["stale"] == 0
+    made.hear("bot_going_a_to_b2b", 5.5)
+    assert made.hear("bot:catch@3", 6.6) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:catch@4", 6.6) is None and made.mission.counts["impossible"] == 1  # the thief is gone
+
+
+def test_what_a_stage_names_makes_commands_stale_in_it_alone() -> None:
+    made = stages(CHASE)
+    made.hear("bot:bot_a2b@1", 2.0)
+    made.hear("bot_going_a_to_b2b", 5.5)
+    made.hear("thief_leaves", 10.5)
+    assert made.hear("bot:bot_nods@3", 10.6) is None and made.mission.counts["stale"] == 1
+
+
+def test_clocks_are_covered_by_the_entries_that_apply() -> None:
+    made = stages(CHASE)
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("_ping_", 60.0).status == "running"
+    made.hear("bot:bot_a2b@2", 60.0)
+    state = made.hear("bot_going_a_to_b2b", 63.5)
+    assert state.status == "holding" and "no strategy at these clocks" in state.reason
+
+
+def test_where_no_entry_applies_a_command_counts_in_its_own_state_alone() -> None:
+    made = Journey(CHASE, COVER.replace("bot: a", "bot: b"), on_uncovered="warn")
+    made.hear("_start_", 0.0)
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:bot_a2b@2", 12.1).locations["bot"] == "going_a_to_b"
