@@ -8,11 +8,12 @@ from typing import AbstractSet, List, Mapping, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
-from pursue_gen.play.state import GRAIN, PlayState, Setup
+from pursue_gen.play.state import GRAIN, PlayState, Setup, later
 from pursue_gen.synthesis.game import JointMove, State, joint_moves
 from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.network import Edge
+from pursue_gen.tga.part import clocks_of
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,7 @@ class Decision:
 
     move: JointMove
     at: Fraction
+    command: Command
 
 
 @dataclass(frozen=True)
@@ -44,15 +46,19 @@ class Advisor:
         self._blocks = Blocks(strategy)
 
     def decision(self, play: PlayState) -> Optional[Decision]:
-        """What the strategy decides first after the last move; None: it waits for what others do."""
+        """What the strategy decided before the last move, where that stands, else what it decides first after it; None:
+        it waits for what others do."""
         found = self._blocks.find(self._named(play.entry.state))
         if found is None:
             return None
         game, entry = self._setup.game, play.entry
-        clocks = dict(zip(game.clocks, entry.clocks))
         named = {name for name, _ in found[1].state.locations}
         moves = {self._keys(move, named): move for move in joint_moves(game, entry.state) if move.controllable}
-        best: Optional[Tuple[Fraction, JointMove]] = None
+        if play.standing is not None:
+            command, at = play.standing
+            return Decision(moves[_keys_of(command)], at, command) if _keys_of(command) in moves else None
+        clocks = dict(zip(game.clocks, entry.clocks))
+        best: Optional[Decision] = None
         for command in found[1].commands:
             move = moves.get(_keys_of(command))
             if move is None:
@@ -61,17 +67,31 @@ class Advisor:
             for zone in command.zones:
                 within = span(zone, clocks)
                 delay = None if within is None else _both(within, open_).earliest(GRAIN)
-                if delay is not None and (best is None or delay < best[0]):
-                    best = delay, move
-        return None if best is None else Decision(best[1], play.since + best[0])
+                if delay is not None and (best is None or play.since + delay < best.at):
+                    best = Decision(move, play.since + delay, command)
+        return best
+
+    def sees_nothing_new(self, before: PlayState, play: PlayState) -> bool:
+        """True if what was decided before a move stands after it: the same block holds, and no clock of an automaton
+        that it names was reset."""
+        found, there = (self._blocks.find(self._named(each.entry.state)) for each in (before, play))
+        if found is None or found != there:
+            return False
+        named = {name for name, _ in found[1].state.locations}
+        network, game = self._setup.network, self._setup.game
+        clocks = {clock for automaton in network.automata if automaton.name in named for clock in clocks_of(automaton)}
+        aged = later(before.entry, play.since - before.since)
+        was, now = (dict(zip(game.clocks, entry.clocks)) for entry in (aged, play.entry))
+        return all(was[clock] == now[clock] for clock in clocks)
 
     def holding(self, play: PlayState) -> Optional[Holding]:
-        """What the strategy says now; None: it has no block for this state."""
+        """What the strategy says now, or said when it decided what stands; None: it has no block for this state."""
         found = self._blocks.find(self._named(play.entry.state))
         if found is None:
             return None
         number, block = found
-        clocks = dict(zip(self._setup.game.clocks, play.position.clocks))
+        moment = play.now if play.standing is None else play.standing[1]
+        clocks = dict(zip(self._setup.game.clocks, later(play.entry, moment - play.since).clocks))
         zones: List[Tuple[Optional[Command], Zone]] = [(None, zone) for zone in block.wait]
         zones += [(command, zone) for command in block.commands for zone in command.zones]
         for command, zone in zones:

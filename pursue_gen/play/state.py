@@ -1,7 +1,7 @@
 """The play at which a game is played: frozen positions with exact times, and the steps that lead from one to the next.
 
-A play remembers how its discrete state was entered: what the strategy decides, and when, follows from that, however
-often it is computed in between.
+A play remembers how its discrete state was entered, and what was decided before: what the strategy decides, and when,
+follows from that, however often it is computed in between.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from pursue_gen.synthesis.game import (
     is_goal,
     joint_moves,
 )
+from pursue_gen.synthesis.strategy import Command
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective, is_end
 from pursue_gen.tga.words import event_word
@@ -95,7 +96,11 @@ class PlannedMove:
 
 @dataclass(frozen=True)
 class PlayState:
-    """`entry` is the position at the time `since`, when the last move was made; now it is `now`."""
+    """`entry` is the position at the time `since`, when the last move was made; now it is `now`.
+
+    `standing`: what the strategy had decided before that move, and when (time units since the start), if the move
+    changed nothing that matters to it; None: it decides anew at `since`.
+    """
 
     entry: Position
     since: Fraction = Fraction(0)
@@ -103,6 +108,7 @@ class PlayState:
     status: str = RUNNING
     deeds: Tuple[PlayedMove, ...] = ()
     plans: Tuple[PlannedMove, ...] = ()
+    standing: Optional[Tuple[Command, Fraction]] = None
 
     @property
     def position(self) -> Position:

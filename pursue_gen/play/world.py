@@ -95,10 +95,17 @@ class StrategyPlay:
         """
         event, last = self.next_event(play), last_moment(self.setup, play)
         if event is not None and (until is None or event.at <= until):
-            return taken(self.setup, play, event.move, event.at, event.by)
+            return self._after(play, taken(self.setup, play, event.move, event.at, event.by))
         if last is not None and (until is None or until > last):
             return ended(self.setup, passed(play, last))
         return play if until is None else passed(play, until)
+
+    def _after(self, before: PlayState, play: PlayState) -> PlayState:
+        """The play after a move, with what had been decided before it where that stands."""
+        decided = self.advisor.decision(before)
+        if decided is None or decided.at > play.since or not self.advisor.sees_nothing_new(before, play):
+            return play
+        return replace(play, standing=(decided.command, decided.at))
 
     def strategy_event(self, play: PlayState) -> Optional[Event]:
         """What the strategy does next, if nothing else happens before."""
