@@ -73,8 +73,9 @@ class Controller:
             if verdict == REFUSED:
                 self.witness.publish()
                 return
-            if verdict != OLD:
+            if verdict != OLD and publisher != self.observer:
                 self.observer = publisher
+                self.exegg.serve_first(publisher)
             if self.follower.part is not played:
                 try:
                     self.take_up()

@@ -18,7 +18,8 @@ from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.locations import is_action, is_movement, movement
 from pursue_runtime.locations import place_of as poi_of
-from pursue_runtime.nodes.node import Alarm, Ending, listeners
+from pursue_runtime.nodes.node import Alarm, Ending, Later
+from pursue_runtime.nodes.publishing import ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.poses import Table
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
@@ -40,9 +41,12 @@ class Exeggutor:
         self._ways: Dict[str, Dict[str, Movement]] = {}
         self._status, self._reaction = RUNNING, 0.0
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        self._observer = ""
+        self._precedence = ServedFirst(self._events, lambda node: node == self._observer)
         self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
+        self._log_lines = Later("log", ending)
         self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
@@ -68,15 +72,15 @@ class Exeggutor:
             for robot in settings:
                 if robot not in self._links:
                     inputs = (partial(take, robot) for take in (self._result, self._statuses, self._place))
-                    self._links[robot] = RobotLink(robot, settings[robot], self._ending, *inputs)
+                    self._links[robot] = RobotLink(robot, settings[robot], self._ending, self._log, *inputs)
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
                 position = positions.get(robot)
                 if position is not None:  # amcl does not publish it again while the robot stands
                     self._robots[robot].on_position(position, rospy.get_time())
 
-    @staticmethod
-    def _log(level: str, text: str) -> None:
-        LOGS[level]("%s", text)
+    def _log(self, level: str, text: str) -> None:
+        """Log a sentence a little later: a line takes as long as a reaction, and other orders may be due."""
+        self._log_lines.do(partial(LOGS[level], "%s", text))
 
     # For the controller -----------------------------------------------------------------------------------------------
 
@@ -84,6 +88,11 @@ class Exeggutor:
         """Publish a command or a report on pursue/events."""
         with contextlib.suppress(rospy.ROSException):  # the node is going down
             self._events.publish(word)
+
+    def serve_first(self, observer: str) -> None:
+        """Have words go to this node before all others that are subscribed to them."""
+        self._observer = observer
+        self._precedence.arrange()
 
     def observers(self) -> List[str]:
         """The nodes that are subscribed to what is published here."""
@@ -173,8 +182,8 @@ class Exeggutor:
             if action is not None:
                 self._links[name].do(*action)
             if word is not None:
-                rospy.loginfo("reports %s", word)
                 self.announce(word)
+                self._log("info", f"reports {word}")
             moment, repeat = robot.next_moments()
             moments += [] if moment is None else [moment]
             patience += [] if repeat is None else [repeat - real]

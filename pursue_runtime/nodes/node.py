@@ -12,7 +12,20 @@ import sys
 import threading
 import time
 import traceback
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    Iterator,
+    List,
+    NamedTuple,
+    NoReturn,
+    Optional,
+    Sequence,
+    Tuple,
+    Type,
+)
 
 import rosgraph
 import rospy
@@ -181,20 +194,43 @@ class Later:
     """Does things in their order, in a thread of its own, but only after a reaction has had the time that it takes."""
 
     def __init__(self, name: str, ending: Ending) -> None:
-        self._actions: queue.SimpleQueue[Callable[[], object]] = queue.SimpleQueue()
+        self._changed = threading.Condition()
+        self._actions: List[Callable[[], object]] = []
+        self._reactions = 0  # how many are under way
         start_thread(name, self._run, ending)
 
     def do(self, action: Callable[[], object]) -> None:
         """Do this after all that was passed before. An exception that it raises ends the node."""
-        self._actions.put(action)
+        with self._changed:
+            self._actions.append(action)
+            self._wake()
+
+    @contextlib.contextmanager
+    def after(self) -> Iterator[None]:
+        """Do what is passed in this block after its end: the thread does not even wake before, which takes time too."""
+        with self._changed:
+            self._reactions += 1
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._reactions -= 1
+                self._wake()
+
+    def _wake(self) -> None:
+        if self._actions and not self._reactions:
+            self._changed.notify()
 
     def _run(self) -> None:
         while True:
-            action = self._actions.get()
+            with self._changed:
+                while not self._actions or self._reactions:
+                    self._changed.wait()
             time.sleep(0.01)
-            action()
-            while not self._actions.empty():
-                self._actions.get()()
+            with self._changed:
+                actions, self._actions = self._actions, []
+            for action in actions:
+                action()
 
 
 FAILED = 1
@@ -320,24 +356,3 @@ def lower_priority() -> None:
     """Lower the priority of this process, once: nodes that decide about robots come first."""
     if ANEW not in os.environ:
         os.nice(5)
-
-
-def listeners(publisher: rospy.Publisher) -> List[str]:
-    """The names of the nodes that are connected to what we publish there."""
-    return sorted({connection[1] for connection in publisher.impl.get_stats_info()})
-
-
-def publish_to_one(publisher: rospy.Publisher, peer_publish: Callable[[Any], None], message: Any) -> None:
-    """Publish a message to one subscriber alone, with the function that rospy passes to `peer_subscribe`.
-
-    That function serializes into a buffer that all calls share, and leaves the lock to its caller: without it, messages
-    that two threads publish at the same time are mixed. Raises rospy.ROSException where the topic is closed.
-    """
-    impl = publisher.impl
-    if impl is None:
-        raise rospy.ROSException(f"{publisher.name} is closed")
-    impl.acquire()
-    try:
-        peer_publish(message)
-    finally:
-        impl.release()

@@ -34,12 +34,12 @@ from pursue_runtime.nodes.node import (
     Ending,
     Later,
     Report,
-    listeners,
     restart_process,
     run_node,
     start_thread,
     subscribe,
 )
+from pursue_runtime.nodes.publishing import ServedFirst, is_connected
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
@@ -91,6 +91,7 @@ class Observer:
         self.proposed = 0
         self.over = False
         self.states = rospy.Publisher(STATE, SystemStateMessage, queue_size=1000, latch=True, tcp_nodelay=True)
+        ServedFirst(self.states, self.is_controller)
         self.texts = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
@@ -198,10 +199,14 @@ class Observer:
         dropped, and comes again once it receives the states.
         """
         publisher = message._connection_header.get("callerid", "")
-        if publisher.strip("/") in self.last_report and publisher not in listeners(self.states):
+        if self.is_controller(publisher) and not is_connected(self.states, publisher):
             self.log_soon("warn", f"{publisher} does not receive the states; its word is dropped: {message.data[:80]}")
             return
         self.call("hear", message.data)
+
+    def is_controller(self, node: str) -> bool:
+        """Return True for the name of a controller of the mission, as rospy has it."""
+        return node.strip("/") in self.last_report
 
     def on_seen(self, state: SystemState, node: str) -> None:
         """Handle what another node has seen last: a state that is not known here stops the mission."""
@@ -268,7 +273,7 @@ class Observer:
 
     def call(self, name: str, *args: Any) -> None:
         """Call the mission by way of the journal, and publish what follows."""
-        with self.lock:
+        with self.lock, self.log_lines.after():
             if self.over and self.mission.status == WAITING:
                 return
             self.publish(self.journal.call(name, *args, now=self.now()))
@@ -286,6 +291,7 @@ class Observer:
         if proposal is not None and proposal["plan"] != self.proposed:
             self.proposed = proposal["plan"]
             self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
+        self.journal.sync_soon()
         self.planner.request_plan(self.mission.plan_request)
         repeat = self.repeats.next_moment()
         patience = None if repeat is None else max(0.0, repeat - time.monotonic())

@@ -15,10 +15,14 @@ from pursue_runtime.controller.goal import Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
-from pursue_runtime.nodes.node import Ending, publish_to_one, subscribe
+from pursue_runtime.nodes.node import Ending, subscribe
+from pursue_runtime.nodes.publishing import publish_to_one
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
+
+Log = Callable[[str, str], None]
+"""Takes a level (info, warn, err) and a sentence."""
 
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
@@ -63,13 +67,15 @@ class RobotLink(rospy.SubscribeListener):
         robot: str,
         settings: Settings,
         ending: Ending,
+        log: Log,
         result: Callable[[Answer], None],
         statuses: Callable[[List[Answer]], None],
         place: Callable[[Position], None],
     ) -> None:
+        """`log` gets what is worth a line once it is sent; it does not wait."""
         super().__init__()
         self.watched = not settings.sources
-        self._robot, self._settings, self._ending = robot, settings, ending
+        self._robot, self._settings, self._ending, self._log = robot, settings, ending, log
         self._on_result, self._on_statuses, self._place = result, statuses, place
         self._lock = threading.Lock()
         self._standing: Dict[str, Order] = {}
@@ -126,12 +132,12 @@ class RobotLink(rospy.SubscribeListener):
             message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
             message.goal.target_pose = stamped
         self._send(Order(goal.movement.location, self._move, message))
-        rospy.loginfo("%s goes to %s (%.2f, %.2f)", self._robot, goal.movement.place.poi, position.x, position.y)
+        self._log("info", f"{self._robot} goes to {goal.movement.place.poi} ({position.x:.2f}, {position.y:.2f})")
 
     def do(self, trigger: str, location: str = "") -> None:
         """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""
         self._send(Order(location, self._act, String(trigger)))
-        rospy.loginfo("%s does %s", self._robot, trigger)
+        self._log("info", f"{self._robot} does {trigger}")
 
     def _send(self, order: Order) -> None:
         topic = order.publisher.resolved_name
@@ -141,9 +147,9 @@ class RobotLink(rospy.SubscribeListener):
                 if not self._open:
                     self._late.append((topic, None))
                     return
-            if order.publisher.get_num_connections() == 0:
-                rospy.logwarn("no subscriber on %s yet", topic)
             order.publish()
+            if order.publisher.get_num_connections() == 0:
+                self._log("warn", f"no subscriber on {topic} yet")
 
     def keep(self, location: str, is_open: bool, after: str) -> None:
         """Drops the orders that are over: only what fits the location, and a goal that the robot is `after`, may still

@@ -25,12 +25,12 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     Report,
-    listeners,
     lower_priority,
     restart_process,
     run_node,
     subscribe,
 )
+from pursue_runtime.nodes.publishing import listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
 from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
@@ -90,8 +90,8 @@ class SimulatorNode:
         """Report the ends that are due, and sleep until the next."""
         with self.lock:
             for word in self.simulator.due(rospy.get_time(), time.monotonic()):
-                rospy.loginfo("reports %s", word)
                 self.events.publish(word)
+                rospy.loginfo("reports %s", word)
                 self.reported += 1
             moment, real = self.simulator.next_moments()
             self.alarm.set(moment, None if real is None else max(0.0, real - time.monotonic()))

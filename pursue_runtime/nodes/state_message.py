@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Callable, Sequence
 
 import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
@@ -39,12 +39,12 @@ def message_of(state: SystemState) -> Message:
 
 def state_of(message: Message) -> SystemState:
     """Return the state that a message holds. Raises ValueError for one that no observer publishes."""
-    lists = {"automata": message.automata, "variables": message.variables, "clocks": message.clocks}
-    agents = {f"{key} agents": getattr(message, key) for key in AGENT_LISTS}
-    named = {what: [each.name for each in entries] for what, entries in lists.items()}
-    problems = [names_problem(what, names) for what, names in {**named, **agents}.items()]
-    if any(problems):
-        raise ValueError(next(filter(None, problems)))
+    for what, entries in (("automata", message.automata), ("variables", message.variables), ("clocks", message.clocks)):
+        _check(what, [each.name for each in entries])
+    agents = {key: getattr(message, key) for key in AGENT_LISTS}
+    for key, names in agents.items():
+        if names:
+            _check(f"{key} agents", names)
     state = SystemState(
         seq=message.seq,
         stamp=message.stamp.to_sec(),
@@ -59,12 +59,19 @@ def state_of(message: Message) -> SystemState:
         unit=message.time_unit,
         plan=message.plan,
         mission=message.mission,
-        **{key: tuple(getattr(message, key)) for key in AGENT_LISTS},
+        **{key: tuple(names) for key, names in agents.items()},
     )
     problem = state_problem(state)
     if problem:
         raise ValueError(problem)
     return state
+
+
+def _check(what: str, names: Sequence[str]) -> None:
+    """Raise ValueError where names are wrong."""
+    problem = names_problem(what, names)
+    if problem:
+        raise ValueError(problem)
 
 
 def subscribe_states(

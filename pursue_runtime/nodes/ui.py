@@ -26,12 +26,12 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     Report,
-    listeners,
     lower_priority,
     restart_process,
     start_thread,
     subscribe,
 )
+from pursue_runtime.nodes.publishing import listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan

@@ -12,7 +12,8 @@ import rospy
 from pursue_msgs.msg import SystemState as Message
 
 from pursue_runtime.nodes.links import is_gone
-from pursue_runtime.nodes.node import Ending, listeners, publish_to_one
+from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.publishing import listeners, publish_to_one
 from pursue_runtime.nodes.state_message import message_of, subscribe_states
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.words import SEEN

@@ -76,10 +76,11 @@ class Automata:
         self._machines = {name: AutomatonMachine(machine) for name, machine in machines_of(model).items()}
         self._values = dict(model.variables)
         self._zeros: Dict[str, float] = {}  # the time of the last reset of each clock
+        self._position: Optional[Tuple[float, Position]] = None  # the last that was computed, and its time
 
     def start(self, now: float) -> None:
         """Set every clock to zero at the time `now`."""
-        self._zeros = dict.fromkeys(self.model.clocks, now)
+        self._zeros, self._position = dict.fromkeys(self.model.clocks, now), None
 
     def adopt(self, state: SystemState) -> None:
         """Set locations, variables and clocks as they are in a state of this model."""
@@ -87,6 +88,7 @@ class Automata:
             self._machines[name].set(location)
         self._values = dict(state.values)
         self._zeros = {clock: state.stamp - value * self.unit for clock, value in state.clocks.items()}
+        self._position = None
 
     def location_of(self, name: str) -> str:
         """Return the location of an automaton, "" if there is none of this name."""
@@ -97,13 +99,20 @@ class Automata:
         return place is not None and self.location_of(place[0]) == place[1]
 
     def position(self, now: float) -> Position:
-        """Return the locations, variables and clocks at the time `now`."""
-        locations = {name: machine.location for name, machine in self._machines.items()}
-        clocks = {clock: (now - self._zeros.get(clock, now)) / self.unit for clock in self.model.clocks}
-        return Position(locations, dict(self._values), clocks)
+        """Return the locations, variables and clocks at the time `now`; what is returned is not changed any more.
+
+        A reaction asks for the same moment several times: it is computed once.
+        """
+        known = self._position
+        if known is None or known[0] != now:
+            locations = {name: machine.location for name, machine in self._machines.items()}
+            clocks = {clock: (now - self._zeros.get(clock, now)) / self.unit for clock in self.model.clocks}
+            self._position = known = now, Position(locations, dict(self._values), clocks)
+        return known[1]
 
     def take(self, moves: Iterable[Move], now: float) -> None:
         """Apply the moves of one event."""
+        self._position = None
         for name, edge in moves:
             self._machines[name].take(edge)
             self._values.update(edge.assign)
@@ -111,6 +120,7 @@ class Automata:
 
     def turn(self, moves: Iterable[Move], now: float) -> None:
         """Apply moves of robots that turned round on their way at that time: their edges start at its other end."""
+        self._position = None
         for name, edge in moves:
             self._machines[name].set(edge.target)
             self._values.update(edge.assign)

@@ -74,7 +74,7 @@ class Journal:
         self._lost = not path  # nothing is written any more
         self._entries: List[Record] = []  # what was replayed
         self._lock = threading.RLock()
-        self._written = threading.Event()
+        self._unsynced, self._written = False, threading.Event()
         if path:
             self._resume(begun)
 
@@ -86,8 +86,7 @@ class Journal:
     def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
         """Call the mission (a name in CALLS) at the time `now` (seconds); write the call if it changed the mission.
 
-        The start and the end of the mission are on the disk when this returns, everything else soon after
-        (`keep_synced`).
+        The start and the end of the mission are on the disk when this returns, everything else soon after `sync_soon`.
         """
         before, status = self._mission.revision(), self._mission.status
         states = CALLS[name](self._mission, *args, now)
@@ -130,8 +129,14 @@ class Journal:
                 with contextlib.suppress(OSError):
                     self._set_aside()
 
+    def sync_soon(self) -> None:
+        """Have `keep_synced` sync what was written: to be called after publishing, which its thread would delay."""
+        if self._unsynced:
+            self._unsynced = False
+            self._written.set()
+
     def keep_synced(self) -> None:
-        """Sync what is written, for ever: for a thread of its own."""
+        """Sync what was written, soon after each `sync_soon`, for ever: for a thread of its own."""
         while True:
             self._written.wait()
             time.sleep(DELAY)
@@ -217,7 +222,7 @@ class Journal:
                 if sync:
                     self._file.sync()
                 else:
-                    self._written.set()
+                    self._unsynced = True
             except OSError as problem:
                 self._fail(problem)
 

@@ -46,3 +46,34 @@ def test_what_fails_ends_the_node(monkeypatch: pytest.MonkeyPatch) -> None:
     Later("texts", ending).do(lambda: 1 // 0)
     assert ending.ended.wait(PATIENCE)
     assert ending.statuses == [FAILED]
+
+
+def test_what_is_passed_in_a_reaction_is_done_after_it() -> None:
+    """Two threads react at the same time: what both have passed waits for the second one."""
+    ending: Any = Ending()
+    later, done = Later("log", ending), threading.Event()
+    inside, go_on = threading.Event(), threading.Event()
+
+    def react() -> None:
+        with later.after():
+            inside.set()
+            assert go_on.wait(PATIENCE)
+
+    other = threading.Thread(target=react)
+    with later.after():
+        other.start()
+        assert inside.wait(PATIENCE)
+        later.do(done.set)
+    assert not done.wait(0.1), "the other reaction goes on"
+    go_on.set()
+    assert done.wait(PATIENCE)
+    other.join(PATIENCE)
+
+
+def test_a_reaction_that_fails_keeps_nothing_back() -> None:
+    ending: Any = Ending()
+    later, done = Later("log", ending), threading.Event()
+    with pytest.raises(RuntimeError), later.after():
+        later.do(done.set)
+        raise RuntimeError
+    assert done.wait(PATIENCE)

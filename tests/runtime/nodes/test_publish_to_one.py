@@ -16,7 +16,7 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 from rospy.topics import SubscribeListener, _PublisherImpl
 from std_msgs.msg import String
 
-from pursue_runtime.nodes.node import publish_to_one
+from pursue_runtime.nodes.publishing import publish_to_one
 from pursue_runtime.nodes.robot_link import Order
 
 ALL, ONE = "for every subscriber", "for one"

@@ -54,6 +54,7 @@ class Life:
         states = []
         for moment, (name, *arguments) in enumerate(calls, start=first):
             states += self.journal.call(name, *arguments, now=1000.0 + moment)
+            self.journal.sync_soon()  # as the observer does when it has published them
         return states
 
     def state(self) -> str:
@@ -417,6 +418,22 @@ def test_all_that_is_written_comes_to_the_disk_without_another_call(
     assert until(lambda: sizes[-1] == path.stat().st_size, "a sync of everything")
     life.play(("hear", "_stop_"), first=3)
     assert sizes[-1] == path.stat().st_size, "so is the end"
+
+
+def test_the_thread_that_syncs_sleeps_until_the_states_are_published(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    life = Life(path)
+    life.play(("hear", "_start_"))
+    synced = threading.Event()
+    monkeypatch.setattr(os, "fdatasync", lambda _: synced.set())
+    threading.Thread(target=life.journal.keep_synced, daemon=True).start()
+    before = path.stat().st_size
+    assert life.journal.call(*PLAY[1], now=1001.0)
+    assert path.stat().st_size > before, "it is in the file before it is published"
+    assert not synced.wait(0.1)
+    life.journal.sync_soon()
+    assert synced.wait(100)
 
 
 def test_a_disk_that_fails_to_sync_marks_the_journal(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
