@@ -262,7 +262,7 @@ class SimulatedMission:
         self._judge.on_order(order.agent, order.trigger, order.target, seq, newest, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
-            self._connections.send_order(mover.on_order)
+            self._connections.send_order(lambda: mover.on_order(order, seq))
 
     # What the world does ----------------------------------------------------------------------------------------------
 

@@ -13,6 +13,8 @@ from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.tga.names import is_under_way
+from pursue_runtime.controller.scheduler import StartedActivity
+from pursue_runtime.locations import action_of, is_action
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
 from pursue_runtime.state import SystemState
 
@@ -52,6 +54,7 @@ class SimulatedAgent:
         self._timer = Timer(events, self._on_timer)
         self._breakdown = fault_plan.breakdown if fault_plan.breakdown and fault_plan.breakdown.robot == agent else None
         self._place = ""
+        self._since = 0
         self._activities = 0
         self._broken = False
         self._stamp = 0.0
@@ -60,7 +63,7 @@ class SimulatedAgent:
         """A state of the mission: it is what the world is like, for robots move by orders only."""
         place = state.locations.get(self.agent, "")
         if place != self._place:
-            self._place = place
+            self._place, self._since = place, state.seq
             if is_under_way(place):
                 self._activities += 1
                 self._stamp = state.stamp
@@ -68,11 +71,15 @@ class SimulatedAgent:
         self._simulator.on_state(state, self._events.now)
         self._set_timer()
 
-    def on_order(self) -> None:
-        """A goal or an action for a robot. One that comes as promised lets it end anywhere in the model's window."""
+    def on_order(self, order: StartedActivity, seq: int) -> None:
+        """A goal or an action for a robot, as of state `seq`. One that comes as promised lets it end anywhere in the
+        model's window; one for something that is over begins nothing."""
+        if order.target != self._place or seq < self._since:
+            return
         now = self._events.now
         in_time = now <= self._stamp + self._promised + 1e-6
-        self._simulator.on_goal(self.agent, self._stamp if in_time else now)
+        action = action_of(order.target) if is_action(order.target) else ""
+        self._simulator.on_order(self.agent, self._stamp if in_time else now, action)
         self._set_timer()
 
     def _on_timer(self) -> None:

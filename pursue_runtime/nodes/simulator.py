@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import List
+from typing import List, Union
 
 import rospy
 from geometry_msgs.msg import PoseStamped
@@ -61,7 +61,7 @@ class SimulatorNode:
         for robot in self.robots:
             for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
                 self.subscribers.append(
-                    subscribe(topic, kind, self.on_goal, self.ending, robot, queue_size=10, tcp_nodelay=True)
+                    subscribe(topic, kind, self.on_order, self.ending, robot, queue_size=10, tcp_nodelay=True)
                 )
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
@@ -80,10 +80,10 @@ class SimulatorNode:
         if state.status in (WON, LOST, STOPPED):
             self.ending.end(0 if state.status == WON else 1)
 
-    def on_goal(self, message: object, robot: str) -> None:
+    def on_order(self, message: Union[PoseStamped, String], robot: str) -> None:
         """A goal or an action for the robot."""
         with self.lock:
-            self.simulator.on_goal(robot, rospy.get_time())
+            self.simulator.on_order(robot, rospy.get_time(), message.data if isinstance(message, String) else "")
             self.act()
 
     def act(self) -> None:

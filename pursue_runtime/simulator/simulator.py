@@ -1,7 +1,8 @@
 """Simulated robots, people and other agents: when each of their movements and actions ends.
 
-A robot sets out when it gets its goal, all other agents when the observer has taken the start. The end comes a drawn
-delay later, inside the model's window, and is reported once; the state that follows is the receipt.
+A robot moves when it gets its goal, and acts when it gets its action; all other agents begin when the observer has
+taken the start. The end comes a drawn delay later, inside the model's window, and is reported once; the state that
+follows is the receipt.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import random
 from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 
-from pursue_runtime.locations import is_end
+from pursue_runtime.locations import action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -21,7 +22,7 @@ DELAYS = ("random", "early", "middle", "late")
 
 INSIDE = (0.1, 0.2)  # time units: how far inside its window an end stays; more where being late would break it
 SAME = 0.5  # time units: starts that are closer than this are one start (no two can follow that fast)
-EARLY = 1.5  # time units by which a goal may seem older than the start it is for: two nodes have two clocks
+EARLY = 1.5  # time units by which an order may seem older than the start it is for: two nodes have two clocks
 
 
 class EndWindow(NamedTuple):
@@ -65,6 +66,11 @@ def report_word(model: Model, agent: str, event: str) -> str:
     return format_word(Word(agent if able - {agent} else "", event))
 
 
+def _begins(order: str, location: str) -> bool:
+    """Return True if this order, as `Simulator.on_order` takes it, begins what is done at this location."""
+    return location.startswith(action(order, "")) if order else is_movement(location)
+
+
 class Durations(Protocol):
     """Draws how long activities take."""
 
@@ -92,7 +98,7 @@ class Delays:
 
 
 class Simulator:
-    """The activities of simulated agents, from the states of the mission and the goals of robots."""
+    """The activities of simulated agents, from the states of the mission and the orders to robots."""
 
     def __init__(self, model: Model, reports: Collection[str], delays: Durations) -> None:
         """`reports`: the agents whose ends come from here."""
@@ -105,7 +111,7 @@ class Simulator:
         self._delays = delays
         self._state: Optional[SystemState] = None
         self._state_received = 0.0
-        self._goals: Dict[str, float] = {}
+        self._orders: Dict[str, Dict[str, float]] = {robot.name: {} for robot in self._agents}
         self._counts: Dict[str, int] = {}
         self._activities: Dict[str, Activity] = {}
 
@@ -126,13 +132,13 @@ class Simulator:
             # At the first state, agents may be under way already: their goals were sent before this node started.
             self._update_activity(automaton, state, newborn=before is None)
 
-    def on_goal(self, robot: str, now: float) -> None:
-        """Take that a robot got a goal or an action at the time `now`."""
+    def on_order(self, robot: str, now: float, order: str = "") -> None:
+        """Take that a robot got an order at the time `now`: the event of an action, or a goal ("")."""
         activity = self._activities.get(robot)
-        if activity is not None and not activity.under_way:
+        if activity is not None and not activity.under_way and _begins(order, activity.location):
             self._start(activity, now)
-        else:  # the state that it is for comes later
-            self._goals[robot] = now
+        elif robot in self._orders:  # the state that it is for comes later
+            self._orders[robot][order] = now
 
     def due(self, now: float, real: float) -> List[str]:
         """Return the words to publish at this ROS time and time of the monotonic clock."""
@@ -169,13 +175,14 @@ class Simulator:
             under_way=automaton.kind != "robot" or newborn,
         )
         self._activities[name] = activity
-        goal = self._goals.pop(name, None)  # it starts one activity
-        if not activity.under_way and goal is not None and goal >= since - EARLY * state.unit:
-            self._start(activity, goal)
+        orders = self._orders[name]
+        moments = [orders.pop(order) for order in list(orders) if _begins(order, location)]  # each starts one activity
+        if not activity.under_way and moments and max(moments) >= since - EARLY * state.unit:
+            self._start(activity, max(moments))
 
     @staticmethod
     def _start(activity: Activity, now: float) -> None:
-        """The robot got its goal: a goal that was long under way makes it late, as it would a real one."""
+        """The robot got its order: one that was long under way makes it late, as it would a real one."""
         activity.under_way = True
         activity.moment = max(activity.moment, now + activity.shortest)
 

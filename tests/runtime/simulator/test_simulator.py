@@ -31,14 +31,14 @@ def test_a_robot_stays_until_its_goal_comes() -> None:
     world.on_state(leaves(), real=1.0)
     assert world.next_moments() == (None, None)
     assert world.due(200.0, 2.0) == []
-    world.on_goal("bot", 105.0)
+    world.on_order("bot", 105.0)
     assert world.due(113.9, 3.0) == []
     assert world.due(115.0, 3.0) == [ARRIVAL]
 
 
 def test_a_goal_may_be_received_before_the_state() -> None:
     world = simulator()
-    world.on_goal("bot", 105.0)
+    world.on_order("bot", 105.0)
     world.on_state(leaves(), real=1.0)
     assert world.next_moments()[0] == pytest.approx(114.45)
 
@@ -46,14 +46,14 @@ def test_a_goal_may_be_received_before_the_state() -> None:
 def test_the_clock_may_be_behind_when_a_goal_is_received() -> None:
     """In fast simulated time a busy node hears of the time late; its robot must not stay for ever."""
     world = simulator()
-    world.on_goal("bot", 104.0)
+    world.on_order("bot", 104.0)
     world.on_state(leaves(), real=1.0)
     assert world.next_moments()[0] is not None
 
 
 def test_a_goal_starts_one_movement() -> None:
     world = simulator()
-    world.on_goal("bot", 105.0)
+    world.on_order("bot", 105.0)
     world.on_state(leaves(), real=1.0)
     world.on_state(leaves(seq=3, stamp=105.6, bot="b"), real=2.0)
     world.on_state(leaves(seq=4, stamp=106.2), real=3.0)
@@ -62,15 +62,50 @@ def test_a_goal_starts_one_movement() -> None:
 
 def test_an_old_goal_starts_no_new_movement() -> None:
     world = simulator()
-    world.on_goal("bot", 103.0)
+    world.on_order("bot", 103.0)
     world.on_state(leaves(), real=1.0)
+    assert world.next_moments()[0] is None
+
+
+DOER = Model(model_data(worker("bot", "robot")))
+
+
+def at_work(stamp: float = 105.0):
+    return state(DOER, 2, stamp, {"Cbot": 0.0}, bot="doing_screw_in_s")
+
+
+def test_a_goal_that_is_received_again_begins_no_action() -> None:
+    """A restarted controller sends its robot the goal of the movement that it knows of once more."""
+    world = simulator(["bot"], model=DOER)
+    world.on_order("bot", 104.9)
+    world.on_state(at_work(), real=1.0)
+    world.on_order("bot", 105.1)
+    assert world.next_moments() == (None, None)
+    world.on_order("bot", 108.0, "screw")
+    assert world.next_moments()[0] == pytest.approx(111.0)
+
+
+def test_an_action_may_be_received_before_the_state_and_a_goal_in_between() -> None:
+    world = simulator(["bot"], model=DOER)
+    world.on_order("bot", 105.0, "screw")
+    world.on_order("bot", 105.0)
+    world.on_state(at_work(), real=1.0)
+    assert world.next_moments()[0] == pytest.approx(108.45)
+
+
+def test_an_action_begins_no_movement() -> None:
+    """One that is done at once, and the next command of the strategy is to go on."""
+    world = simulator()
+    world.on_order("bot", 104.5, "screw")
+    world.on_state(leaves(), real=1.0)
+    world.on_order("bot", 105.1, "screw")
     assert world.next_moments()[0] is None
 
 
 def test_a_late_goal_makes_the_robot_late() -> None:
     world = simulator()
     world.on_state(leaves(), real=1.0)
-    world.on_goal("bot", 108.0)
+    world.on_order("bot", 108.0)
     assert world.next_moments()[0] == pytest.approx(117.0)
 
 
@@ -83,7 +118,7 @@ def test_people_and_agents_need_no_goal() -> None:
 
 def test_only_those_that_it_reports_for() -> None:
     world = simulator(reports=["thief"])
-    world.on_goal("bot", 105.0)
+    world.on_order("bot", 105.0)
     world.on_state(leaves(bot="going_a_to_b", nurse="doing_screw_in_s"), real=1.0)
     assert world.due(500.0, 2.0) == []
 
@@ -207,7 +242,7 @@ def test_no_end_before_its_window_whenever_it_is_asked(asked: list) -> None:
 
 def test_a_state_that_comes_late_starts_nothing() -> None:
     world = simulator()
-    world.on_goal("bot", 105.0)
+    world.on_order("bot", 105.0)
     world.on_state(leaves(), real=1.0)
     world.on_state(leaves(seq=3, stamp=115.0, bot="b"), real=2.0)
     world.on_state(leaves(), real=3.0)

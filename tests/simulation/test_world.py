@@ -1,0 +1,69 @@
+"""Simulated robots begin what they are ordered to do when they get that order, and nothing without it."""
+
+from __future__ import annotations
+
+from typing import List
+
+import pytest
+
+from pursue_gen.simulation.event_queue import EventQueue
+from pursue_gen.simulation.faults import FaultPlan
+from pursue_gen.simulation.world import SimulatedAgent
+from pursue_runtime.controller.scheduler import StartedActivity
+from tests.runtime.models import state
+from tests.simulation.stages import stage
+
+THERE, BACK, ACTION = "going_c_to_b", "going_b_to_c", "doing_bot1_inb_in_b"
+
+
+class Robot:
+    """bot1 of the thesis's scenario 1, and what it has reported."""
+
+    def __init__(self) -> None:
+        self.events = EventQueue(1000.0)
+        self.reports: List[str] = []
+        plan = FaultPlan((), "1", 1000.0, 30.0, (), ())
+        self.stage = stage("thesis/scenario_1")
+        self.agent = SimulatedAgent(self.stage, "bot1", self.events, plan, "1", self.report, self.stage.reaction)
+
+    def report(self, agent: str, word: str) -> None:
+        self.reports.append(word)
+
+    def enter(self, seq: int, location: str) -> None:
+        """The state of this number has it at another location, since now."""
+        self.agent.on_state(state(self.stage.model, seq, self.events.now, {}, bot1=location))
+
+    def order(self, target: str, seq: int) -> None:
+        """It gets the order for this location, from a controller whose newest state is of this number."""
+        self.agent.on_order(StartedActivity("bot1", target, "", target), seq)
+
+    def wait(self, seconds: float) -> None:
+        """So much time passes."""
+        end = self.events.now + seconds
+        while (self.events.next_time() or end) < end:
+            self.events.step()
+        self.events.now = end
+
+
+@pytest.mark.parametrize("location", [ACTION, BACK, THERE])
+@pytest.mark.parametrize("after", [False, True])
+def test_an_order_for_what_is_over_begins_nothing_else(location: str, after: bool) -> None:
+    """A controller that was restarted, and gets its first state late, orders what its robot has done already."""
+    robot = Robot()
+    robot.enter(2, THERE)
+    robot.order(THERE, 2)
+    robot.wait(12.0)
+    assert set(robot.reports) == {"bot1_going_c_to_b2b"}
+    robot.enter(3, "b")
+    robot.reports.clear()
+    if not after:
+        robot.order(THERE, 2)
+    robot.wait(0.1)
+    robot.enter(8, location)
+    if after:
+        robot.order(THERE, 2)
+    robot.wait(20.0)
+    assert robot.reports == []
+    robot.order(location, 8)
+    robot.wait(12.0)
+    assert robot.reports != []
