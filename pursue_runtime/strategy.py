@@ -9,7 +9,7 @@ from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Named
 
 from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
-from pursue_runtime.locations import automaton_clock
+from pursue_runtime.locations import automaton_clock, is_action
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 
@@ -117,11 +117,13 @@ class Strategy:
             self._table = StateTable(entries)
             # What it reads of a state: automata and variables, and clocks.
             self.names = self._table.names
-            zones = (zone for _, commands in entries for command in commands for zone in command.when)
+            commands = [command for _, part in entries for command in part]
+            zones = (zone for command in commands for zone in command.when)
             self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
+            self.actions = {each.target: each.event for each in commands if is_action(each.target)}
+            """The event that begins each action of its agents, by the location."""
             self._instant = {
                 (command.agent, command.event, command.target)
-                for _, commands in entries
                 for command in commands
                 if command.origin == command.target
             }

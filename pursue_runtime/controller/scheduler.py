@@ -140,8 +140,15 @@ class CommandScheduler:
             if own and before is not None and not self._holds(before, state):
                 self.counts["not_ours"] += 1  # a report, or a word published by hand: the robot gets no order
             elif begins or (own and origin == target and self._instant(state, target)):
-                orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))
+                trigger = state.event if own else self._event(state, target)
+                orders.append(StartedActivity(agent, trigger, origin, target))
         return orders
+
+    def _event(self, state: SystemState, location: str) -> str:
+        """Return the event that begins what is done there. A strategy knows it, also if a place has `_in_` in it."""
+        strategies = (self._plans.strategy_for(state), self._own)
+        known = (strategy.actions[location] for strategy in strategies if strategy and location in strategy.actions)
+        return next(known, action_of(location))
 
     def _joined(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
         """Return the collaborative events that others have begun since the state before, with our robots as partners:

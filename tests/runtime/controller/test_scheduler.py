@@ -240,3 +240,19 @@ def test_the_robot_does_what_wins_the_mission_where_that_is_done_at_once() -> No
         bot = player()
         bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
         assert bot.on_state(state(2, 101.0, bot="b", event="catch", status=status), 101.0) == []
+
+
+def test_after_a_restart_an_action_is_ordered_by_its_name_whatever_the_place_is_called() -> None:
+    text = """
+format: 1
+controller: controller_bot
+commands_agents: [bot]
+reaction: 0.2
+strategy:
+- state: {bot: room_in_b}
+  commands:
+  - {do: clean, agent: bot, from: room_in_b, to: doing_clean_in_room_in_b, when: ["1 < Cbot"]}
+"""
+    under_way = state(4, 100.0, "doing_clean_in_room_in_b")
+    assert player(text).on_state(under_way, 100.0) == [("bot", "clean", "", "doing_clean_in_room_in_b")]
+    assert player().on_state(state(4, 100.0, "doing_screw_in_s"), 100.0) == [("bot", "screw", "", "doing_screw_in_s")]
