@@ -1,8 +1,9 @@
 """Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
 
 Each mission is recorded, and judged afterwards by `pursue_gen.replay` from the bag and the workspace's strategy alone.
-`--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md. The kills of a mission follow from
-its number and the seed; the moments at which they hit the nodes do not.
+`--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
+missions from 240 on to the 240 that are there. The kills of a mission follow from its number and the seed; the moments
+at which they hit the nodes do not.
 """
 
 from __future__ import annotations
@@ -58,6 +59,9 @@ class Mission(NamedTuple):
     why: str
     kills: Tuple[str, ...]
 
+
+HEAD = ("seed", "unit", "machine")
+"""What missions have in common that are counted together."""
 
 NOT_RECORDED = ("unsaid", "untold")
 """The kinds of findings for what is missing in the recording."""
@@ -171,8 +175,8 @@ def measure(numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Se
     return done
 
 
-def results(done: Sequence[Mission], seed: int, unit: float) -> Dict[str, Any]:
-    """Return what is kept in kills.json."""
+def results(done: Sequence[Mission]) -> Dict[str, Any]:
+    """Return what is kept of these missions in kills.json."""
     table: Dict[str, Dict[str, int]] = {}
     for each in done:
         row = table.setdefault(each.scenario, dict.fromkeys(OUTCOMES, 0))
@@ -182,13 +186,46 @@ def results(done: Sequence[Mission], seed: int, unit: float) -> Dict[str, Any]:
     bad = [each._asdict() for each in done if each.outcome in ("wrong", "no end")]
     return {
         "missions": len(done),
-        "seed": seed,
-        "unit": unit,
         "kills": kills,
         "table": table,
         "reasons": dict(reasons.most_common()),
         "bad": bad,
     }
+
+
+def mismatch(before: Dict[str, Any], head: Dict[str, Any]) -> str:
+    """Return why missions of this seed, unit, machine and first number cannot be added to what was found before; ""
+    if they can."""
+    if head["parts"][0]["first"] == before["missions"] and all(head[key] == before[key] for key in HEAD):
+        return ""
+    there = f"{before['missions']} missions, " + ", ".join(f"{key} {before[key]}" for key in HEAD)
+    return f"missions from {head['parts'][0]['first']} on cannot be added to what is there: {there}"
+
+
+def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
+    """Return the results of missions that were played before, and of the missions that follow them."""
+    names = {**before["table"], **found["table"]}
+    none = dict.fromkeys(OUTCOMES, 0)
+    rows = {name: (before["table"].get(name, none), found["table"].get(name, none)) for name in names}
+    reasons = collections.Counter(before["reasons"]) + collections.Counter(found["reasons"])
+    return {
+        **before,
+        **{key: before[key] + found[key] for key in ("missions", "kills", "bad", "parts")},
+        "table": {name: {head: old[head] + new[head] for head in OUTCOMES} for name, (old, new) in rows.items()},
+        "reasons": dict(reasons.most_common()),
+    }
+
+
+def version() -> str:
+    """Return the commit that is played; "" outside a repository."""
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
+    found = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    return found.stdout.strip()
+
+
+def _part_line(part: Dict[str, Any]) -> str:
+    commit = f" with commit {part['commit']}" if part["commit"] else ""
+    return f"- {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
 
 
 def page(found: Dict[str, Any]) -> str:
@@ -203,7 +240,9 @@ def page(found: Dict[str, Any]) -> str:
         "`pursue-gen replay` does.",
         "",
         f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
-        f"unit, reaction {float(RULES.reaction)}; {found['machine']}, {found['date']}.",
+        f"unit, reaction {float(RULES.reaction)}; {found['machine']}.",
+        "",
+        *(_part_line(part) for part in found["parts"]),
         "",
         *([found["remark"], ""] if found.get("remark") else []),
         "| scenario | " + " | ".join(heads) + " |",
@@ -239,13 +278,18 @@ def main() -> int:
 
     given = options().parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that no process stays behind
+    kept = given.out / "benchmarks" / "kills.json" if given.out else None
+    before = json.loads(kept.read_text(encoding="utf-8")) if kept and given.first else None
+    part = {"first": given.first, "missions": given.missions, "date": given.date, "commit": version()}
+    head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "parts": [part]}
+    if before and mismatch(before, head):
+        options().error(mismatch(before, head))
     numbers = range(given.first, given.first + given.missions)
-    done = measure(numbers, given.seed, given.jobs, given.unit, given.scenarios)
-    found = {**results(done, given.seed, given.unit), "machine": given.machine, "date": given.date}
+    found = {**results(measure(numbers, given.seed, given.jobs, given.unit, given.scenarios)), **head}
+    found = together(before, found) if before else found
     text = page(found)
     print(text)
-    if given.out:
-        kept = given.out / "benchmarks" / "kills.json"
+    if kept:
         write_texts({kept: json.dumps(found, indent=1) + "\n", given.out / "kills.md": text})
     return 1 if found["bad"] else 0
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Sequence
+from typing import Any, Dict, Sequence
 
 import pytest
 
-from benchmarks.kills import OUTCOMES, Mission, draw, outcome, page, results
+from benchmarks.kills import OUTCOMES, Mission, draw, mismatch, outcome, page, results, together
 from pursue_gen.replay import Findings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 
@@ -55,13 +55,30 @@ def test_a_word_that_the_recorder_has_missed_makes_no_mission_wrong() -> None:
     assert outcome(replace(found, findings=(missed, replace(missed, kind="command"))))[0] == "wrong"
 
 
+def made(first: int, done: Sequence[Mission], seed: int = 7) -> Dict[str, Any]:
+    """What is kept of these missions."""
+    part = {"first": first, "missions": len(done), "date": "a day", "commit": f"after{first}"}
+    return {**results(done), "seed": seed, "unit": 0.5, "machine": "a machine", "parts": [part]}
+
+
+def test_missions_are_added_to_those_that_were_played_before() -> None:
+    one = [Mission(0, "one", "goal", "", ("UI after 1.00 s",)), Mission(1, "two", "stopped", "a", ())]
+    two = [Mission(2, "two", "goal", "", ()), Mission(3, "three", "wrong", "b", ("UI after 1.00 s",))]
+    parts, whole = together(made(0, one), made(2, two)), made(0, [*one, *two])
+    assert {**parts, "parts": []} == {**whole, "parts": []}
+    assert "- 0 to 1: played a day with commit after0\n- 2 to 3: played a day with commit after2\n" in page(parts)
+    assert mismatch(made(0, one), made(2, two)) == ""
+    for other in (made(1, two), made(3, two), made(2, two, seed=8)):
+        assert "cannot be added to what is there: 2 missions, seed 7, unit 0.5" in mismatch(made(0, one), other)
+
+
 def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
     done = [
         Mission(0, "one", "goal", "", ("UI after 1.00 s",)),
         Mission(1, "two", "stopped", "a|b", ("observer after 1.00 s", "UI after 2.00 s")),
         Mission(2, "one", "wrong", "state 3: a fault", ("UI after 1.00 s",)),
     ]
-    found = {**results(done, 7, 0.5), "machine": "a machine", "date": "a day"}
+    found = made(0, done)
     assert found["kills"] == 4
     assert [each["number"] for each in found["bad"]] == [2]
     text = page(found)
