@@ -225,7 +225,7 @@ def version() -> str:
 
 def _part_line(part: Dict[str, Any]) -> str:
     commit = f" with commit {part['commit']}" if part["commit"] else ""
-    return f"- {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
+    return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
 
 
 def page(found: Dict[str, Any]) -> str:
