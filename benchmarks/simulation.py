@@ -47,7 +47,7 @@ CELLS: Sequence[Tuple[str, int]] = (
     ("reorder", 300),
     ("delay", 300),
     ("deaths", 300),
-    ("all", 6000),
+    ("all", 15000),
 )
 """Faults as `--faults` takes them, and how many missions each scenario plays with them."""
 
@@ -93,9 +93,12 @@ def cell(name: str, runner: MissionRunner, settings: Settings, faults: str, runs
         ends[outcome.end] += 1
         latest = max(latest, outcome.lateness)
         if outcome.end in ("lost", "failed"):
-            causes[kind_of(outcome.cause)] += 1
-            if len(examples) < 3:
-                examples.append({"seed": done, "cause": outcome.cause or outcome.reason})
+            kind, example = kind_of(outcome.cause), {"seed": done, "cause": outcome.cause or outcome.reason}
+            causes[kind] += 1
+            if kind == "ours":
+                examples.insert(0, example)
+            elif len(examples) < 3:
+                examples.append(example)
     return {
         "scenario": name,
         "faults": faults,

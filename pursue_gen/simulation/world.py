@@ -6,7 +6,7 @@ The run time's simulator reports the ends, one simulator for each agent; here is
 from __future__ import annotations
 
 import random
-from typing import Callable
+from typing import Callable, Optional
 
 from pursue_gen.simulation.connections import drawn_share
 from pursue_gen.simulation.event_queue import EventQueue, Timer
@@ -54,7 +54,8 @@ class SimulatedAgent:
         self._timer = Timer(events, self._on_timer)
         self._breakdown = fault_plan.breakdown if fault_plan.breakdown and fault_plan.breakdown.robot == agent else None
         self._place = ""
-        self._since = 0
+        self._since = self._begun = 0
+        """The numbers of the states in which it came to its place, and came to what it was ordered to do last."""
         self._activities = 0
         self._broken = False
         self._stamp = 0.0
@@ -63,23 +64,23 @@ class SimulatedAgent:
         """A state of the mission: it is what the world is like, for robots move by orders only."""
         place = state.locations.get(self.agent, "")
         if place != self._place:
-            self._place, self._since = place, state.seq
-            if is_under_way(place):
-                self._activities += 1
-                self._stamp = state.stamp
-                self._may_break()
+            self._place, self._since, self._stamp = place, state.seq, state.stamp
         self._simulator.on_state(state, self._events.now)
         self._set_timer()
 
     def on_order(self, order: StartedActivity, seq: int) -> None:
         """A goal or an action for a robot, as of state `seq`. One that comes as promised lets it end anywhere in the
-        model's window; one for something that is over begins nothing."""
-        if order.target != self._place or seq < self._since:
+        model's window; one for something that is over, or is done at once, begins nothing."""
+        if order.target != self._place or seq < self._since or not is_under_way(self._place):
             return
         now = self._events.now
         in_time = now <= self._stamp + self._promised + 1e-6
-        action = action_of(order.target) if is_action(order.target) else ""
+        action = action_of(self._place) if is_action(self._place) else ""
         self._simulator.on_order(self.agent, self._stamp if in_time else now, action)
+        if self._begun < self._since:
+            self._begun = self._since
+            self._activities += 1
+            self._may_break()
         self._set_timer()
 
     def _on_timer(self) -> None:
@@ -93,26 +94,29 @@ class SimulatedAgent:
         self._timer.set(*self._simulator.next_moments())
 
     def _may_break(self) -> None:
-        breakdown = self._breakdown
-        if breakdown is not None and breakdown.number == self._activities:
-            self._breakdown = None
-            moment = self._events.now + 5.0 * breakdown.share
-            self._events.schedule(moment, lambda: self._break(breakdown, self._place))
+        breakdown, window = self._breakdown, self._window()
+        if breakdown is not None and breakdown.number == self._activities and window is not None:
+            self._breakdown, begun = None, self._begun
+            moment = self._events.now + window.low * breakdown.share
+            self._events.schedule(moment, lambda: self._break(breakdown, begun))
 
-    def _break(self, breakdown: Breakdown, place: str) -> None:
-        if self._place != place:
+    def _break(self, breakdown: Breakdown, begun: int) -> None:
+        if self._since != begun:
             return  # it was done sooner
         self._broken = True
         self._fault_plan.count("failed" if breakdown.reported else "silent")
         if breakdown.reported:
             self._publish(self.agent, f"{self.agent}:_failed_")
         if breakdown.back is not None:
-            self._events.schedule(self._events.now + breakdown.back, self._repair)
+            self._events.schedule(self._events.now + breakdown.back, lambda: self._repair(begun))
 
-    def _repair(self) -> None:
-        """It can go on: what it was at ends now, if that is still to end."""
+    def _repair(self, begun: int) -> None:
+        """It can go on: what it was at when it broke ends now, if that is still to end."""
         self._broken = False
-        model = self._stage.model
-        window = end_window(model.automaton(self.agent), self._place)
-        if window is not None:
-            self._publish(self.agent, report_word(model, self.agent, window.event))
+        window = self._window()
+        if window is not None and self._since == begun:
+            self._publish(self.agent, report_word(self._stage.model, self.agent, window.event))
+
+    def _window(self) -> Optional[EndWindow]:
+        """When what it does ends by its model."""
+        return end_window(self._stage.model.automaton(self.agent), self._place)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import List
+from typing import List, Optional
 
 import pytest
 
 from pursue_gen.simulation.event_queue import EventQueue
-from pursue_gen.simulation.faults import FaultPlan
+from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.world import SimulatedAgent
 from pursue_runtime.controller.scheduler import StartedActivity
 from tests.runtime.models import state
@@ -19,12 +19,14 @@ THERE, BACK, ACTION = "going_c_to_b", "going_b_to_c", "doing_bot1_inb_in_b"
 class Robot:
     """bot1 of the thesis's scenario 1, and what it has reported."""
 
-    def __init__(self) -> None:
+    def __init__(self, breakdown: Optional[Breakdown] = None) -> None:
         self.events = EventQueue(1000.0)
         self.reports: List[str] = []
         plan = FaultPlan((), "1", 1000.0, 30.0, (), ())
+        plan.breakdown = breakdown
         self.stage = stage("thesis/scenario_1")
         self.agent = SimulatedAgent(self.stage, "bot1", self.events, plan, "1", self.report, self.stage.reaction)
+        self.enter(1, "c")
 
     def report(self, agent: str, word: str) -> None:
         self.reports.append(word)
@@ -67,3 +69,44 @@ def test_an_order_for_what_is_over_begins_nothing_else(location: str, after: boo
     robot.order(location, 8)
     robot.wait(12.0)
     assert robot.reports != []
+
+
+def test_a_robot_breaks_down_in_what_it_does_and_ends_nothing_else_when_it_can_go_on() -> None:
+    robot = Robot(Breakdown("bot1", 1, 0.5, reported=True, back=4.0))
+    robot.enter(2, THERE)
+    robot.wait(20.0)
+    assert robot.reports == []  # it has not begun
+    robot.order(THERE, 2)
+    robot.wait(5.0)
+    assert robot.reports == ["bot1:_failed_"]
+    robot.enter(3, "b")  # a person has reported its arrival
+    robot.enter(4, ACTION)
+    robot.wait(10.0)
+    assert robot.reports == ["bot1:_failed_"]
+    robot.order(ACTION, 4)
+    robot.wait(5.0)
+    assert robot.reports[1:2] == ["bot1_inbDONE"]
+
+
+def test_a_robot_that_can_go_on_ends_what_it_was_at() -> None:
+    robot = Robot(Breakdown("bot1", 1, 0.5, reported=True, back=30.0))
+    robot.enter(2, THERE)
+    robot.order(THERE, 2)
+    robot.order(THERE, 2)
+    robot.wait(30.0)
+    assert robot.reports == ["bot1:_failed_"]
+    robot.wait(6.0)
+    assert robot.reports[1:2] == ["bot1_going_c_to_b2b"]
+
+
+def test_a_robot_that_has_been_quick_breaks_down_no_more() -> None:
+    robot = Robot(Breakdown("bot1", 1, 0.5, reported=True))
+    robot.enter(2, THERE)
+    robot.order(THERE, 2)
+    robot.wait(1.0)
+    robot.enter(3, "b")
+    robot.wait(1.0)
+    robot.enter(4, BACK)
+    robot.order(BACK, 4)
+    robot.wait(20.0)
+    assert set(robot.reports) == {"bot1_going_b_to_c2c"}
