@@ -91,7 +91,7 @@ def mission_of_scenario(
 ) -> Tuple[Manifest, Dict[str, bytes]]:
     """The mission of a scenario's file, solved and proven; the verdict is printed. Raises PursueError.
 
-    `explain`: where the scenario is lost, what would change that is printed.
+    `explain`: where the scenario is not won, why is printed.
     """
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.language import load
@@ -101,7 +101,7 @@ def mission_of_scenario(
 
     scenario = placed(load(file), poses.file, poses.computed)
     show(spots_in_one(scenario, poses.spot_distance))
-    won = solve_and_print(scenario, request, file if explain else None)
+    won = solve_and_print(scenario, request, explain)
     info(margin_text(won, margins(won, False, request.options.limits)[0]))
     return make_mission(scenario, won, request, poses.spot_distance)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, get_type_hints
@@ -47,6 +48,19 @@ class Optimize(str, Enum):
 
     TIME = "time"
     NONE = "none"
+
+
+def _seconds(text: Optional[str]) -> Optional[float]:
+    """The limit on time as a number, 0 for none; None if it is not given."""
+    if text is None:
+        return None
+    try:
+        seconds = 0.0 if text == "none" else float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0 <= seconds < math.inf:
+        raise typer.BadParameter(f"'{text}'; expected a number of seconds such as 60, or none")
+    return seconds
 
 
 def _spot_distance(metres: float) -> float:
@@ -94,9 +108,14 @@ WHOLE = typer.Option(
     help="An experiment: solve the whole game, agents and rules included that cannot matter to the objective.",
 )
 EXPLAIN = typer.Option(
-    True, "--explain/--no-explain", help="Where the objective cannot be met: look for what would change that."
+    True,
+    "--explain/--no-explain",
+    help="Where the objective cannot be met: look for what would change that; where a limit is hit: for what makes the "
+    "scenario so large.",
 )
-LIMIT = typer.Option(0.0, metavar="SECONDS", min=0.0, help="Give up after so long (0: never).")
+LIMIT = typer.Option(
+    None, metavar="SECONDS|none", help="Give up after so long (none: never); 600 by default.", callback=_seconds
+)
 MEMORY = typer.Option(
     None,
     metavar="MIB",
@@ -147,7 +166,7 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
     "optimize": (Optional[Optimize], OPTIMIZE),
     "within": (Optional[str], WITHIN),
     "whole": (bool, WHOLE),
-    "limit": (float, LIMIT),
+    "limit": (Optional[str], LIMIT),
     "memory": (Optional[int], MEMORY),
 }
 """The options that make a SolveRequest: name of the parameter → its type and its declaration."""
@@ -192,14 +211,15 @@ def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Cal
 
 
 def _request(values: Dict[str, Any]) -> SolveRequest:
-    """The request of parsed options; without a limit on memory it is `careful_memory`."""
+    """The request of parsed options; limits that are not given are the default ones."""
     from pursue_gen.solving.options import SolveOptions
     from pursue_gen.solving.request import SolveRequest
-    from pursue_gen.synthesis.limits import Limits, careful_memory
+    from pursue_gen.synthesis.limits import DEFAULT_SECONDS, Limits, careful_memory
 
     texts = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
-    memory = texts.pop("memory", None)
-    limits = Limits(texts.pop("limit", 0.0), careful_memory() if memory is None else memory)
+    memory, seconds = texts.pop("memory", None), texts.pop("limit", None)
+    memory = careful_memory() if memory is None else memory
+    limits = Limits(DEFAULT_SECONDS, memory, by_default=True) if seconds is None else Limits(seconds, memory)
     how = {name: texts.pop(name) for name in ("engine", "solver", "verifytga", "optimize", "whole") if name in texts}
     if "slack" in texts:
         texts["slack"] = tuple(texts["slack"])

@@ -44,6 +44,7 @@ def play(
     Commands are read from stdin, with or without a terminal; help lists them. The exit status is 0.
     """
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.language import load
     from pursue_gen.play.counter import CounterPlay
     from pursue_gen.play.games import session_of
@@ -52,7 +53,7 @@ def play(
 
     read = load(scenario)
     rules = request.rules(translate(read))
-    with progress_line() as progress:
+    with naming_costs(read, request), progress_line() as progress:
         session = session_of(read, rules, seed, request.options.limits, progress)
     is_robots = isinstance(session.game, CounterPlay)
     if side is not None and (side is Side.ROBOTS) != is_robots:

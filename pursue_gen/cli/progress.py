@@ -1,4 +1,4 @@
-"""How far a search is, on one line of a terminal that is redrawn in place."""
+"""How far a search is: on one line of a terminal, redrawn in place; elsewhere a line every ten seconds."""
 
 from __future__ import annotations
 
@@ -16,16 +16,22 @@ _PATIENCE = 0.5
 _REDRAW = 0.2
 """Seconds from one drawing to the next."""
 
+_INTERVAL = 10.0
+"""Seconds from one line to the next where nothing can be redrawn."""
+
 
 @contextlib.contextmanager
 def progress_line(quiet: bool = False, stream: Optional[TextIO] = None) -> Iterator[Optional[Listener]]:
     """A listener that draws the line on the stream (stderr); erased at the end, however the work ends.
 
-    None where nothing is to be drawn: `quiet`, or the stream is no terminal that can do it.
+    Where the stream is no terminal that can do that, it writes a line every ten seconds. None where it is `quiet`.
     """
     out = sys.stderr if stream is None else stream
-    if quiet or os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
+    if quiet:
         yield None
+        return
+    if os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
+        yield _Lines(out).show
         return
     line = _Line(out)
     try:
@@ -57,6 +63,24 @@ class _Line:
         if self._drawn:
             self._stream.write("\r\033[K")
             self._stream.flush()
+
+
+class _Lines:
+    """Progress where lines stay, as in a log."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._start = time.monotonic()
+        self._next = self._start + _INTERVAL
+
+    def show(self, progress: Progress) -> None:
+        """Writes a line, unless that was done less than `_INTERVAL` seconds ago."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + _INTERVAL
+        self._stream.write(f"{in_words(progress, now - self._start)}\n")
+        self._stream.flush()
 
 
 def in_words(progress: Progress, elapsed: float) -> str:

@@ -53,7 +53,7 @@ def replay(
         check_name(timeline)
     found = read_recording(recording)
     source = source_of(found, recording, scenario, workspace, request)
-    with progress_line(as_json_) as progress:
+    with progress_line(as_json_ or quiet) as progress:
         game = game_of(source, request.options.limits, progress)
     record = reconstruct(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
     if timeline is not None:

@@ -55,6 +55,7 @@ def report(
     With --html or --pictures: show the scenario, its strategy and its workspace instead. A scenario that cannot be won
     gets a page that says why.
     """
+    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.drawing.floor import read_floor
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots
@@ -62,7 +63,9 @@ def report(
     seen = html or pictures is not None
     _check_options(seen, html, file, floor, as_json_)
     if not seen:
-        _print_tables(scenario_from(scenario), reach_obj, request.options, as_json_)
+        read = scenario_from(scenario)
+        with naming_costs(read, request, as_json_):
+            _print_tables(read, reach_obj, request.options, as_json_)
         return
     target = file or Path(f"{scenario.stem}_report.html")
     if html and not force:

@@ -68,6 +68,7 @@ def sim(
     """
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.language import load
     from pursue_gen.simulation.cluster import cluster, outcomes_on
     from pursue_gen.simulation.faults import FAULTS, read_faults
@@ -84,7 +85,7 @@ def sim(
     if timeline is not None:
         _check_timeline(timeline, runs, seed)
     read = load(scenario)
-    with progress_line(as_json_) as progress:
+    with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
         won = solution_of(*game_of(read), request, progress)
     show(won.warnings)
     case, knows = make_case(read, won, request, opponent.value, kinds, until)

@@ -1,35 +1,34 @@
-"""Solving with a line of progress, the verdict on stderr, and an explanation where the scenario is lost."""
+"""Solving with a line of progress, the verdict on stderr, and an explanation where the scenario is not won."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Dict, Optional, Sequence
+import contextlib
+from typing import Any, Dict, Iterator
 
-from pursue_gen import language
 from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.inputs import are_scenario, game_of
+from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
-from pursue_gen.solving.rules import Rules, rules_text
+from pursue_gen.solving.rules import rules_text
 from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.verdict import verdict_text
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import is_undecided
+from pursue_gen.tga import translate
 
 
-def solve_and_print(scenario: Scenario, request: SolveRequest, file: Optional[Path] = None) -> Solution:
+def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) -> Solution:
     """The proven solution of a scenario; the verdict and warnings are printed.
 
-    `file`: the scenario's file, if it is to be explained why the scenario is lost. Raises as `solution_of`.
+    `explain`: where it is not won, why. Raises as `solution_of`.
     """
     network, objective = game_of(scenario)
     try:
         with progress_line() as progress:
             won = solution_of(network, objective, request, progress)
     except PursueError as problem:
-        limits = request.options.limits
-        if file and explain_loss(problem, (file,), request.rules(network), True, limits):
+        if explain and explained(problem, scenario, request):
             raise PursueError((), problem.exit_status) from None  # its findings are printed
         raise
     show(won.warnings)
@@ -40,21 +39,44 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, file: Optional[Pa
     return won
 
 
-def explain_loss(
-    problem: PursueError, files: Sequence[Path], rules: Rules, wanted: bool, limits: Limits, quiet: bool = False
+def explained(
+    problem: PursueError, scenario: Scenario, request: SolveRequest, quiet: bool = False
 ) -> Dict[str, Any]:
-    """Prints the findings of a scenario that is lost and what would change that, within the limits and some work.
+    """Prints the findings of a scenario that is not won and why that is so, which takes a fixed amount of work.
 
-    `quiet`: without progress. Returns {"explanation": …} for JSON. Prints nothing, and returns an empty dict, where it
-    is not `wanted`, where the problem is another one, and for UPPAAL's files: they have no words of a scenario.
+    Lost: what would change that. Not decided within a limit: what makes it so large. `quiet`: without progress.
+    Returns {"explanation": …} or {"costs": …} for JSON. Prints nothing, and returns an empty dict, where the problem is
+    another one, or another solver or a given plan has it.
     """
-    if not wanted or not is_lost(problem) or not are_scenario(files):
-        return {}
-    from pursue_gen.explanation.explain import as_json, explain, render
+    limits, rules = request.options.limits, request.rules(translate(scenario))
+    if is_lost(problem):
+        from pursue_gen.explanation.explain import as_json, explain, render
 
-    show(problem.diagnostics)
-    info("Looking for what would change that (--no-explain leaves it out) …")
-    with progress_line(quiet) as progress:
-        explanation = explain(language.load(files[0]), rules, limits, progress)
-    info(render(explanation).rstrip())
-    return {"explanation": as_json(explanation)}
+        show(problem.diagnostics)
+        info("Looking for what would change that (--no-explain leaves it out) …")
+        with progress_line(quiet) as progress:
+            explanation = explain(scenario, rules, limits, progress)
+        info(render(explanation).rstrip())
+        return {"explanation": as_json(explanation)}
+    if is_undecided(problem) and request.plan is None and request.options.solver is None:
+        from pursue_gen.explanation import costs
+
+        show(problem.diagnostics)
+        info("Looking for what makes it so large …")
+        option = "" if request.within is None else f"--within {request.within}"
+        with progress_line(quiet) as progress:
+            found = costs.costs(scenario, rules, limits, progress, option)
+        info(costs.in_words(found))
+        return {"costs": costs.as_json(found)}
+    return {}
+
+
+@contextlib.contextmanager
+def naming_costs(scenario: Scenario, request: SolveRequest, quiet: bool = False) -> Iterator[None]:
+    """Where a limit ends what is done meanwhile, what makes the scenario so large is printed after the error."""
+    try:
+        yield
+    except PursueError as problem:
+        if is_undecided(problem) and explained(problem, scenario, request, quiet):
+            raise PursueError((), problem.exit_status) from None  # its findings are printed
+        raise

@@ -41,8 +41,10 @@ def solve(
     where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explain_loss
+    from pursue_gen.cli.solution import explained
     from pursue_gen.files import write_texts
+    from pursue_gen.language import load
+    from pursue_gen.solving.inputs import are_scenario
     from pursue_gen.solving.request import solution_of
     from pursue_gen.solving.solvers import keep_counter
     from pursue_gen.solving.verdict import margin_text, margins, verdict_json, verdict_text
@@ -57,10 +59,11 @@ def solve(
         kept = keep_counter(problem, network, objective, output)
         if kept is not None:
             info(f"The counter-strategy is in {kept}")
-        explained = explain_loss(problem, files, rules, explain, limits, as_json_)
+        wanted = explain and problem.exit_status in (4, 5) and are_scenario(files)
+        why = explained(problem, load(files[0]), request, as_json_) if wanted else {}
         if as_json_ and problem.exit_status in (4, 5):
-            print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **explained}, indent=1))
-        if explained:  # its findings are printed
+            print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **why}, indent=1))
+        if why:  # its findings are printed
             raise typer.Exit(problem.exit_status) from None
         raise
     plan = write_plan(won.strategy, won.network, objective)

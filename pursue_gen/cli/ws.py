@@ -48,7 +48,7 @@ def ws(
     read = scenario_from(scenario)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    won = solve_and_print(read, request, scenario if explain else None)
+    won = solve_and_print(read, request, explain)
     made = make_workspace(read, won, request, Extras(machines, docker, systemd, spot_distance), folder, force)
     info(made.margin)
     show(made.findings)

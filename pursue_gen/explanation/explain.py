@@ -47,10 +47,10 @@ def explain(
 ) -> Explanation:
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
-    Their seconds and their work (WORK where they name none) are for everything, the memory for each game that is
-    solved, which `progress` reports.
+    Their seconds (none that nobody has set) and their work (WORK where they name none) are for everything, the memory
+    for each game that is solved, which `progress` reports.
     """
-    limits = replace(limits, work=limits.work or WORK)
+    limits = replace(limits.chosen, work=limits.work or WORK)
     found = findings(scenario, rules, _share(limits, _FOR_CHANGES), progress)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     rest = _share(limits, 1 - _FOR_CHANGES)

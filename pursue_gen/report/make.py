@@ -7,6 +7,7 @@ from typing import Callable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor
+from pursue_gen.explanation.costs import costs
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.report import tables
@@ -68,9 +69,12 @@ def lost_report(
     progress: Optional[Listener] = None,
     floor: Optional[Floor] = None,
 ) -> Report:
-    """The report on a scenario that is not won, as `problem` says: why, and what would change that."""
+    """The report on a scenario that is not won, as `problem` says: why, and what would change that; or that it is not
+    decided, and what makes it so large.
+    """
     rules = Rules()
-    lost = is_lost(problem)
-    explanation = explain(scenario, rules, limits, progress) if lost else None
-    network = played(translate(scenario), rules)
-    return Report(scenario, network, rules, lost=Lost(problem.diagnostics, explanation, lost), floor=floor)
+    if is_lost(problem):
+        lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress))
+    else:
+        lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress))
+    return Report(scenario, played(translate(scenario), rules), rules, lost=lost, floor=floor)

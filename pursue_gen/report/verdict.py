@@ -7,6 +7,7 @@ from typing import List, Optional, Sequence
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.look import safe
+from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
@@ -18,11 +19,13 @@ from pursue_gen.solving.solution import Solution
 
 @dataclass(frozen=True)
 class Lost:
-    """A scenario that is not won: the solver's findings, and their explanation (None: not looked for)."""
+    """A scenario that is not won: the solver's findings, and their explanation, None where it is not decided; then
+    `costs` are what makes it so large.
+    """
 
     findings: Sequence[Diagnostic]
     explanation: Optional[Explanation]
-    decided: bool = True
+    costs: Optional[Costs] = None
 
 
 def section(
@@ -53,13 +56,15 @@ def _won(won: Solution, margin: str) -> List[str]:
 
 
 def _lost(lost: Lost) -> List[str]:
-    if not lost.decided:
+    if lost.explanation is None:
         parts = ["<p class='verdict no'><strong>It was not decided whether it can be met.</strong></p>"]
     else:
         parts = ["<p class='verdict no'><strong>It cannot be met: the others can always prevent it.</strong></p>"]
     for finding in lost.findings:
         sentences = [text for text in (finding.message, finding.hint) if text]
         parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")
+    if lost.costs is not None:
+        parts.append(f"<p>{safe(in_words(lost.costs))}</p>")
     return parts + (_explained(lost.explanation) if lost.explanation else [])
 
 

@@ -105,13 +105,13 @@ def fastest(
     known: Optional[Fraction],
     options: SolveOptions = DEFAULT,
 ) -> Tuple[Guarantee, Optional[Faster]]:
-    """Encloses v of a reach game that is won, as closely as the limits allow (WORK where they name none).
+    """Encloses v of a reach game that is won, as closely as the limits allow (WORK where nobody has set one).
 
     `known`: what a strategy at hand takes at worst; of the options limits, engine and progress count. With it the
     strategy that takes v, or the best one that was found; None: the one at hand is as good.
     """
     limits, unit = options.limits, reaction.denominator
-    limits = limits if limits.seconds or limits.work else replace(limits, work=WORK)
+    limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     first, counted = bounds(network, objective, reaction, known), with_counter(network)
     low = int(first.least * unit)

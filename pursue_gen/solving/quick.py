@@ -53,9 +53,9 @@ _Moves = Set[Tuple[str, Edge]]
 def quick(won: Solution, options: SolveOptions) -> Solution:
     """The solution of a reach game with its guarantee, and with a quicker strategy where one is found and proven.
 
-    Of the options limits, engine and progress count. A limit that is hit ends the search.
+    Of the options limits, engine and progress count. A limit that somebody has set ends the search.
     """
-    start = time.monotonic()
+    start, options = time.monotonic(), replace(options, limits=options.limits.chosen)
     known = guaranteed(won, STATES, options.limits)
     if known.worst is not None and known.worst <= _ENOUGH * known.least:
         return replace(won, guarantee=known)

@@ -149,7 +149,7 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
 
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:
     """True if the ideal game is known to be won; that it is not decided with so much work changes no verdict."""
-    limits = replace(options.limits, work=_FOR_IDEAL)
+    limits = replace(options.limits.chosen, work=_FOR_IDEAL)
     try:
         return solve(network, objective, engine=options.engine, limits=limits, progress=options.progress).won
     except PursueError:

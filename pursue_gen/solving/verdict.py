@@ -16,8 +16,10 @@ from pursue_gen.synthesis.limits import UNDECIDED, Limits
 
 
 def margins(won: Solution, thorough: bool, limits: Limits) -> Tuple[Margin, Optional[Margin]]:
-    """The margin of the strategy, as far as it is quickly found; `thorough`: all of it, and the game's as well."""
-    states = LIMIT if thorough else USUAL
+    """The margin of the strategy, as far as it is quickly found; `thorough`: all of it, and the game's as well, however
+    long that takes unless somebody has set a limit.
+    """
+    states, limits = (LIMIT, limits.chosen) if thorough else (USUAL, limits)
     margin = strategy_margin(won.network, won.objective, won.strategy, won.reaction, states, limits)
     return margin, game_margin(won.network, won.objective, won.reaction, limits=limits) if thorough else None
 

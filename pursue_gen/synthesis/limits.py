@@ -13,6 +13,9 @@ from pursue_gen.diagnostics import PursueError, error
 CAREFUL = 4096
 """MiB that the commands allow themselves by default, if the machine has them."""
 
+DEFAULT_SECONDS = 600.0
+"""Seconds that the commands allow themselves by default."""
+
 _SHARE = 0.8
 """The part of the available memory that may be taken; the machine has to go on."""
 
@@ -24,8 +27,10 @@ _CHECK_INTERVAL, _REPORT_INTERVAL = 0.05, 0.2
 class Limits:
     """Seconds, MiB of the whole process, discrete states of an engine, its work; 0: no limit.
 
-    `spent`: so many of the seconds are used up already. `work` counts the steps of an engine and the pairs of zones
-    that it combines, so it is the same on every machine. The checker counts symbolic states, with a limit of its own.
+    `spent`: so many of the seconds are used up already. `by_default`: nobody has set them; they only see to it that a
+    command ends, so what has a budget of work keeps to that alone (see `chosen`). `work` counts the steps of an engine
+    and the pairs of zones that it combines, so it is the same on every machine. The checker counts symbolic states,
+    with a limit of its own.
     """
 
     seconds: float = 0.0
@@ -33,6 +38,12 @@ class Limits:
     spent: float = 0.0
     states: int = 0
     work: int = 0
+    by_default: bool = False
+
+    @property
+    def chosen(self) -> Limits:
+        """Without seconds that nobody has set."""
+        return replace(self, seconds=0.0, spent=0.0, by_default=False) if self.by_default else self
 
     @property
     def left(self) -> float:
@@ -123,13 +134,18 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
     if which == "memory" and not limits.memory:
         where = "with the memory that there is"
     else:
-        option = {"seconds": " (--limit)", "memory": " (--memory), if the machine has more"}.get(which, "")
-        hint = f"allow more{option}, or {hint}"
+        options = {"seconds": " (--limit SECONDS, --limit none)", "memory": " (--memory), if the machine has more"}
+        hint = f"allow more{options.get(which, '')}, or {hint}"
     far = f"{reached.states} {'symbolic' if proving else 'discrete'} states were reached, {reached.waiting} waiting"
     if proving:
         hint = f"there is a strategy, but only what is proven is used; {hint}"
     message = f"no {'proof' if proving else 'verdict'} {where}; {far}, {reached.memory} MiB in use"
     return PursueError([error(UNDECIDED, message, hint=hint)], exit_status=5)
+
+
+def is_undecided(problem: PursueError) -> bool:
+    """True for an error at a limit."""
+    return any(finding.code == UNDECIDED for finding in problem.diagnostics)
 
 
 def memory_in_use() -> int:

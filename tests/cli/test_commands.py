@@ -370,6 +370,17 @@ def test_a_limit_is_no_verdict(option: List[str], engine: List[str]) -> None:
     assert verdict["won"] is None
     assert [finding["code"] for finding in verdict["diagnostics"]] == ["SYN010"]
     assert option[0] in told.err and "states were reached" in told.err
+    assert "decided" in verdict["costs"]
+    assert "costs" not in json.loads(pursue("solve", FIRST, *option, *engine, "--json", "--no-explain").out)
+
+
+@pytest.mark.parametrize("command", ["solve", "ws", "report", "sim", "play"])
+def test_after_a_limit_it_is_said_what_is_large(command: str, tmp_path: Path) -> None:
+    output = ["-o", str(tmp_path / "out")] if command == "ws" else []
+    told = pursue(command, FIRST, *output, "--memory", "1")
+    assert (told.status, told.out) == (5, "")
+    assert told.err.count("SYN010") == 1
+    assert "Without bot1 it is decided in " in told.err.split("Looking for what makes it so large …\n")[1]
 
 
 @pytest.mark.parametrize("option", [["--limit", "0.000001"], ["--memory", "1"]])

@@ -34,7 +34,9 @@ def test_without_arguments_it_is_the_default_request() -> None:
     before, request, after = requests(*ALL)
     assert (before, after) == (1, Path("."))
     assert isinstance(request, SolveRequest) and request.is_default
-    assert request.options.limits.seconds == 0 and request.options.limits.memory > 0
+    assert request.options.limits.memory > 0
+    limits = request.options.limits
+    assert (limits.seconds, limits.by_default, limits.chosen.seconds) == (600, True, 0)
 
 
 def test_every_option_arrives_in_the_request() -> None:
@@ -64,3 +66,25 @@ def test_a_command_may_declare_an_option_in_its_own_way() -> None:
 def test_limits_alone_leave_a_request_the_default_one() -> None:
     _, request, _ = requests("limit", "memory", arguments="--limit 5 --memory 9")
     assert isinstance(request, SolveRequest) and request.is_default
+
+
+@pytest.mark.parametrize(("text", "seconds"), [("none", 0), ("0", 0), ("4", 4), ("0.5", 0.5), ("1e3", 1000)])
+def test_a_limit_on_time_is_a_number_of_seconds_or_none(text: str, seconds: float) -> None:
+    _, request, _ = requests("limit", "memory", arguments=f"--limit {text}")
+    assert isinstance(request, SolveRequest)
+    limits = request.options.limits
+    assert (limits.seconds, limits.by_default, limits.chosen) == (seconds, False, limits)
+
+
+@pytest.mark.parametrize("text", ["-1", "nan", "inf", "soon", "1s", ""])
+def test_anything_else_is_no_limit_on_time(text: str) -> None:
+    app = typer.Typer()
+
+    @app.command()
+    @with_request("limit")
+    def command(request: SolveRequest = REQUEST) -> None:
+        pytest.fail(f"it is taken for {request.options.limits}")
+
+    done = CliRunner().invoke(app, [f"--limit={text}"])
+    assert done.exit_code == 2
+    assert f"'{text}'" in done.output and "none" in done.output

@@ -105,12 +105,20 @@ def test_large_work_shows_it_again_and_again(large: Path, engine: str) -> None:
 @engines
 def test_at_a_limit_it_is_erased(large: Path, engine: str) -> None:
     for seconds in (1, 10, 100):  # on a busy machine the time may be over before anything is told
-        told = on_terminal("solve", large, "--engine", engine, "--limit", seconds, changed=IMPATIENT)
+        options = "--engine", engine, "--limit", seconds, "--no-explain"
+        told = on_terminal("solve", large, *options, changed=IMPATIENT)
         if "\rsolving: " in told.err:
             break
     assert told.status == 5
     assert "\rsolving: " in told.err
     assert told.err.rsplit(ERASE, 1)[1].startswith(f"error SYN010: no verdict within the limit of {seconds} seconds")
+
+
+def test_after_a_limit_it_is_shown_of_the_search_for_what_is_large(large: Path) -> None:
+    told = on_terminal("solve", large, "--memory", 1, changed=IMPATIENT)
+    assert told.status == 5
+    assert told.err.index("error SYN010") < told.err.index("\rexplaining: ")
+    assert told.err.rsplit(ERASE, 1)[1].startswith("Without walker1")
 
 
 @pytest.mark.parametrize("command", [["verify", FIRST], ["ws", FIRST, "--plan"], ["ws", FIRST], ["report", FIRST]])
@@ -148,7 +156,7 @@ def test_with_json_and_on_a_poor_terminal_nothing_is_shown(quiet: List[str]) -> 
     assert "\033" not in told.err and "solving" not in told.err
 
 
-def test_elsewhere_nothing_is_shown() -> None:
+def test_elsewhere_nothing_is_shown_of_short_work() -> None:
     code = f"{IMPATIENT}\nfrom pursue_gen.cli.app import main\nmain()"
     words = [sys.executable, "-c", code, "solve", FIRST]
     done = subprocess.run(words, cwd=str(ROOT), capture_output=True, text=True, timeout=600, check=True)
@@ -219,12 +227,26 @@ def test_what_was_not_drawn_is_not_erased() -> None:
     assert drawn([0.0], lambda show: None) == ""
 
 
-def test_nobody_listens_where_nothing_is_drawn() -> None:
-    with mock.patch.dict(os.environ, TERM="xterm"):
-        with progress_line(stream=io.StringIO()) as show:
+def test_nobody_listens_where_it_is_quiet() -> None:
+    for stream in (Screen(), io.StringIO()):
+        with mock.patch.dict(os.environ, TERM="xterm"), progress_line(quiet=True, stream=stream) as show:
             assert show is None
-        with progress_line(quiet=True, stream=Screen()) as show:
-            assert show is None
+
+
+@pytest.mark.parametrize(("stream", "term"), [(io.StringIO, "xterm"), (Screen, "dumb")])
+def test_a_log_gets_a_line_every_ten_seconds(stream: Callable[[], io.StringIO], term: str) -> None:
+    log, clock = stream(), iter([0.0, 9.0, 10.0, 12.0, 19.9, 20.5])
+    with contextlib.ExitStack() as changed:
+        changed.enter_context(mock.patch.dict(os.environ, TERM=term))
+        changed.enter_context(mock.patch.object(time, "monotonic", lambda: next(clock)))
+        show = changed.enter_context(progress_line(stream=log))
+        assert show is not None
+        for states in range(5):
+            show(Progress(states, 7, 1.0, 10))
+    assert log.getvalue() == (
+        "solving: 1 states, 7 waiting, 1 states/s, 10 MiB, 10 s\n"
+        "solving: 4 states, 7 waiting, 4 states/s, 10 MiB, 20 s\n"
+    )
 
 
 def test_it_fits_the_terminal() -> None:

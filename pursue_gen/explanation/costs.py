@@ -1,0 +1,171 @@
+"""What makes a scenario too large to be decided: its parts are left out, each alone, and then together.
+
+Each smaller scenario is solved with a share of a fixed budget of work, the one that seems smallest first.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.lesser import Part, without_each
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.cone import cone_of_influence
+from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+
+WORK, STATES = 100_000_000, 100_000
+"""The work of all games together, and the discrete states of each: ten seconds or so, the same on every machine."""
+
+_OPTION, _ALONE, _EACH = 0.3, 0.5, 0.5
+"""The part of the work for the scenario without an option; of the rest for parts that are left out alone; of the then
+rest for each attempt without several of them.
+"""
+
+_SHOWN = 5
+"""So many parts are named."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+_Game = Tuple[Network, Objective]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Without these parts together the scenario is decided: whether it is won, discrete states, seconds, and work."""
+
+    without: Tuple[str, ...]
+    won: bool
+    states: int
+    seconds: float
+    work: int
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What is decided, the least work first; the parts without which, each alone, the scenario is not decided."""
+
+    decided: Tuple[Cost, ...]
+    undecided: Tuple[str, ...]
+
+
+def costs(
+    scenario: Scenario,
+    rules: Rules,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
+    option: str = "",
+) -> Costs:
+    """Solves a scenario that was not decided without some of its parts.
+
+    `option`: what else was asked for; where the whole scenario is decided without that, nothing else is tried.
+
+    Within WORK and STATES, and within the seconds of the limits if somebody has set them. Their memory does not count:
+    what the process keeps of the larger game would be taken for that of the smaller ones.
+    """
+    budget = Budget(replace(limits.chosen, memory=0, states=STATES, work=WORK), progress, phase=EXPLAINING)
+    if option:
+        cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
+        if cost is not None:
+            return Costs((cost,), ())
+    found, undecided = _alone(scenario, rules, budget.split(_ALONE))
+    return Costs(tuple(found or _together(scenario, undecided, rules, budget)), tuple(part.name for part in undecided))
+
+
+def in_words(found: Costs) -> str:
+    """The costs in sentences; empty where nothing can be left out."""
+    undecided = " or ".join(found.undecided)
+    if not found.decided:
+        return f"Too large without {undecided}, and without all of them." if undecided else ""
+    shown = "; ".join(f"without {_listed(cost.without)} it is decided {_took(cost)}" for cost in found.decided[:_SHOWN])
+    if len(found.decided[0].without) > 1:
+        return f"W{shown[1:]}. Without one of these alone it is too large."
+    return f"W{shown[1:]}." + (f" Still too large without {undecided}." if undecided else "")
+
+
+def as_json(found: Costs) -> Dict[str, Any]:
+    """The costs as a JSON object."""
+    return {"decided": [asdict(cost) for cost in found.decided], "undecided": list(found.undecided)}
+
+
+def _alone(scenario: Scenario, rules: Rules, budget: Budget) -> Tuple[List[Cost], List[Part]]:
+    """What is decided without one part that matters, and the parts without which it is not; the smallest game first."""
+    games = [(part, _game(smaller, rules)) for part, smaller in without_each(scenario)]
+    sizes, whole = [_size(*game) for _, game in games], _size(*_game(scenario, rules))
+    lesser = [games[k] for k in sorted(range(len(games)), key=lambda k: sizes[k]) if sizes[k] < whole]
+    found: List[Cost] = []
+    undecided: List[Part] = []
+    for k, (part, game) in enumerate(lesser):
+        cost = _cost((part.name,), game, rules, budget, 1 / (len(lesser) - k))
+        if cost is None:
+            undecided.append(part)
+        else:
+            found.append(cost)
+    return sorted(found, key=lambda cost: cost.work), undecided
+
+
+def _together(scenario: Scenario, parts: Sequence[Part], rules: Rules, budget: Budget) -> List[Cost]:
+    """What is decided without several parts, as few of them as are found (the first ones); empty if nothing is."""
+    lesser = _without_several(scenario, parts)
+    found: List[Cost] = []
+    low, high = -1, len(lesser)  # with `low` it is not decided, with `high` it is
+    while high - low > 1:
+        k = (low + high) // 2 if found else high - 1
+        without, smaller = lesser[k]
+        cost = _cost(without, _game(smaller, rules), rules, budget, _EACH)
+        if cost is None and not found:
+            return []
+        found, low, high = ([cost], low, k) if cost is not None else (found, k, high)
+    return found
+
+
+def _without_several(scenario: Scenario, parts: Sequence[Part]) -> List[Tuple[Tuple[str, ...], Scenario]]:
+    """The scenario without the first two parts, without the first three, and so on."""
+    found: List[Tuple[Tuple[str, ...], Scenario]] = []
+    without: Tuple[str, ...] = ()
+    for part in parts:
+        smaller = part.left_out(scenario)
+        if smaller is None or smaller == scenario:  # it is needed now, or has gone with another part
+            continue
+        scenario, without = smaller, (*without, part.name)
+        found.append((without, scenario))
+    return found[1:]
+
+
+def _game(scenario: Scenario, rules: Rules) -> _Game:
+    names = {agent.name for agent in scenario.agents}
+    slack = {name: late for name, late in rules.slack.items() if name in names}
+    return played(translate(scenario), replace(rules, slack=slack)), scenario_objective(scenario)
+
+
+def _size(network: Network, objective: Objective) -> int:
+    """Combinations of locations, and of two values for each variable: a rough guess at how large the game is."""
+    part = cone_of_influence(network, objective)
+    return math.prod(len(automaton.locations) for automaton in part.automata) << len(part.variables)
+
+
+def _cost(without: Tuple[str, ...], game: _Game, rules: Rules, budget: Budget, share: float) -> Optional[Cost]:
+    """What it takes to decide a game with that share of the budget; None: it is not decided."""
+    before = budget.work
+    try:
+        verdict = budget.verdict(*game, rules.reaction, share)
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None
+    stats = verdict.stats
+    return Cost(without, verdict.won, stats.discrete_states, round(stats.seconds, 3), int(before - budget.work))
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} together"
+
+
+def _took(cost: Cost) -> str:
+    return f"in {cost.seconds:.1f} s ({'won' if cost.won else 'lost'}, {cost.states} states)"

@@ -1,0 +1,144 @@
+"""Scenarios without one of their parts: an agent, a rule, a dependency, an objective."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
+
+from pursue_gen.language.scenario import (
+    Agent,
+    Avoid,
+    Choice,
+    NeverWith,
+    Ref,
+    Respond,
+    RuleBody,
+    Safety,
+    Scenario,
+    Sequence,
+)
+
+
+@dataclass(frozen=True)
+class Part:
+    """Something that a scenario can do without. `name` as in "without …"; `left_out` returns the scenario without it,
+    None where an objective would have no meaning then.
+    """
+
+    name: str
+    left_out: Callable[[Scenario], Optional[Scenario]]
+
+
+def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
+    """The parts that the scenario can do without, and the scenario without each of them alone."""
+    found = [Part(agent.name, _agent(agent.name)) for agent in scenario.agents]
+    found += [Part(f"rule {rule.name}", _rule(rule.name)) for rule in scenario.rules]
+    for need in scenario.dependencies:
+        value = "true" if need.value else "false"
+        name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
+        found.append(Part(name, _dependency(need.event.name, need.state.name)))
+    if scenario.safety is not None and scenario.reach is not None:
+        reach = scenario.reach
+        found.append(Part(f"objective {_safety_text(scenario.safety)}", _safety))
+        found.append(Part(f"reach_objective do {reach.event.name} after {reach.after}", _reach))
+    for part in found:
+        smaller = part.left_out(scenario)
+        if smaller is not None:
+            yield part, smaller
+
+
+def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
+    """The scenario without the agent and without the events that only it can do or, if they need another, react to.
+
+    None where no controllable agent would be left, or where an objective names the agent or such an event.
+    """
+    agents = tuple(agent for agent in scenario.agents if agent.name != name)
+    gone = _events(scenario, scenario.agents) - _events(scenario, agents)
+    if not any(agent.controllable for agent in agents) or (gone | {name}) & _wanted(scenario):
+        return None
+    states = tuple(
+        replace(state, true_if=_others(state.true_if, gone), false_if=_others(state.false_if, gone))
+        for state in scenario.states
+    )
+    kept = {state.name for state in states if state.true_if or state.false_if}
+    bodies = [(rule, _body(rule.body, gone)) for rule in scenario.rules]
+    return replace(
+        scenario,
+        events=tuple(event for event in scenario.events if event.name not in gone),
+        rules=tuple(replace(rule, body=body) for rule, body in bodies if isinstance(body, (Sequence, Choice))),
+        states=tuple(state for state in states if state.name in kept),
+        dependencies=tuple(d for d in scenario.dependencies if d.event.name not in gone and d.state.name in kept),
+        agents=tuple(
+            replace(a, can_do=_others(a.can_do, gone), reacts_to=_others(a.reacts_to, gone)) for a in agents
+        ),
+    )
+
+
+def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
+    return lambda scenario: without_agent(scenario, name)
+
+
+def _rule(name: str) -> Callable[[Scenario], Scenario]:
+    def left_out(scenario: Scenario) -> Scenario:
+        return replace(scenario, rules=tuple(rule for rule in scenario.rules if rule.name != name))
+
+    return left_out
+
+
+def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
+    def left_out(scenario: Scenario) -> Scenario:
+        kept = (d for d in scenario.dependencies if (d.event.name, d.state.name) != (event, state))
+        return replace(scenario, dependencies=tuple(kept))
+
+    return left_out
+
+
+def _safety(scenario: Scenario) -> Optional[Scenario]:
+    return None if scenario.reach is None else replace(scenario, safety=None)
+
+
+def _reach(scenario: Scenario) -> Optional[Scenario]:
+    return None if scenario.safety is None else replace(scenario, reach=None)
+
+
+def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
+    """The events that these agents can do among themselves."""
+    doing = {ref.name for agent in agents for ref in agent.can_do}
+    reacting = {ref.name for agent in agents for ref in agent.reacts_to}
+    together = {event.name for event in scenario.events if event.collaborative}
+    return {name for name in doing if name not in together or name in reacting}
+
+
+def _wanted(scenario: Scenario) -> Set[str]:
+    """The events and agents that the objectives name."""
+    safety = scenario.safety
+    names = set() if scenario.reach is None else {scenario.reach.event.name}
+    if isinstance(safety, Respond):
+        names |= {safety.trigger.name, safety.response.name}
+    elif isinstance(safety, Avoid):
+        names.add(safety.event.name)
+    elif isinstance(safety, NeverWith):
+        names |= {safety.first.name, safety.second.name}
+    return names
+
+
+def _others(refs: Tuple[Ref, ...], gone: AbstractSet[str]) -> Tuple[Ref, ...]:
+    return tuple(ref for ref in refs if ref.name not in gone)
+
+
+def _body(body: RuleBody, gone: AbstractSet[str]) -> Optional[RuleBody]:
+    """The order of the other events; None if there are none."""
+    if isinstance(body, Ref):
+        return None if body.name in gone else body
+    first, second = _body(body.first, gone), _body(body.second, gone)
+    if first is None or second is None:
+        return first or second
+    return replace(body, first=first, second=second)
+
+
+def _safety_text(safety: Safety) -> str:
+    if isinstance(safety, Respond):
+        return f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}"
+    if isinstance(safety, Avoid):
+        return f"avoid {safety.event.name}"
+    return f"{safety.first.name} never_with {safety.second.name}"
