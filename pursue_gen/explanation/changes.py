@@ -53,7 +53,8 @@ class Change:
 
 @dataclass(frozen=True)
 class Findings:
-    """Changes that win; what was tried to the utmost and does not; what was not decided within the limits.
+    """Changes that win, the cheapest first; what was tried to the utmost and does not; what was not decided within the
+    limits.
 
     `helpful`: strategies that win a changed game in which only numbers differ, those first that say most of the game
     as it is.
@@ -106,8 +107,9 @@ def findings(
         else:
             won[k] = win
     helpful = sorted((k for k in won if knobs[k].helps), key=lambda k: (-knobs[k].helps, k))
+    changes = [_change(knobs[k], win) for k, win in sorted(won.items())]
     return Findings(
-        tuple(_change(knobs[k], win) for k, win in sorted(won.items())),
+        tuple(sorted(changes, key=_price)),
         tuple(text for _, text in sorted(lost.items())),
         tuple(text for _, text in sorted(undecided.items())),
         tuple(won[k].strategy for k in helpful),
@@ -153,6 +155,17 @@ def _change(knob: _Knob, win: _Win) -> Change:
     value, next_lost = knob.values[win.high], knob.values[win.low] if win.low >= 0 else knob.before
     least = win.high - win.low == 1
     return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
+
+
+def _price(change: Change) -> Tuple[int, Fraction]:
+    """Cheap are numbers that hardly change, then what is on or off; what no real robot can do comes last."""
+    if change.what in ("ends", "game") or (change.what == "reaction" and not Fraction(change.after)):
+        return 2, Fraction(0)
+    try:
+        small, large = sorted((Fraction(change.before), Fraction(change.after)))
+    except ValueError:
+        return 1, Fraction(0)
+    return (0, large / small) if small else (1, large)
 
 
 def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
@@ -256,17 +269,19 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Kn
 
 
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
-    duration = event.duration
-    if duration is None:
-        return
+    duration = event.duration or 0
 
     def make(k: int) -> Variant:
         changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
         return replace(scenario, events=changed), rules
 
     def say(k: int) -> str:
-        return f"{event.name} lasting {k} instead of {duration}"
+        return f"{event.name} lasting {k} instead of {duration or 'no time'}"
 
+    if event.duration is None:
+        if scenario.reach is not None and _may_be_endless(scenario, event):
+            yield _number("duration", event.name, f"a longer {event.name}", 0, (1,), make, say, event.span, 0)
+        return
     if duration > 1:
         values = range(duration - 1, 0, -1)
         yield _number("duration", event.name, f"a shorter {event.name}", duration, values, make, say, event.span, 2)
@@ -274,6 +289,13 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
     if doers and not any(agent.controllable for agent in doers):
         longer = range(duration + 1, max(duration * 2, 2 * _all_time(scenario)) + 1)
         yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
+
+
+def _may_be_endless(scenario: Scenario, event: Event) -> bool:
+    """True if the environment alone can do the event, on its ways as often as it likes without time passing."""
+    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+    moving = any(agent.mobile is not None for agent in doers) and bool(scenario.connections)
+    return moving and event.location is None and not any(agent.controllable for agent in doers)
 
 
 def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[_Knob]:

@@ -13,30 +13,39 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.changes import Change, findings
-from pursue_gen.explanation.play import counter_play
-from pursue_gen.explanation.texts import TimedLine, describe, time_text
+from pursue_gen.explanation.endless import PAUSE, Endless, endless
+from pursue_gen.explanation.play import Play, counter_plays
+from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
-WORK = 100_000_000
-"""The work of an explanation: some twenty seconds."""
+WORK = 150_000_000
+"""The work of an explanation: ten to thirty seconds."""
 
-_FOR_CHANGES = 0.65
-"""The part of the limits that the search for changes may take."""
+_FOR_CHANGES, _FOR_ENDLESS = 0.5, 0.05
+"""The part of the limits that the search for changes may take, and whether time has to pass; the rest is for plays."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """Single changes that win, in order of interest; the utmost changes that were tried and do not; those that were not
-    decided within the limits; and a play that is lost whatever the controller does (empty: not found within them).
+    """Single changes that win, the cheapest first; the utmost changes that were tried and do not; those that were not
+    decided within the limits; a play that is lost whatever the controller does (empty: not found within them); what
+    else the controller could begin with, and why that fails too; and who prevents the objective without time passing
+    (empty: it is prevented in plays in which time passes, or that is not decided).
     """
 
     changes: Tuple[Change, ...]
     lost: Tuple[str, ...]
     undecided: Tuple[str, ...]
     play: Tuple[TimedLine, ...]
+    attempts: Tuple[Attempt, ...] = ()
+    endless: Tuple[Endless, ...] = ()
 
 
 def explain(
@@ -53,14 +62,28 @@ def explain(
     limits = replace(limits.chosen, work=limits.work or WORK)
     found = findings(scenario, rules, _share(limits, _FOR_CHANGES), progress)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-    rest = _share(limits, 1 - _FOR_CHANGES)
+    repeating: Tuple[Endless, ...] = ()
+    plays: List[Play] = []
     try:
-        play = describe(scenario, counter_play(network, objective, rules.reaction, rest, found.helpful, progress))
+        budget = Budget(_share(limits, _FOR_ENDLESS), progress, phase=EXPLAINING)
+        repeating = endless(network, objective, rules.reaction, budget)
     except PursueError as problem:
-        if problem.exit_status != 5:
-            raise
-        play = ()
-    return Explanation(found.changes, found.lost, found.undecided, play)
+        _check_limit(problem)
+    rest = _share(limits, 1 - _FOR_CHANGES - _FOR_ENDLESS)
+    try:
+        game = network, objective, rules.reaction
+        plays.extend(counter_plays(*game, rest, found.helpful, progress, bool(repeating)))
+    except PursueError as problem:
+        _check_limit(problem)
+    main = describe(scenario, plays[0]) if plays else ()
+    attempts = tuple(attempt(scenario, play) for play in plays[1:])
+    return Explanation(found.changes, found.lost, found.undecided, main, attempts, repeating)
+
+
+def _check_limit(problem: PursueError) -> None:
+    """Raises errors that are not about a limit."""
+    if problem.exit_status != _LIMIT_HIT:
+        raise problem
 
 
 def _share(limits: Limits, share: float) -> Limits:
@@ -70,9 +93,9 @@ def _share(limits: Limits, share: float) -> Limits:
 
 def render(explanation: Explanation, width: int = 110) -> str:
     """The explanation as lines of text."""
-    lines: List[str] = []
+    lines = [line for text in endless_texts(explanation) for line in textwrap.wrap(text, width)]
     if explanation.changes:
-        lines.append("Each of these alone would change that (found by solving again):")
+        lines.append("Each of these alone would change that, the smallest change first (found by solving again):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
     else:
         lines.append("No single small change that was tried would change that.")
@@ -84,9 +107,35 @@ def render(explanation: Explanation, width: int = 110) -> str:
             lines.append(f"  {at:>{widest}}  {line.who + ': ' if line.who else ''}{line.text}")
     else:
         lines.append("A play that shows it was not found within the limits.")
+    if explanation.attempts:
+        lines.append("What else the robots could begin with, and why that fails:")
+        lines += [line for text in attempt_texts(explanation) for line in _wrapped(text, width)]
     lines += _listed("Not enough alone:", explanation.lost, width)
     lines += _listed("Not decided within the limits:", explanation.undecided, width)
     return "\n".join(lines) + "\n"
+
+
+def endless_texts(explanation: Explanation) -> List[str]:
+    """A sentence for each agent without whose actions without end the objective could be met."""
+    return [
+        f"Only actions without end prevent it: on its ways {one.agent} may do {' and '.join(one.events)} again and "
+        f"again, without time passing. If it had to wait for more than {PAUSE} time unit in between, as at places, it "
+        "could be met; give such an event a duration or a location."
+        for one in explanation.endless
+    ]
+
+
+def attempt_texts(explanation: Explanation) -> List[str]:
+    """What else the robots could begin with, and why that fails: a text for each reason."""
+    firsts: Dict[str, List[str]] = {}
+    for one in explanation.attempts:
+        firsts.setdefault(one.why, []).append(one.first)
+    return [f"{', or '.join(texts)}: {why}" for why, texts in firsts.items()]
+
+
+def _wrapped(text: str, width: int) -> List[str]:
+    wrapper = textwrap.TextWrapper(width, initial_indent="  - ", subsequent_indent="    ", break_on_hyphens=False)
+    return wrapper.wrap(text)
 
 
 def as_json(explanation: Explanation) -> Dict[str, Any]:
@@ -96,6 +145,8 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
         "lost": list(explanation.lost),
         "undecided": list(explanation.undecided),
         "play": [{"at": float(line.at), "who": line.who, "text": line.text} for line in explanation.play],
+        "attempts": [asdict(one) for one in explanation.attempts],
+        "endless": [asdict(one) for one in explanation.endless],
     }
 
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.synthesis.budget import Budget
@@ -28,12 +29,20 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import names
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 from pursue_gen.zones.dbm import constant
 
-_MOST_STEPS = 60
+_MOST_STEPS, _MOST_BEGINNINGS = 60, 8
+
+_FOR_MAIN = 0.5
+"""The part of the limits for the play in which the controller begins as it likes."""
+
 _FINE = Fraction(1, 1000)
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +60,10 @@ class Play:
 
     Every position on the way is lost. `end` is "bad" (what is to be avoided has happened with the last step),
     "overdue" (time cannot go on: the automata `overdue` have to move and cannot), "idle" (nobody has to do anything any
-    more), "again" (all are as they were at the time `since`) or "open" (cut off). `position` is the last one.
+    more), "again" (all are as they were at the time `since`), "endless" (an agent that may act without end does so, and
+    no time passes) or "open" (cut off). `position` is the last one.
+
+    `first`: with what the controller was to begin, the edges of a joint move; () for waiting, None for what it likes.
     """
 
     game: Game
@@ -61,24 +73,50 @@ class Play:
     position: Position
     overdue: Tuple[int, ...] = ()
     since: Fraction = Fraction(0)
+    first: Optional[Tuple[int, ...]] = None
 
 
-def counter_play(
+def counter_plays(
     network: Network,
     objective: Objective,
     reaction: Fraction,
     limits: Limits,
     helpful: Sequence[Strategy] = (),
     progress: Optional[Listener] = None,
-) -> Play:
-    """A play that shows why a lost game is lost; the network is that of the game as it is played.
+    needs_no_time: bool = False,
+) -> Iterator[Play]:
+    """A play that shows why a lost game is lost, then one for each other way in which the controller could begin.
 
-    `helpful` are strategies for games that differ in numbers only, for the controller to go by. Raises PursueError with
-    exit status 5 if no play is found within the limits.
+    The network is that of the game as it is played. `helpful` are strategies for games that differ in numbers only, for
+    the controller to go by; `needs_no_time`: the game is lost by actions without end alone (see `endless`). Raises
+    PursueError with exit status 5 if no play is found within the limits; they end the rest.
     """
     budget = Budget(limits, progress, phase=EXPLAINING)
     spared = _spared(network, objective, reaction, budget)
-    return _CounterPlayer(network, spared, objective, reaction, budget, helpful).play()
+    player = _CounterPlayer(network, spared, objective, reaction, helpful, needs_no_time)
+    main = player.play(budget.split(_FOR_MAIN))
+    yield main
+    beginnings = list(_beginnings(main))
+    for k, first in enumerate(beginnings):
+        play = player.play(budget.split(1 / (len(beginnings) - k)), first)
+        if play.steps or play.end != "open":
+            yield play
+
+
+def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:
+    """The joint moves with which the controller could begin and does not in this play, and waiting if it does not."""
+    game = main.game
+    start = initial_state(game)
+    agents = {k for k, automaton in enumerate(game.automata) if automaton.name not in (names.REACH, names.OBJECTIVE)}
+    done = [step for step in main.steps if game.edges[step.edges[0]].controllable and step.owner in agents]
+    known = {done[0].edges[0]} if done else set()
+    found: List[Tuple[int, ...]] = [()] if done else []
+    for move in joint_moves(game, start):
+        useful = move.controllable and move.owner in agents and not changes_nothing(move, start)
+        if useful and move.edges[0] not in known and not is_bad(game, move.target):
+            known.add(move.edges[0])
+            found.append(move.edges)
+    yield from found[:_MOST_BEGINNINGS]
 
 
 def _spared(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Network:
@@ -113,26 +151,32 @@ class _CounterPlayer:
         spared: Network,
         objective: Objective,
         reaction: Fraction,
-        budget: Budget,
         helpful: Sequence[Strategy],
+        needs_no_time: bool,
     ) -> None:
         self._game = game = compile_game(whole, objective)
-        self._reaction = reaction
-        self._oracle = PositionSolver(spared, objective, reaction, budget)
-        self._controller = Controller(game, helpful)
+        self._reaction, self._helpful = reaction, helpful
+        self._oracle = PositionSolver(spared, objective, reaction)
         self._kept = _kept(whole, spared)
         self._robots = {edge.automaton for edge in game.edges if edge.controllable}
+        self._repeated = {k for k, edge in enumerate(game.origins) if may_repeat(edge)} if needs_no_time else set()
         self._horizon: Optional[int] = None
-        self._now = Fraction(0)
+
+    def play(self, budget: Budget, first: Optional[Tuple[int, ...]] = None) -> Play:
+        """The play from the start, cut off where the budget is used up. `first`: see `Play`."""
+        self._oracle.budget = budget
+        here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
+        if self._game.kind is Kind.SAFETY and self._horizon is None:
+            self._horizon = self._least_horizon(here)
+        self._controller = Controller(self._game, self._helpful)
+        self._first, self._now = first, Fraction(0)
         self._met: Dict[Position, Fraction] = {}
         self._been: Set[State] = set()
+        return replace(self._played(here), first=first)
 
-    def play(self) -> Play:
-        """The play from the start."""
-        here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
-        if self._game.kind is Kind.SAFETY:
-            self._horizon = self._least_horizon(here)
+    def _played(self, here: Position) -> Play:
         steps: List[CounterStep] = []
+        self._circle: Set[State] = set()
         while len(steps) < _MOST_STEPS:
             if self._is_broken(here):
                 return self._end("bad", steps, here)
@@ -143,17 +187,33 @@ class _CounterPlayer:
             self._been.add(here.state)
             try:
                 choice = self._next(here)
-            except PursueError:  # nothing is left of the limits: what has been played holds
+            except PursueError as problem:  # nothing is left of the limits: what has been played holds
+                if problem.exit_status != _LIMIT_HIT:
+                    raise
                 break
             if choice is None:
                 return self._finish(steps, here)
             move, delay = choice
             self._now += delay
             steps.append(CounterStep(self._now, move.owner, move.edges))
-            here = _after(here, move, delay)
+            if self._first and move.edges[0] == self._first[0]:
+                self._first = None
+            before, here = here.state, _after(here, move, delay)
+            if self._goes_in_circles(steps, before, here.state):
+                return self._end("endless", steps, here)
         return self._end("open", steps, here)
 
+    def _goes_in_circles(self, steps: Sequence[CounterStep], before: State, after: State) -> bool:
+        """True if the last steps, taken without end, led back to where an agent began with them."""
+        if steps[-1].edges[0] not in self._repeated:
+            self._circle = set()
+            return False
+        self._circle.add(before)
+        return after in self._circle
+
     def _finish(self, steps: Sequence[CounterStep], here: Position) -> Play:
+        if any(move.edges[0] in self._repeated for move in joint_moves(self._game, here.state)):
+            return self._end("endless", steps, here)
         room = longest(self._game, here)
         if room is None:
             return self._end("idle" if self._horizon is None else "open", steps, here)
@@ -191,12 +251,22 @@ class _CounterPlayer:
             for move in moves
             if not move.controllable and all(k in self._kept for k in move.edges)
         ]
-        decision = self._controller.decide(here, mine) or self._last_resort(here, mine)
+        decision = self._decision(here, mine) or self._last_resort(here, mine)
         if decision is not None:
             answer = self._answer(here, theirs, *decision)
             if answer is not None:
                 return answer
         return self._unhurried(here, theirs)
+
+    def _decision(self, here: Position, mine: Sequence[JointMove]) -> Optional[Choice]:
+        """What the controller begins with, as soon as it can; then what it likes."""
+        if self._first == ():
+            return None
+        for move in mine:
+            delay = window(self._game, here, move).earliest()
+            if self._first and move.edges[0] == self._first[0] and delay is not None:
+                return move, delay
+        return self._controller.decide(here, mine)
 
     def _last_resort(self, here: Position, mine: Sequence[JointMove]) -> Optional[Choice]:
         """A move at the last moment of an automaton that is overdue then."""

@@ -14,6 +14,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import State
+from pursue_gen.synthesis.limits import NO_LIMITS
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.zones.scale import common_denominator
 
@@ -29,10 +30,16 @@ class Position:
 
 
 class PositionSolver:
-    """Decides of positions of one game whether they are lost for the controller; answers are remembered."""
+    """Decides of positions of one game whether they are lost for the controller; answers are remembered.
 
-    def __init__(self, network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> None:
-        self._network, self._objective, self._reaction, self._budget = network, objective, reaction, budget
+    `budget`: what that may take; by default as much as it needs.
+    """
+
+    def __init__(
+        self, network: Network, objective: Objective, reaction: Fraction, budget: Optional[Budget] = None
+    ) -> None:
+        self._network, self._objective, self._reaction = network, objective, reaction
+        self.budget = Budget(NO_LIMITS) if budget is None else budget
         self._largest = _largest_constants(network)
         self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}
 
@@ -56,7 +63,7 @@ class PositionSolver:
                 clocks = (*clocks, elapsed)
             scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
-            self._known[key] = not self._budget.verdict(begun, self._objective, self._reaction * scale).won
+            self._known[key] = not self.budget.verdict(begun, self._objective, self._reaction * scale).won
         return self._known[key]
 
 

@@ -6,11 +6,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Tuple
 
+from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
+from pursue_gen.tga.network import is_end
 from pursue_gen.tga.positions import directions
+
+_MOST_OTHERS = 3
+"""So many of the others' last actions are named in an attempt."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,34 @@ def describe(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
         if text is not None:
             lines.append(TimedLine(step.at, owner, text + "".join(_remarks(scenario, play, step))))
     return (*lines, *_ending(scenario, play))
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What the robots could begin with, and what comes of it, in words."""
+
+    first: str
+    why: str
+
+
+def attempt(scenario: Scenario, play: Play) -> Attempt:
+    """How a play begins that the robots have to begin in a certain way, and what the others do until it is lost."""
+    words = _words(scenario)
+    if play.first:
+        step = CounterStep(Fraction(0), play.game.edges[play.first[0]].automaton, play.first)
+        owner, *_ = key = _key(play, step)
+        first = f"{owner} {words.get(key, key[1])}"
+    else:
+        first = "the robots wait"
+    others = {agent.name for agent in scenario.agents if not agent.controllable}
+    done: List[str] = []
+    for step in play.steps:
+        text = words.get(_key(play, step))
+        owner = play.game.automata[step.owner].name
+        if owner in others and text is not None and not is_end(play.game.origins[step.edges[0]]):
+            done.append(f"{owner} {text} at {time_text(step.at)}")
+    ending = _ending(scenario, play)[0]
+    return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({time_text(ending.at)})"]))
 
 
 def time_text(at: Fraction) -> str:
@@ -82,6 +115,7 @@ def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
         "idle": lambda s, p: f"nobody has to do anything any more{_goal_clause(s, ', and ', ' need never come')}",
         "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
         f"{_goal_clause(s, ': ', ' can always be prevented')}",
+        "endless": _endless,
         "open": lambda s, p: "and so on: from here, too, it can be prevented whatever the robots do",
     }
     texts = [tell[play.end](scenario, play)]
@@ -105,6 +139,17 @@ def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
         yield f"the robots can do nothing before one of these, and none of them needs to happen: {undone}"
     elif undone and play.end == "idle":
         yield f"these could still happen, and need not: {undone}"
+
+
+def _endless(scenario: Scenario, play: Play) -> str:
+    game, state = play.game, play.position.state
+    repeated: Dict[str, List[str]] = {}
+    for move in joint_moves(game, state):
+        edge = game.origins[move.edges[0]]
+        if may_repeat(edge) and edge.sync is not None:
+            repeated.setdefault(game.automata[move.owner].name, []).append(edge.sync.channel)
+    who = ", ".join(f"{name} with {' and '.join(dict.fromkeys(events))}" for name, events in repeated.items())
+    return f"and so on without end, {who}: no time passes, and the robots never get to act"
 
 
 def _goal_clause(scenario: Scenario, before: str, after: str) -> str:

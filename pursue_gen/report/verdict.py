@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.look import safe
 from pursue_gen.explanation.costs import Costs, in_words
-from pursue_gen.explanation.explain import Explanation
+from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, speed_words, units
@@ -69,7 +69,8 @@ def _lost(lost: Lost) -> List[str]:
 
 
 def _explained(explanation: Explanation) -> List[str]:
-    parts = ["<h3>What would change that</h3>"]
+    parts = [f"<p>{safe(text)}</p>" for text in endless_texts(explanation)]
+    parts.append("<h3>What would change that</h3>")
     if explanation.changes:
         items = []
         for change in explanation.changes:
@@ -78,16 +79,21 @@ def _explained(explanation: Explanation) -> List[str]:
                 notes.insert(0, f"{change.next_lost} is not enough")
             note = f" ({'; '.join(notes)})" if notes else ""
             items.append(f"<li>{safe(change.sentence + note)}</li>")
-        parts.append(f"<p>Each of these alone (found by solving again):</p><ul>{''.join(items)}</ul>")
+        parts.append("<p>Each of these alone, the smallest change first (found by solving again):</p>")
+        parts.append(f"<ul>{''.join(items)}</ul>")
     else:
         parts.append("<p>No single small change that was tried would change that.</p>")
-    for title, entries in (("Not enough alone", explanation.lost), ("Not decided in the time", explanation.undecided)):
+    for title, entries in (("Not enough alone", explanation.lost), ("Not decided", explanation.undecided)):
         if entries:
             parts.append(f"<p>{title}: {safe('; '.join(entries))}.</p>")
     parts.append("<h3>How it goes wrong, for example</h3>")
     rows = [(time_text(line.at), line.who, line.text) for line in explanation.play]
-    none = "<p>A play that shows it was not computed in the time.</p>"
-    return [*parts, table(("time (units)", "who", "what"), rows) if rows else none]
+    none = "<p>A play that shows it was not found within the limits.</p>"
+    parts.append(table(("time (units)", "who", "what"), rows) if rows else none)
+    if explanation.attempts:
+        tried = "".join(f"<li>{safe(text)}</li>" for text in attempt_texts(explanation))
+        parts.append(f"<p>What else the robots could begin with, and why that fails:</p><ul>{tried}</ul>")
+    return parts
 
 
 def _game(rules: Rules) -> str:

@@ -75,6 +75,23 @@ agent "visitor" location shelf can_do lock
 reach_objective: do fetch after 1
 """
 
+HAGGLER = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "shout"
+event "hush"
+event "knock"
+event "sign"
+event "serve"
+rule "order": (knock or sign) before serve
+state "loud": initially false, true_if shout false_if hush
+stateDependency: knock only_if loud is_true
+stateDependency: sign only_if loud is_false
+agent "bot" controllable mobile 1 location desk can_do knock, sign, serve
+agent "guest" mobile 2 location shelf can_do shout, hush
+reach_objective: do serve
+"""
+
 SLOW = CALLED.replace("mobile 1", "mobile 3").format(deadline=6)
 
 
@@ -92,7 +109,9 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
     lines = text.splitlines()
     at = change.span.line - 1
     words = {"deadline": "within", "after": "after", "agent": "mobile", "duration": "duration", "distance": "distance"}
-    if change.what in words:
+    if change.what == "duration" and change.before == "0":
+        lines[at] += f" duration {value}" if value != "0" else ""
+    elif change.what in words:
         word = words[change.what]
         assert f"{word} {change.before}" in lines[at]
         lines[at] = lines[at].replace(f"{word} {change.before}", f"{word} {value}")
@@ -132,6 +151,8 @@ SMALL = {
     "apart": (APART, DEFAULT),
     "locked": (LOCKED, DEFAULT),
     "told": (TOLD, DEFAULT),
+    "haggler": (HAGGLER, DEFAULT),
+    "haggler, ideal": (HAGGLER, IDEAL),
 }
 
 
@@ -160,10 +181,18 @@ def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name
         assert "it can be prevented whatever the robots do" in explanation.play[-1].text
 
 
-def told(name: str) -> str:
+def rendered(name: str) -> str:
     text, rules = SMALL[name]
-    rendered = render(explain(parse(text, "x.pur"), rules, Limits(PLENTY)))
-    return rendered[rendered.index("How it goes wrong") :].split("Not enough")[0]
+    return render(explain(parse(text, "x.pur"), rules, Limits(PLENTY)))
+
+
+def told(name: str) -> str:
+    text = rendered(name)
+    return text[text.index("How it goes wrong") :].split("What else")[0].split("Not enough")[0]
+
+
+def tried(name: str) -> str:
+    return rendered(name).split("could begin with, and why that fails:\n")[1].split("Not enough")[0]
 
 
 def test_a_missed_deadline_is_reported_step_by_step() -> None:
@@ -215,8 +244,8 @@ def test_without_a_budget_nothing_is_claimed() -> None:
 
 
 def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
-    first = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes[0]
-    assert (first.what, first.after) == ("ends", CONTROLLABLE)
+    changes = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    assert ("ends", CONTROLLABLE) in {(change.what, change.after) for change in changes}
     slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), Limits(PLENTY))
     (reaction,) = [change for change in slow.changes if change.what == "reaction"]
     assert Fraction(reaction.after) + Fraction(3, 10) == Fraction(reaction.next_lost)
@@ -244,3 +273,80 @@ def test_json_holds_the_explanation(tmp_path: Path) -> None:
     assert (change["file"], change["line"]) == (str(file), 8)
     assert verdict["explanation"]["play"][0] == {"at": 1.1, "who": "visitor", "text": "callBot (fetch is due by 4.1)"}
     assert "explanation" not in json.loads(pursue("solve", file, "--json", "--no-explain").out)
+
+
+# The cheapest first, whatever the machine does ------------------------------------------------------------------------
+
+
+def test_small_numbers_come_first_and_what_no_robot_can_do_last() -> None:
+    changes = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    numbers = [change for change in changes if change.before.isdigit() and change.after.isdigit()]
+    ratios = [max(int(c.before), int(c.after)) / min(int(c.before), int(c.after)) for c in numbers]
+    assert len(numbers) > 1 and ratios == sorted(ratios)
+    assert tuple(numbers) == changes[: len(numbers)]
+    mixed = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    kinds = [change.what for change in mixed]
+    assert kinds.index("deadline") < kinds.index("control") < kinds.index("ends")
+
+
+def test_seconds_that_nobody_has_set_end_no_explanation() -> None:
+    scenario = parse(SMALL["deadline 3"][0], "x.pur")
+    assert explain(scenario, DEFAULT, Limits(1e-9, by_default=True)) == explain(scenario, DEFAULT)
+    assert explain(scenario, DEFAULT, Limits(1e-9)).changes == ()
+
+
+# What else the robots could begin with --------------------------------------------------------------------------------
+
+
+def test_other_beginnings_fail_for_a_reason() -> None:
+    assert tried("deadline 3") == (
+        "  - the robots wait: visitor callBot at 1.1; too late: no fetch within 3 of callBot (4.1)\n"
+    )
+    assert tried("locked") == (
+        "  - the robots wait: nobody has to do anything any more, and fetch need never come (0)\n"
+    )
+
+
+def test_a_robot_may_begin_in_each_way_that_it_has() -> None:
+    text = CALLED.format(deadline=3).replace("connect", 'poi "door"\nconnect desk and door distance 1\nconnect', 1)
+    explanation = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY))
+    moves = [line.text for line in explanation.play if line.who == "bot"]
+    begun = {attempt.first for attempt in explanation.attempts} | {f"bot {moves[0]}"}
+    assert begun == {"the robots wait", "bot sets off from desk to shelf", "bot sets off from desk to door"}
+    assert all("too late" in attempt.why for attempt in explanation.attempts)
+
+
+def test_json_holds_the_attempts() -> None:
+    found = as_json(explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, Limits(PLENTY)))
+    why = "visitor callBot at 1.1; too late: no fetch within 3 of callBot (4.1)"
+    assert json.loads(json.dumps(found))["attempts"] == [{"first": "the robots wait", "why": why}]
+
+
+# Actions without end --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["haggler", "haggler, ideal"])
+def test_a_loss_by_actions_without_end_is_called_so(name: str) -> None:
+    text, rules = SMALL[name]
+    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+    assert [(one.agent, one.events) for one in explanation.endless] == [("guest", ("shout", "hush"))]
+    text = render(explanation)
+    assert text.startswith("Only actions without end prevent it: on its ways guest may do shout and hush")
+    assert explanation.play[-1].text.endswith("no time passes, and the robots never get to act")
+    lasting = {change.name for change in explanation.changes if change.what == "duration"}
+    assert lasting == {"shout", "hush"}
+
+
+@pytest.mark.parametrize("name", [name for name in SMALL if not name.startswith("haggler")])
+def test_a_loss_in_which_time_passes_is_not(name: str) -> None:
+    text, rules = SMALL[name]
+    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+    assert explanation.endless == ()
+    assert "without end" not in render(explanation)
+
+
+def test_whoever_could_act_without_end_and_need_not_is_not_blamed() -> None:
+    # The guest may shout without end on its way; but it is the clerk who need not open.
+    text = HAGGLER.replace('rule "order":', 'event "open"\nrule "first": open before serve\nrule "order":')
+    text = text.replace("reach_objective", 'agent "clerk" location desk can_do open\nreach_objective')
+    assert explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY)).endless == ()
