@@ -5,14 +5,13 @@ A child process ends itself at the n-th call that changes something, for every n
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Tuple
+from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from writer_stage import CALLS, DONE, KILLED, NEW, OLD, PERSON, REFUSED, STRANGE, child
+from writer_stage import DONE, KILLED, NEW, OLD, PERSON, REFUSED, STRANGE, child, write_until_killed
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace import writer
@@ -20,25 +19,7 @@ from pursue_gen.workspace import writer
 
 def run_killed(files: Mapping[str, bytes], folder: Path, call: int, force: bool = False) -> int:
     """Writes the files in a process that is killed at this call; a file is half written then."""
-    left = [call]
-
-    def killing(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
-        def run(*args: Any, **named: Any) -> Any:
-            left[0] -= 1
-            if left[0] < 0:
-                if name == "write":
-                    real(args[0], args[1][: len(args[1]) // 2])
-                os._exit(KILLED)
-            return real(*args, **named)
-
-        return run
-
-    def work() -> None:
-        for name in CALLS:
-            setattr(os, name, killing(name, getattr(os, name)))
-        writer.write_tree(files, folder, force)
-
-    return child(work)
+    return child(write_until_killed, dict(files), folder, call, force)
 
 
 def put(folder: Path, files: Mapping[str, bytes]) -> None:

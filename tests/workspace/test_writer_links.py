@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 from pathlib import Path
-from typing import Any, Callable, Dict
+from typing import Dict
 
 import pytest
-from writer_stage import CALLS, DONE, NEW, OLD, REFUSED, child
+from writer_stage import DONE, NEW, OLD, REFUSED, child, write_over_planted_link
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace import writer
@@ -78,35 +78,12 @@ def test_no_planted_link_is_followed(tmp_path: Path, place: str, target: str, fo
     assert snapshot(foreign) == FOREIGN
 
 
-def plant_at_call(number: int, link: Path, foreign: Path) -> None:
-    """From now on, before the call of this number that changes something, what is there is moved for a link."""
-    left = [number]
-
-    def planting(real: Callable[..., Any]) -> Callable[..., Any]:
-        def run(*args: Any, **named: Any) -> Any:
-            left[0] -= 1
-            if left[0] == -1:
-                link.rename(link.with_name(link.name + ".moved"))
-                link.symlink_to(foreign / "README.md" if link.suffix else foreign)
-            return real(*args, **named)
-
-        return run
-
-    for name in set(CALLS) - {"rename"}:
-        setattr(os, name, planting(getattr(os, name)))
-
-
 @pytest.mark.parametrize("place", ["a folder of files", "a folder in it", "a folder whose files go", "a file"])
 def test_a_link_that_is_planted_while_it_writes_is_not_followed(tmp_path: Path, place: str) -> None:
     for number in range(10_000):
         home = tmp_path / str(number)
         foreign = stage(home)
-
-        def work(home: Path = home, foreign: Path = foreign, number: int = number) -> None:
-            plant_at_call(number, home / PLACES[place], foreign)
-            writer.write_tree(NEW, home / "ws")
-
-        status = child(work)
+        status = child(write_over_planted_link, NEW, home / "ws", number, home / PLACES[place], foreign)
         assert snapshot(foreign) == FOREIGN, number
         assert status in (DONE, REFUSED)
         if status == DONE and not os.path.islink(str(home / PLACES[place])):
