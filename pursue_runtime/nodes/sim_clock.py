@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import time
-from typing import Optional
+from typing import Any, Optional
 
 import rosgraph
 import rospy
@@ -20,7 +20,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread, subscribe
-from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock, read_pace
+from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock, read_pace, send_whole
 from pursue_runtime.words import EVENTS, STATE
 
 
@@ -40,6 +40,7 @@ def run(pace: Pace, scenario: str) -> int:
         rospy.logwarn("simulated time goes on at %.2f s, where it was", last)
     clock = SimClock(pace, START if last is None else last)
     publisher = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+    send_at_once(publisher)
     _, states = [
         subscribe(
             topic, rospy.AnyMsg, lambda _: clock.on_message(time.monotonic()), ending, queue_size=1000, tcp_nodelay=True
@@ -52,16 +53,41 @@ def run(pace: Pace, scenario: str) -> int:
     return ending.wait()
 
 
+class _Connection:
+    """A connection to a subscriber that gets a message at once, or not at all where it does not read.
+
+    rospy has a queue and a thread for each subscriber: for hundreds of messages a second, that is most of the clock's
+    work. A time that is not sent is not missed: the next one takes its place.
+    """
+
+    def __init__(self, connection: Any) -> None:
+        self._connection = connection
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._connection, name)
+
+    def write_data(self, data: bytes) -> bool:
+        """Write a message. Raises OSError where the connection is closed; rospy then removes it."""
+        return send_whole(self._connection.socket, data)
+
+
+def send_at_once(publisher: rospy.Publisher) -> None:
+    """Have the publisher write each message to its subscribers itself."""
+    topic = publisher.impl
+    add_connection, topic.queue_size = topic.add_connection, None
+    topic.add_connection = lambda connection: add_connection(_Connection(connection))
+
+
 def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[ClockFile]) -> None:
-    """Publishes /clock. While time stands still it is published on: a node that comes late, or that missed a message,
-    does not wait for it."""
+    """Publishes /clock until ROS shuts down."""
     moment = time.monotonic()
     while not rospy.is_shutdown():
-        simulated = clock.tick(time.monotonic())
+        simulated = clock.message(time.monotonic())
         try:
-            if memory is not None:
-                memory.save(simulated)
-            publisher.publish(Clock(rospy.Time.from_sec(simulated)))
+            if simulated is not None:
+                if memory is not None:
+                    memory.save(simulated)
+                publisher.publish(Clock(rospy.Time.from_sec(simulated)))
         except OSError as problem:
             rospy.logerr("cannot keep the time: %s", problem)
             memory = None

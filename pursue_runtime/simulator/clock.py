@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import os
+import socket
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
 from pursue_runtime.parameters import number
 
 START = 1.0  # seconds; 0 means "no time yet" to rospy
+HOLD_PERIOD = 0.05  # real seconds between two messages of a clock that holds
 MAX_FILES = 20  # so many files of clocks are kept in a folder
 
 
@@ -49,7 +51,7 @@ class SimClock:
         self._pace = pace
         self._start = start
         self._steps = 0
-        self._held_until = float("-inf")
+        self._held_until = self._published = float("-inf")
 
     @property
     def now(self) -> float:
@@ -61,10 +63,34 @@ class SimClock:
         self._held_until = max(self._held_until, real + self._pace.hold)
 
     def tick(self, real: float) -> float:
-        """One step on, unless the clock holds; the simulated time to publish (also while it holds)."""
+        """One step on, unless the clock holds; the simulated time."""
         if real >= self._held_until:
             self._steps += 1
         return self.now
+
+    def message(self, real: float) -> Optional[float]:
+        """One step on, unless the clock holds; the simulated time to publish, None where that was published lately.
+
+        A clock that holds is published on, but seldom: a node that comes late, or that missed a message, has the time.
+        """
+        before = self.now
+        if self.tick(real) == before and real < self._published + HOLD_PERIOD:
+            return None
+        self._published = real
+        return self.now
+
+
+def send_whole(there: socket.socket, data: bytes) -> bool:
+    """Sends a short message at once and whole; False, with nothing sent, where the other side does not read.
+
+    Raises OSError where the connection is closed.
+    """
+    try:
+        sent = there.send(data, socket.MSG_DONTWAIT)
+    except BlockingIOError:
+        return False
+    there.sendall(data[sent:])  # the system takes so few bytes at once, or none
+    return True
 
 
 class ClockFile:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.simulator.clock import MAX_FILES, ClockFile, Pace, SimClock, read_pace
+from pursue_runtime.simulator.clock import MAX_FILES, ClockFile, Pace, SimClock, read_pace, send_whole
+from tests.waiting import PATIENCE
 
 
 def test_it_starts_after_zero_and_goes_in_steps() -> None:
@@ -26,6 +28,39 @@ def test_it_holds_after_a_message_and_goes_on() -> None:
     clock.on_message(10.02)
     assert clock.tick(10.04) == held, "each message starts the pause anew"
     assert clock.tick(10.06) > held
+
+
+def test_a_clock_that_holds_is_published_seldom() -> None:
+    clock = SimClock(Pace(step=0.02, hold=1.0))
+    first = clock.message(10.0)
+    assert first is not None
+    clock.on_message(10.0)
+    told = [clock.message(10.0 + milliseconds / 1000) for milliseconds in range(1, 1000)]
+    published = [moment for moment in told if moment is not None]
+    assert set(published) == {first} and 15 < len(published) < 25
+    assert clock.message(11.0) == pytest.approx(first + 0.02), "at once when it goes on"
+
+
+def test_a_subscriber_that_does_not_read_holds_nothing_up_and_gets_whole_messages() -> None:
+    ours, its = socket.socketpair()
+    message = bytes(range(16))
+    with ours, its:
+        its.settimeout(PATIENCE)
+        sent = 0
+        while send_whole(ours, message):
+            sent += 1
+        assert not send_whole(ours, message), "it does not wait"
+        received = b"".join(its.recv(len(message), socket.MSG_WAITALL) for _ in range(sent))
+        assert received == message * sent and sent > 10
+        assert send_whole(ours, message) and its.recv(100) == message
+
+
+def test_a_subscriber_that_has_gone_is_an_error() -> None:
+    ours, its = socket.socketpair()
+    with ours:
+        its.close()
+        with pytest.raises(OSError):
+            send_whole(ours, b"1234")
 
 
 def test_the_tick_makes_the_speed() -> None:
