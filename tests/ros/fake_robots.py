@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import math
 import re
+import subprocess
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+from xmlrpc.client import ServerProxy
 
 import pytest
 import yaml
@@ -17,6 +20,7 @@ from ros_world import Ros, end, generated, make
 from tests.waiting import PATIENCE
 
 FAKE = Path(__file__).resolve().parent / "fake_move_base.py"
+PUBLISHER = FAKE.with_name("publisher.py")
 UNIT = 0.2
 """Seconds per time unit: a movement takes 1.8 to 2 s, bot1_inb 0.6 to 0.8 s, bot2_ina 1.2 to 1.4 s."""
 
@@ -34,8 +38,9 @@ POSES = "src/controller_bot*/config/poses.yaml"
 LAUNCH = f"mission.launch simulate:=false time_unit:={UNIT} tolerance:=0.5"
 
 
-def robots_workspace(ros: Ros, folder: Path, scenario: str, robots: Sequence[str]) -> Path:
-    """The workspace of a scenario whose robots may be late; skips the test where move_base's messages are missing.
+def robots_workspace(ros: Ros, scenario: str, robots: Sequence[str]) -> Path:
+    """The workspace of a scenario whose robots may be late, built once in a session; skips the test where move_base's
+    messages are missing.
 
     A person has written down the poses: each place has an orientation, along the x axis.
     """
@@ -43,12 +48,16 @@ def robots_workspace(ros: Ros, folder: Path, scenario: str, robots: Sequence[str
     found = ros.run(f"python3 -c 'import {wanted}'", ros.home)
     if found.returncode:
         pytest.skip(f"no messages of move_base here: {found.stdout.strip().splitlines()[-1]}")
-    workspace = generated(scenario, folder, slack=dict.fromkeys(robots, SLACK))
-    for file in workspace.glob(POSES):
-        text, count = re.subn(r"(, 0\.0, 0\.0, 0\.0), 0\.0\]", r"\1, 1.0]", file.read_text())
-        assert count == 3, text
-        file.write_text(text)
-    return make(ros, workspace)
+
+    def build(folder: Path) -> None:
+        workspace = generated(scenario, folder, slack=dict.fromkeys(robots, SLACK))
+        for file in workspace.glob(POSES):
+            text, count = re.subn(r"(, 0\.0, 0\.0, 0\.0), 0\.0\]", r"\1, 1.0]", file.read_text())
+            assert count == 3, text
+            file.write_text(text)
+        make(ros, workspace)
+
+    return ros.once(f"{Path(scenario).name}_of_robots", build)
 
 
 class Robots:
@@ -66,9 +75,10 @@ class Robots:
         self.poses = [(poi, x, y) for own in poses.values() for poi, (x, y, *_) in own.items()]
         self._ros, self._workspace, self._there = ros, workspace, there
         self.goals = {f"{x:.2f} {y:.2f}": poi for poi, x, y in self.poses}
-        (logs / "robots.yaml").write_text(yaml.safe_dump({"robots": robots}))
-        ros.run(f"rosparam load {logs}/robots.yaml /fake_move_base", workspace, **there)
+        with ServerProxy(there["ROS_MASTER_URI"]) as master:
+            assert master.setParam("/test", "/fake_move_base/robots", robots)[0] == 1  # type: ignore[index]
         self.process = ros.start(f"exec python3 {FAKE}", workspace, self.log, **there)
+        self._publisher: "Optional[subprocess.Popen[str]]" = None
 
     def heard(self, robot: str) -> List[str]:
         """What this robot has heard, goals by their names."""
@@ -76,10 +86,24 @@ class Robots:
         return [f"{what} {self.goals.get(detail, detail.split(' ')[0])}".strip() for what, detail in told]
 
     def publish(self, topic: str, kind: str, message: str) -> None:
-        """Publishes it, as a person does, until a robot or a node has it."""
-        command = f"source devel/setup.bash; rostopic pub --once {topic} {kind} \"{message}\""
-        done = self._ros.run(command, self._workspace, **self._there)
-        assert done.returncode == 0, done.stdout
+        """Publishes a message (in YAML), as a person does, to all that are subscribed."""
+        if self._publisher is None:
+            environment = {**self._ros.sourced(self._workspace / "devel/setup.bash"), **self._there}
+            self._publisher = subprocess.Popen(
+                ["python3", str(PUBLISHER)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            )
+        line = json.dumps([topic, kind, message]) + "\n"
+        assert self._publisher.stdin is not None and self._publisher.stdout is not None
+        self._publisher.stdin.write(line)
+        self._publisher.stdin.flush()
+        assert self._publisher.stdout.readline() == line
+
+    def end(self) -> None:
+        """Ends their processes."""
+        end(self.process)
+        if self._publisher is not None:
+            self._publisher.kill()
+            self._publisher.communicate()
 
     def order(self, robot: str, what: str) -> None:
         """Has the robot do this, for the test."""
@@ -115,7 +139,7 @@ def playing(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dic
             yield fakes, logs / "launch", mission
         finally:
             end(mission)
-            end(fakes.process)
+            fakes.end()
 
 
 def played(ros: Ros, workspace: Path, logs: Path, arguments: str, **robots: Dict[str, Any]) -> Any:

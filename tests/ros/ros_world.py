@@ -8,6 +8,7 @@ import hashlib
 import http.client
 import os
 import random
+import re
 import shutil
 import signal
 import socket
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import uuid
 import xmlrpc.client
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
@@ -29,6 +31,9 @@ SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 PUBLISH_EVENT = Path(__file__).resolve().parent / "publish_event.py"
 NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun", "rostest")
 
+
+_SOURCE = re.compile(r"source (\S+/setup\.bash); ")
+NO_ANSWER = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 
 Started = Tuple["subprocess.Popen[bytes]", Dict[str, str]]
 """A process, and the variables that lead to its master."""
@@ -65,6 +70,7 @@ class Ros:
         """`home` is for what runs in this process, `shared` for what all processes of the session build but once."""
         self.home, self.shared = home, shared
         self.environment = _environment(home)
+        self._sourced: Dict[Path, Dict[str, str]] = {}
 
     def once(self, name: str, build: Callable[[Path], object]) -> Path:
         """The shared folder of this name: the first that asks for it builds it, others wait until it is done."""
@@ -78,17 +84,35 @@ class Ros:
         return folder
 
     def start(self, command: str, folder: Path, log: Path, **more: str) -> "subprocess.Popen[bytes]":
-        """Starts a shell command in a session of its own; what it says goes to the log."""
+        """Starts a shell command in a session of its own; what it says goes to the log.
+
+        Where it begins with `source …/setup.bash; `, it gets the variables that this sets; the file runs but once.
+        """
+        source, before = _SOURCE.match(command), self.environment
+        if source is None:
+            command = _setup() + command
+        else:
+            command, before = command[source.end():], self.sourced(folder / source.group(1))
         with open(log, "wb") as out:
             return subprocess.Popen(
-                ["bash", "-c", _setup() + command],
+                ["bash", "-c", command],
                 cwd=folder,
-                env={**self.environment, **more},
+                env={**before, **more},
                 stdin=subprocess.DEVNULL,
                 stdout=out,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
+
+    def sourced(self, setup: Path) -> Dict[str, str]:
+        """The variables after a workspace's setup file was sourced."""
+        if setup not in self._sourced:
+            command = f"{_setup()}source {setup} && exec env -0"
+            done = subprocess.run(
+                ["bash", "-c", command], env=self.environment, stdout=subprocess.PIPE, text=True, check=True
+            )
+            self._sourced[setup] = dict(line.split("=", 1) for line in done.stdout.split("\0") if line)
+        return self._sourced[setup]
 
     def run(
         self, command: str, folder: Path, timeout: float = 2 * PATIENCE, **more: str
@@ -108,12 +132,19 @@ class Ros:
 
     @contextlib.contextmanager
     def master(self) -> Iterator[Dict[str, str]]:
-        """A roscore on a free port; the variables that lead to it."""
-        uri, core = self._roscore(tries=6)
+        """A master on a free port; the variables that lead to it.
+
+        It is all of a roscore that nodes need: neither roscore nor roslaunch starts rosout, which nobody looks at, or
+        finds out ROS's version.
+        """
+        etc = self.home / "etc"
+        etc.mkdir(exist_ok=True)
+        (etc / "roscore.xml").write_text("<launch/>\n")
+        uri, master = self._master(tries=6)
         try:
-            yield {"ROS_MASTER_URI": uri}
+            yield {"ROS_MASTER_URI": uri, "ROS_ETC_DIR": str(etc)}
         finally:
-            end(core)
+            end(master)
 
     def start_with_master(self, command: str, folder: Path, log: Path, **more: str) -> "Started":
         """Starts a command that brings up a master of its own on $ROS_MASTER_URI, and waits for that master; tries
@@ -129,20 +160,22 @@ class Ros:
             end(process)
         raise AssertionError(f"{command}: no master:\n{log.read_text(errors='replace')}")
 
-    def _roscore(self, tries: int) -> "Tuple[str, subprocess.Popen[bytes]]":
-        """Its address and its process. It ends by itself where its port is somebody else's by now, and where its master
-        takes more than ten seconds, as on a busy machine: then there is another one, on another port."""
+    def _master(self, tries: int) -> "Tuple[str, subprocess.Popen[bytes]]":
+        """Its address and its process. It ends by itself where its port is somebody else's by now: then there is
+        another one, on another port."""
         port = free_port()
-        uri, log = f"http://127.0.0.1:{port}", self.home / f"roscore-{port}.log"
-        core = self.start(f"exec roscore -p {port}", self.home, log, ROS_MASTER_URI=uri)
+        uri, log = f"http://127.0.0.1:{port}", self.home / f"master-{port}.log"
+        master = self.start(f"exec rosmaster --core -p {port}", self.home, log, ROS_MASTER_URI=uri)
         deadline = time.monotonic() + PATIENCE / 2
-        while time.monotonic() < deadline and core.poll() is None:
-            if _has_run_id(uri):
-                return uri, core
-            time.sleep(0.05)
-        end(core)
-        assert tries > 1, f"roscore does not come up: {log.read_text(errors='replace')}"
-        return self._roscore(tries - 1)
+        while time.monotonic() < deadline and master.poll() is None:
+            with contextlib.suppress(*NO_ANSWER), xmlrpc.client.ServerProxy(uri, transport=_Hasty()) as found:
+                if found.getPid("/test")[2] == master.pid:  # type: ignore[index]
+                    found.setParam("/test", "/run_id", str(uuid.uuid1()))
+                    return uri, master
+            time.sleep(0.02)
+        end(master)
+        assert tries > 1, f"no master: {log.read_text(errors='replace')}"
+        return self._master(tries - 1)
 
 
 def free_port() -> int:
@@ -168,7 +201,7 @@ def _has_run_id(uri: str) -> bool:
     """True as soon as the master at this address is one that launched nodes can register with."""
     try:
         code, _, found = xmlrpc.client.ServerProxy(uri, transport=_Hasty()).hasParam("/test", "/run_id")
-    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+    except NO_ANSWER:
         return False
     return bool(code == 1 and found)
 

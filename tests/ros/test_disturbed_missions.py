@@ -23,8 +23,8 @@ RESUME = "'{robot}:_resume_'"
 
 
 @pytest.fixture(scope="module")
-def workspace(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return robots_workspace(ros, tmp_path_factory.mktemp("disturbed") / "ws", "thesis/scenario_1", tuple(TARGETS))
+def workspace(ros: Ros) -> Path:
+    return robots_workspace(ros, "thesis/scenario_1", tuple(TARGETS))
 
 
 class Person:

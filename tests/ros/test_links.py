@@ -54,7 +54,8 @@ class Nodes:
         there = {"ROS_MASTER_URI": f"http://127.0.0.1:{self.port}", "PYTHONUNBUFFERED": "1"}
         if self._rooms is not None:
             there.update(self._rooms.variables(machine, "master"))
-            command = self._rooms.at(machine, command)
+            source, found, rest = command.partition("setup.bash; ")
+            command = f"{source}{found}{self._rooms.at(machine, rest)}" if found else self._rooms.at(machine, command)
         self.running[name] = self._ros.start(command, self._workspace, self._logs / name, **there)
 
     def core(self, name: str = "roscore") -> None:
@@ -178,7 +179,7 @@ def play(made: Nodes, unit: float, options: str = "") -> None:
     for node, room in MACHINES.items():
         package = "UI" if node == "simulator" else node
         told = {"observer": f"_time_unit:={unit} _journal:=off {options}", "UI": f"--autostart --wait {PATIENCE}"}
-        made.start(node, f"source devel/setup.bash; exec rosrun {package} {node} {told.get(node, '')}", room)
+        made.start(node, f"source devel/setup.bash; exec devel/lib/{package}/{node} {told.get(node, '')}", room)
 
 
 @needs_namespaces
@@ -200,8 +201,8 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
         assert ("controller_bot1 is silent" in made.log("observer")) is (seconds > silence)
 
 
-OTHERS = {"recorder": "UI recorder", "sim_clock": "UI sim_clock", "reader": "pursue_reader pursue_reader",
-          "manager": "communication_manager communication_manager _port:=0"}
+OTHERS = {"recorder": "UI/recorder", "sim_clock": "UI/sim_clock", "reader": "pursue_reader/pursue_reader",
+          "manager": "communication_manager/communication_manager _port:=0"}
 
 
 @pytest.mark.parametrize("way, reason", [
@@ -215,9 +216,8 @@ def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
 ) -> None:
     with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
         play(made, 3.0)
-        home = f"export ROS_HOME={tmp_path}/home; source devel/setup.bash; exec rosrun"
-        for name, command in OTHERS.items():
-            made.start(name, f"{home} {command}")
+        for name, program in OTHERS.items():
+            made.start(name, f"source devel/setup.bash; export ROS_HOME={tmp_path}/home; exec devel/lib/{program}")
         names = (*MACHINES, *OTHERS)
         until(lambda: "bot1_c2b by bot1" in made.log("observer"), made.logs)
         until(lambda: set(names) - {"reader", "manager"} <= registered(made), made.logs)

@@ -34,10 +34,13 @@ def test_a_parameter_that_cannot_be_is_refused_with_status_3(
 ) -> None:
     workspace = built("thesis/scenario_1")
     home = {"ROS_HOME": str(tmp_path / "home")}
-    for number, (command, message) in enumerate(WRONG.items()):
-        with ros.master() as there, contextlib.ExitStack() as cleanup:  # parameters stay with their master
+    with ros.master() as there, contextlib.ExitStack() as cleanup:
+        for number, (command, message) in enumerate(WRONG.items()):
+            package, program, parameter = command.split()
+            # Parameters stay with their master: each node has a name of its own.
+            line = f"exec devel/lib/{package}/{program} {parameter} __name:=node{number}"
             log = tmp_path / str(number)
-            node = ros.start(f"source devel/setup.bash; exec rosrun {command}", workspace, log, **there, **home)
+            node = ros.start(f"source devel/setup.bash; {line}", workspace, log, **there, **home)
             cleanup.callback(end, node)
             assert node.wait(PATIENCE) == 3, (command, log.read_text())
             assert message in log.read_text() and "Traceback" not in log.read_text(), (command, log.read_text())

@@ -16,8 +16,8 @@ pytestmark = pytest.mark.ros
 
 
 @pytest.fixture(scope="module")
-def workspace(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return robots_workspace(ros, tmp_path_factory.mktemp("robots") / "ws", "thesis/scenario_1", ("bot1", "bot2"))
+def workspace(ros: Ros) -> Path:
+    return robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
 
 
 def test_action_goals_a_failure_on_the_way_and_results_that_come_twice(
@@ -86,7 +86,7 @@ def test_a_robot_that_connects_late_is_reported_and_is_called_back_when_its_cont
         controller, log = start(command, tmp_path / "controller"), tmp_path / "controller"
         holding = start(told["holding"], tmp_path / "holding")
         robots = Robots(ros, workspace, tmp_path, there)
-        cleanup.callback(end, robots.process)
+        cleanup.callback(robots.end)
         wait_for(lambda: "bot1/amcl_pose" in ros.run("rostopic list", workspace, **there).stdout, log, "no robots")
         assert "bot1 goes to b" not in log.read_text() and robots.heard("bot1") == [], "nobody sets out in a hold"
         end(holding)
@@ -127,7 +127,7 @@ def test_a_robot_that_a_person_sends_elsewhere_is_held_until_the_person_lets_it_
         wait_for(lambda: robots.at("bot1") == (-7.0, 7.0), log, "it does not go where the person sends it")
         time.sleep(3.0)
         assert robots.heard("bot1") == ["goal b", "goal -7.00"], "it does not leave by itself"
-        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        robots.publish("pursue/events", "std_msgs/String", "bot1:_resume_")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     well(log.read_text())
     assert robots.heard("bot1") == ["goal b", "goal -7.00", "goal b", "action bot1_inb"]
@@ -144,7 +144,7 @@ def test_a_cancelled_goal_holds_the_robot_and_does_not_start_again(
         wait_for(lambda: "the mission holds: bot1 on its way to b: preempted" in log.read_text(), log, "no hold")
         time.sleep(3.0)
         assert robots.heard("bot1") == ["goal b", "cancel"]
-        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        robots.publish("pursue/events", "std_msgs/String", "bot1:_resume_")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     well(log.read_text())
     assert robots.heard("bot1") == ["goal b", "cancel", "goal b", "action bot1_inb"]
@@ -164,7 +164,7 @@ def test_what_comes_while_move_base_recovers_is_answered_later(
             pose = "{header: {frame_id: map}, pose: {position: {x: -7.0, y: 7.0}, orientation: {w: 1.0}}}"
             robots.publish("bot1/move_base_simple/goal", "geometry_msgs/PoseStamped", pose)
         wait_for(lambda: "the mission holds: bot1 on its way to b: preempted" in log.read_text(), log, "no hold")
-        robots.publish("pursue/events", "std_msgs/String", "'bot1:_resume_'")
+        robots.publish("pursue/events", "std_msgs/String", "bot1:_resume_")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     well(log.read_text())
     between = ["cancel"] if what == "cancel" else ["goal -7.00"]
@@ -259,9 +259,8 @@ def test_settings_that_cannot_be_end_the_controller_with_status_3(
 # Collaborative events -------------------------------------------------------------------------------------------------
 
 
-def test_a_partner_gets_the_event_once(ros: Ros, tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
-    folder = tmp_path_factory.mktemp("partners") / "ws"
-    pair = robots_workspace(ros, folder, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
+def test_a_partner_gets_the_event_once(ros: Ros, tmp_path: Path) -> None:
+    pair = robots_workspace(ros, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
     with playing(ros, pair, tmp_path, "goals:=action ends:=result") as (robots, log, mission):
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
@@ -270,11 +269,8 @@ def test_a_partner_gets_the_event_once(ros: Ros, tmp_path_factory: pytest.TempPa
     assert robots.actions("bot1") == ["bot1_inb at b"]
 
 
-def test_a_partner_that_was_taken_away_returns_before_the_event(
-    ros: Ros, tmp_path_factory: pytest.TempPathFactory, tmp_path: Path
-) -> None:
-    folder = tmp_path_factory.mktemp("partners") / "ws"
-    pair = robots_workspace(ros, folder, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
+def test_a_partner_that_was_taken_away_returns_before_the_event(ros: Ros, tmp_path: Path) -> None:
+    pair = robots_workspace(ros, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
     arguments = "goals:=action ends:=result on_uncovered:=warn"
     with playing(ros, pair, tmp_path, arguments, bot1={"acts": 8.0}) as (robots, log, mission):
         wait_for(lambda: "bot3_going_c_to_a2a" in log.read_text(), log, "bot3 has not arrived")

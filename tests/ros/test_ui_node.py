@@ -47,8 +47,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def where(ros: Ros, built: Callable[..., Path]) -> Iterator[Dict[str, str]]:
     """The environment of a roscore of our own, with the messages of a workspace."""
     names = ("PYTHONPATH", "PATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")
-    shown = ros.run("source devel/setup.bash; env", built("thesis/scenario_1"))
-    there = dict(line.split("=", 1) for line in shown.stdout.splitlines() if line.split("=", 1)[0] in names)
+    sourced = ros.sourced(built("thesis/scenario_1") / "devel" / "setup.bash")
+    there = {name: sourced[name] for name in names}
     with ros.master() as master:
         home = str(ros.home)
         yield {**ros.environment, **there, **master, "ROS_HOSTNAME": "localhost", "ROS_HOME": home}
