@@ -5,7 +5,20 @@ Clocks, bounds and delays are in time units, stamps in seconds of ROS time.
 
 from __future__ import annotations
 
-from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, NamedTuple, Optional, Tuple, TypeVar
+from typing import (
+    Any,
+    Dict,
+    FrozenSet,
+    Generic,
+    Iterable,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    TypeVar,
+)
 
 from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
@@ -23,8 +36,8 @@ Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
 class StateTable(Generic[Payload]):
     """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are.
 
-    Entries may name different sets. Those that apply in one state are meant to name the same: nothing else matters
-    there. `names`: the automata and variables that any entry names.
+    Entries may name different sets, and several may apply in one state: each then speaks of what matters to a part of
+    the strategy. `names`: the automata and variables that any entry names.
     """
 
     def __init__(self, entries: Iterable[Tuple[Mapping[str, object], Payload]]) -> None:
@@ -45,7 +58,11 @@ class StateTable(Generic[Payload]):
 
     def find(self, state: SystemState) -> List[Payload]:
         """What was entered for this state, in order of entry."""
-        return [payload for names, parts in self.applying(state) for payload in self._tables[names][parts]]
+        return [payload for entry in self.applying(state) for payload in self.entered(entry)]
+
+    def entered(self, entry: Entry) -> List[Payload]:
+        """What was entered for a state that `applying` returns, in order of entry."""
+        return self._tables[entry[0]][entry[1]]
 
     def applying(self, state: SystemState) -> List[Entry]:
         """The states of the entries that apply in this state, each once."""
@@ -57,22 +74,17 @@ class StateTable(Generic[Payload]):
         """The automata and variables that matter in this state: those that the entries name which apply."""
         return frozenset(name for names, _ in self.applying(state) for name in names)
 
-    def sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
-        """True if the event between two states changed nothing that matters to the entries which apply in both.
+    def standing(self, before: SystemState, state: SystemState) -> List[Entry]:
+        """Those of the entries that apply in both of two states in a row for which nothing has changed in between.
 
-        The same entries apply, so what they name is as it was, and no clock was reset but those of automata that they
-        do not name. Where no entry applies there is nothing that could stand: everything is new.
+        What they name is as it was, and no clock was reset but those of automata that they do not name.
         """
-        applying = self.applying(before)
-        if not applying or applying != self.applying(state):
-            return False
-        named = {name for names, _ in applying for name in names}
-        foreign = {automaton_clock(name) for name in state.locations if name not in named}
+        known = self.applying(before)
+        both = [entry for entry in self.applying(state) if entry in known]
         aged = before.clocks_at(state.stamp)
-        return all(
-            clock in foreign or abs(value - aged.get(clock, INFINITY)) < EPSILON
-            for clock, value in state.clocks.items()
-        )
+        reset = {clock for clock, value in state.clocks.items() if abs(value - aged.get(clock, INFINITY)) >= EPSILON}
+        owners = {automaton_clock(name): name for name in state.locations}
+        return [entry for entry in both if not any(c not in owners or owners[c] in entry[0] for c in reset)]
 
     def __len__(self) -> int:
         return sum(len(table) for table in self._tables.values())
@@ -140,34 +152,42 @@ class Strategy:
 
     def next_command(self, state: SystemState, now: float) -> Optional[Tuple[float, Command]]:
         """The first command that is due from `now` (seconds) on, and its moment; None: nothing until the next state."""
-        clocks = state.clocks_at(now)
-        margin = self.reaction / 4 if self.reaction else 0.02
-        moments = [(due(command.when, clocks, margin), command) for command in self.commands(state)]
-        later = [(now + delay * state.unit, command) for delay, command in moments if delay is not None]
-        return min(later, key=lambda moment: moment[0]) if later else None
+        return _first(self._due(self.commands(state), state, now))
 
-    def decided(self, state: SystemState, now: float) -> Optional[Tuple[float, Command]]:
-        """The first command that is due from the moment of the state on, and its moment, which may be past.
+    def since(
+        self, known: Mapping[Entry, SystemState], before: Optional[SystemState], state: SystemState
+    ) -> Dict[Entry, SystemState]:
+        """For each entry that applies in a state, the state in which was decided what stands in it.
+
+        `known`: the same for the state before. What was decided stands while the mission runs by the same plan, and an
+        event has changed nothing that matters to the entry. An entry that begins to apply is new.
+        """
+        follows = (state.seq - 1, state.plan, RUNNING, RUNNING)
+        standing: List[Entry] = []
+        if before is not None and state.event and (before.seq, before.plan, before.status, state.status) == follows:
+            standing = self._table.standing(before, state)
+        return {entry: known.get(entry, state) if entry in standing else state for entry in self._table.applying(state)}
+
+    def decided(self, since: Mapping[Entry, SystemState], now: float) -> Optional[Tuple[float, Command]]:
+        """The first command that is due from where it is decided on (see `since`), and its moment, which may be past.
 
         It stands until the reaction is over, also where time has left its zone before the state came here: the proof
         takes it for decided. A controller that is later than that takes the first one from `now` on.
         """
-        first = self.next_command(state, state.stamp)
+        return _first([moment for entry, state in since.items() for moment in self._decided(entry, state, now)])
+
+    def _decided(self, entry: Entry, state: SystemState, now: float) -> List[Tuple[float, Command]]:
+        commands = [command for commands in self._table.entered(entry) for command in commands]
+        first = _first(self._due(commands, state, state.stamp))
         if first is not None and now > first[0] + self.lateness(state) + EPSILON:
-            return self.next_command(state, now)
-        return first
+            first = _first(self._due(commands, state, now))
+        return [] if first is None else [first]
 
-    def sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
-        """True if what was decided in the first of two states stands in the second: the event between them changed
-        nothing that matters where this controller has commands.
-
-        Where it has none, nothing was decided: as soon as one of its states comes, that is new.
-        """
-        if state.seq != before.seq + 1 or not state.event or state.plan != before.plan:
-            return False
-        if (before.status, state.status) != (RUNNING, RUNNING):
-            return False
-        return self._table.sees_nothing_new(before, state)
+    def _due(self, commands: Iterable[Command], state: SystemState, now: float) -> List[Tuple[float, Command]]:
+        clocks = state.clocks_at(now)
+        margin = self.reaction / 4 if self.reaction else 0.02
+        moments = [(due(command.when, clocks, margin), command) for command in commands]
+        return [(now + delay * state.unit, command) for delay, command in moments if delay is not None]
 
     def lateness(self, state: SystemState) -> float:
         """Seconds by which a command may be sent after its moment: the reaction that the proof allows for."""
@@ -175,6 +195,10 @@ class Strategy:
 
     def __len__(self) -> int:
         return len(self._table)
+
+
+def _first(moments: Sequence[Tuple[float, Command]]) -> Optional[Tuple[float, Command]]:
+    return min(moments, key=lambda moment: moment[0], default=None)
 
 
 class Plans:

@@ -8,7 +8,7 @@ from typing import AbstractSet, List, Mapping, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
-from pursue_gen.play.state import GRAIN, PlayState, Setup, later
+from pursue_gen.play.state import GRAIN, PlayState, Setup, StandingDecision, later
 from pursue_gen.synthesis.game import JointMove, State, joint_moves
 from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
@@ -18,10 +18,11 @@ from pursue_gen.tga.part import clocks_of
 
 @dataclass(frozen=True)
 class Decision:
-    """The command of the strategy that is due first if nothing happens before, at a time since the start."""
+    """The command of a block (by its number) that is due first if nothing happens before, at a time since the start."""
 
     move: JointMove
     at: Fraction
+    number: int
     command: Command
 
 
@@ -46,20 +47,49 @@ class Advisor:
         self._blocks = Blocks(strategy)
 
     def decision(self, play: PlayState) -> Optional[Decision]:
-        """What the strategy decided before the last move, where that stands, else what it decides first after it; None:
-        it waits for what others do."""
-        found = self._blocks.find(self._named(play.entry.state))
-        if found is None:
-            return None
+        """What the strategy decided before the last move, where that stands, or decides first after it; None: it waits
+        for what others do."""
+        return min(self._decisions(play), key=lambda decision: decision.at, default=None)
+
+    def standing(self, before: PlayState, play: PlayState) -> Tuple[StandingDecision, ...]:
+        """What had been decided before a move, and stands after it: the same block holds, and no clock of an automaton
+        that it names was reset."""
+        network, game = self._setup.network, self._setup.game
+        aged = later(before.entry, play.since - before.since)
+        reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
+        touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
+        held = dict(self._holding(play))
+        return tuple(
+            StandingDecision(decision.number, decision.command, decision.at)
+            for decision in self._decisions(before)
+            if decision.at <= play.since and decision.number in held
+            if touched.isdisjoint(name for name, _ in held[decision.number].state.locations)
+        )
+
+    def holdings(self, play: PlayState) -> List[Holding]:
+        """What each block that holds says now, or said when it decided what stands; none: the strategy has no block for
+        this state."""
+        return [self._says(number, block, play) for number, block in self._holding(play)]
+
+    def _holding(self, play: PlayState) -> List[Tuple[int, Block]]:
+        return self._blocks.find_all(self._named(play.entry.state))
+
+    def _decisions(self, play: PlayState) -> List[Decision]:
+        """What each block that holds has decided or decides first."""
+        found = (self._decided(number, block, play) for number, block in self._holding(play))
+        return [decision for decision in found if decision is not None]
+
+    def _decided(self, number: int, block: Block, play: PlayState) -> Optional[Decision]:
         game, entry = self._setup.game, play.entry
-        named = {name for name, _ in found[1].state.locations}
+        named = {name for name, _ in block.state.locations}
         moves = {self._keys(move, named): move for move in joint_moves(game, entry.state) if move.controllable}
-        if play.standing is not None:
-            command, at = play.standing
-            return Decision(moves[_keys_of(command)], at, command) if _keys_of(command) in moves else None
+        for known in play.standing:
+            if known.number == number:
+                move = moves.get(_keys_of(known.command))
+                return None if move is None else Decision(move, known.at, number, known.command)
         clocks = dict(zip(game.clocks, entry.clocks))
         best: Optional[Decision] = None
-        for command in found[1].commands:
+        for command in block.commands:
             move = moves.get(_keys_of(command))
             if move is None:
                 continue
@@ -68,29 +98,11 @@ class Advisor:
                 within = span(zone, clocks)
                 delay = None if within is None else _both(within, open_).earliest(GRAIN)
                 if delay is not None and (best is None or play.since + delay < best.at):
-                    best = Decision(move, play.since + delay, command)
+                    best = Decision(move, play.since + delay, number, command)
         return best
 
-    def sees_nothing_new(self, before: PlayState, play: PlayState) -> bool:
-        """True if what was decided before a move stands after it: the same block holds, and no clock of an automaton
-        that it names was reset."""
-        found, there = (self._blocks.find(self._named(each.entry.state)) for each in (before, play))
-        if found is None or found != there:
-            return False
-        named = {name for name, _ in found[1].state.locations}
-        network, game = self._setup.network, self._setup.game
-        clocks = {clock for automaton in network.automata if automaton.name in named for clock in clocks_of(automaton)}
-        aged = later(before.entry, play.since - before.since)
-        was, now = (dict(zip(game.clocks, entry.clocks)) for entry in (aged, play.entry))
-        return all(was[clock] == now[clock] for clock in clocks)
-
-    def holding(self, play: PlayState) -> Optional[Holding]:
-        """What the strategy says now, or said when it decided what stands; None: it has no block for this state."""
-        found = self._blocks.find(self._named(play.entry.state))
-        if found is None:
-            return None
-        number, block = found
-        moment = play.now if play.standing is None else play.standing[1]
+    def _says(self, number: int, block: Block, play: PlayState) -> Holding:
+        moment = next((known.at for known in play.standing if known.number == number), play.now)
         clocks = dict(zip(self._setup.game.clocks, later(play.entry, moment - play.since).clocks))
         zones: List[Tuple[Optional[Command], Zone]] = [(None, zone) for zone in block.wait]
         zones += [(command, zone) for command in block.commands for zone in command.zones]

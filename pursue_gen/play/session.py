@@ -14,6 +14,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.wording import objective_words
+from pursue_gen.play.advice import Holding
 from pursue_gen.play.counter import CounterPlay
 from pursue_gen.play.saving import save
 from pursue_gen.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
@@ -279,17 +280,23 @@ def _redo(session: Session) -> Reply:
 
 
 def _why(session: Session) -> Sequence[str]:
-    game, setup = session.game, session.setup
+    game = session.game
     if isinstance(game, CounterPlay):
         text = "There is no strategy for the robots: whatever they do, the others can answer."
         if game.horizon is not None:
             return (text, f"They will have lost by {game.horizon} at the latest.")
         return (text, "After each step of the others the solver still finds the game lost for the robots.")
-    holding = game.advisor.holding(session.play)
-    if holding is None or holding.zone is None:
-        return ("The game is over here: the strategy has nothing more to say.",)
-    lines = [f"Block {holding.number} of {game.advisor.size} of the strategy holds here."]
-    says = "to wait"
+    holdings = game.advisor.holdings(session.play)
+    lines = [line for holding in holdings for line in _block_texts(session, holding, game.advisor.size)]
+    return lines or ("The game is over here: the strategy has nothing more to say.",)
+
+
+def _block_texts(session: Session, holding: Holding, size: int) -> List[str]:
+    """What a block says; nothing where it does not know this point."""
+    if holding.zone is None:
+        return []
+    setup, says = session.setup, "to wait"
+    lines = [f"Block {holding.number} of {size} of the strategy holds here."]
     if holding.command is not None:
         first = holding.command.moves[0]
         said = session.words.order(first.automaton, first.edge)

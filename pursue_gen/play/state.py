@@ -95,11 +95,20 @@ class PlannedMove:
 
 
 @dataclass(frozen=True)
+class StandingDecision:
+    """What the block of this number (from 1) has decided, and when (time units since the start)."""
+
+    number: int
+    command: Command
+    at: Fraction
+
+
+@dataclass(frozen=True)
 class PlayState:
     """`entry` is the position at the time `since`, when the last move was made; now it is `now`.
 
-    `standing`: what the strategy had decided before that move, and when (time units since the start), if the move
-    changed nothing that matters to it; None: it decides anew at `since`.
+    `standing`: what blocks of the strategy had decided before that move, if it changed nothing that matters to them;
+    the others decide anew at `since`.
     """
 
     entry: Position
@@ -108,7 +117,7 @@ class PlayState:
     status: str = RUNNING
     deeds: Tuple[PlayedMove, ...] = ()
     plans: Tuple[PlannedMove, ...] = ()
-    standing: Optional[Tuple[Command, Fraction]] = None
+    standing: Tuple[StandingDecision, ...] = ()
 
     @property
     def position(self) -> Position:

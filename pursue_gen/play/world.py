@@ -102,10 +102,9 @@ class StrategyPlay:
 
     def _after(self, before: PlayState, play: PlayState) -> PlayState:
         """The play after a move, with what had been decided before it where that stands."""
-        decided = self.advisor.decision(before)
-        if decided is None or decided.at > play.since or not self.advisor.sees_nothing_new(before, play):
-            return play
-        return replace(play, standing=(decided.command, decided.at))
+        return play if self.advisor.decision(before) is None else replace(
+            play, standing=self.advisor.standing(before, play)
+        )
 
     def strategy_event(self, play: PlayState) -> Optional[Event]:
         """What the strategy does next, if nothing else happens before."""

@@ -10,7 +10,7 @@ from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import with_missing
 from pursue_gen.replay.moves import Move, Moves, after, place_of
-from pursue_gen.replay.orders import Orders, in_time, of_plan
+from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
@@ -21,7 +21,7 @@ from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemSt
 @dataclass(frozen=True)
 class ReplayedStep:
     """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
-    recorded). `since`: the first state before it of which all that was decided there still stood."""
+    recorded). `since`: the first state before it of which what was decided there for the mover still stood."""
 
     before: SystemState
     state: SystemState
@@ -126,7 +126,7 @@ class _Checker:
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
         self._zeros: Dict[str, float] = {}
-        self._since: Optional[SystemState] = None
+        self._since: Dict[Entry, SystemState] = {}  # in which was decided what stands (else: in the last one)
 
     def run(self) -> None:
         """The states one by one."""
@@ -164,11 +164,11 @@ class _Checker:
 
     def _resume(self, state: SystemState) -> None:
         """Clocks are believed as they are here."""
-        self._since = state
+        self._since = {}
         self._zeros = {clock: state.stamp - value * state.unit for clock, value in state.clocks.items()}
 
     def _started(self, state: SystemState) -> None:
-        self._zeros, self._since = dict.fromkeys(self.moves.network.clocks, state.stamp), state
+        self._zeros, self._since = dict.fromkeys(self.moves.network.clocks, state.stamp), {}
         self._clocks(state)
 
     def _again(self, before: SystemState, state: SystemState) -> None:
@@ -191,11 +191,11 @@ class _Checker:
         if state.stamp < before.stamp - EXACT:
             self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
         move = self._move(before, state)
-        since, self._since = self._since, state
+        since, self._since = self._since, {}
         if move is not None:
-            since = before if since is None else since
-            self.steps.append(ReplayedStep(before, state, move, since))
-            self._since = state if self._is_seen(before, state, move) else since
+            decided = max(since_for(move[0][0], since, before), key=lambda each: each.seq)
+            self.steps.append(ReplayedStep(before, state, move, decided))
+            self._since = self._standing(before, state, move, since)
             self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))
         elif self._turned(before, state):
             self.turns.append((before, state, "", False))
@@ -216,12 +216,14 @@ class _Checker:
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == place_of(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
 
-    def _is_seen(self, before: SystemState, state: SystemState, move: Move) -> bool:
-        """True unless what was decided before the move stands after it."""
-        if (before.status, before.plan) != (RUNNING, state.plan) or state.status != RUNNING:
-            return True
+    def _standing(
+        self, before: SystemState, state: SystemState, move: Move, since: Mapping[Entry, SystemState]
+    ) -> Dict[Entry, SystemState]:
+        """For each block that holds after a move the state in which was decided what stands."""
         orders = self.orders.get(state.plan)
-        return orders is None or not orders.stands(move, place_of(before), self.moves)
+        if orders is None or (before.status, before.plan, state.status) != (RUNNING, state.plan, RUNNING):
+            return {}
+        return orders.after(move, place_of(before), self.moves, since, before, state)
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
         """True where robots whose way was blocked turn round with a new plan, as the only change."""
@@ -299,8 +301,9 @@ class _Checker:
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING:
                 continue
-            cover = orders.cover.find(place_of(state))
-            if not in_time((zone for zones in cover for zone in zones), state.clocks, 0.0, self._tolerance):
+            cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state))]
+            parts = ([zone for zones in part for zone in zones] for part in cover)
+            if not cover or not all(in_time(zones, state.clocks, 0.0, self._tolerance) for zones in parts):
                 what = "at these clocks" if cover else "in this state"
                 text = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
                 found.append(Finding(WORLD, "uncovered", state.seq, text))

@@ -10,12 +10,15 @@ from typing import Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tupl
 
 from pursue_gen.replay.beginnings import EXACT
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after, place_of
-from pursue_gen.replay.orders import Orders
+from pursue_gen.replay.orders import Entry, Orders, since_for
 from pursue_gen.replay.record import RecordedWord
 from pursue_runtime.state import LIVE, RUNNING, SystemState
 
 AROUND = 0.25
 """Seconds by which the recorder's clock may be beside the observer's."""
+
+Since = Mapping[Entry, int]
+"""For blocks that hold in a state the number of the first state of which what they decided stands; else: its own."""
 
 LONGEST = 5
 """The most states that are looked for in one gap."""
@@ -38,20 +41,20 @@ def with_missing(
     `orders`: the strategies by the number of their plan, as far as they are known.
     """
     found: List[SystemState] = []
-    since = 0  # the number of the first state of which all that was decided there stands
+    since: Since = {}
     for state in states:
+        plays = _Plays(moves, orders.get(state.plan))
         gap = [state]
         if found and found[-1].seq + 1 < state.seq <= found[-1].seq + LONGEST + 1:
-            gap = [*_missing(found[-1], since, state, words, _Plays(moves, orders.get(state.plan))), state]
+            gap = [*_missing(found[-1], since, state, words, plays), state]
         for each in gap:
-            plays = _Plays(moves, orders.get(each.plan))
-            since = plays.since_in(each, found[-1], since) if found else each.seq
+            since = plays.since_in(each, found[-1], since) if found else {}
             found.append(each)
     return found
 
 
 def _missing(
-    before: SystemState, since: int, state: SystemState, words: Sequence[RecordedWord], plays: _Plays
+    before: SystemState, since: Since, state: SystemState, words: Sequence[RecordedWord], plays: _Plays
 ) -> List[SystemState]:
     """The states between these two; none where no play of the words fits."""
     if before.status not in LIVE or before.plan != state.plan or not plays.moves.knows(place_of(before)):
@@ -71,7 +74,7 @@ class _Plays:
         self.moves, self._orders = moves, orders
 
     def to(
-        self, state: SystemState, place: DiscreteState, seq: int, since: int, words: Sequence[RecordedWord]
+        self, state: SystemState, place: DiscreteState, seq: int, since: Since, words: Sequence[RecordedWord]
     ) -> Iterator[List[_Step]]:
         """The plays of these words, in their order, that lead from the place of this number to the state."""
         if seq == state.seq:
@@ -79,28 +82,28 @@ class _Plays:
                 yield []
             return
         for number, word in enumerate(words):
-            counts = word.seq is None or since <= word.seq <= seq
+            counts = word.seq is None or max(since_for(word.agent, since, seq)) <= word.seq <= seq
             if not counts or (seq + 1 == state.seq and word.event != state.event):
                 continue
             for move in self.moves.of(place, word.event, word.agent):
                 there, resets = after(move, place)
-                first = since if self._stands(move, place) else seq + 1
-                for others in self.to(state, there, seq + 1, first, words[number + 1 :]):
+                for others in self.to(state, there, seq + 1, self._after(move, place, since, seq), words[number + 1 :]):
                     yield [_Step(word, move[0][0], there, resets), *others]
 
-    def since_in(self, state: SystemState, before: SystemState, since: int) -> int:
-        """The number of the first state of which all that was decided there stands in this one."""
+    def since_in(self, state: SystemState, before: SystemState, since: Since) -> Since:
+        """For each block that holds in this state the number of the state in which was decided what stands."""
         if state.seq == before.seq:
             return since
         place, known = place_of(before), (RUNNING, RUNNING, state.plan, before.seq + 1)
         if (before.status, state.status, before.plan, state.seq) != known or not self.moves.knows(place):
-            return state.seq
-        found = self.moves.of(place, state.event, state.agent)
-        stands = any(self._stands(move, place) for move in found if after(move, place)[0] == place_of(state))
-        return since if stands else state.seq
+            return {}
+        for move in self.moves.of(place, state.event, state.agent):
+            if after(move, place)[0] == place_of(state):
+                return self._after(move, place, since, before.seq)
+        return {}
 
-    def _stands(self, move: Move, place: DiscreteState) -> bool:
-        return self._orders is not None and self._orders.stands(move, place, self.moves)
+    def _after(self, move: Move, place: DiscreteState, since: Since, seq: int) -> Since:
+        return {} if self._orders is None else self._orders.after(move, place, self.moves, since, seq, seq + 1)
 
 
 def _states(before: SystemState, state: SystemState, steps: Sequence[_Step]) -> List[SystemState]:

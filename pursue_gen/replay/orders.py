@@ -15,6 +15,7 @@ from pursue_runtime.bounded import exact
 
 EPSILON = 1e-6
 Payload = TypeVar("Payload")
+Since = TypeVar("Since")
 
 Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
 """The automata and variables that an entry names, and the location or value of each."""
@@ -42,7 +43,11 @@ class PlanTable(Generic[Payload]):
 
     def find(self, place: DiscreteState) -> List[Payload]:
         """What was put there."""
-        return [payload for names, parts in self.holding(place) for payload in self._tables[names][parts]]
+        return [payload for entry in self.holding(place) for payload in self.entered(entry)]
+
+    def entered(self, entry: Entry) -> List[Payload]:
+        """What was put where an entry holds."""
+        return self._tables[entry[0]][entry[1]]
 
     def holding(self, place: DiscreteState) -> List[Entry]:
         """What the entries name that hold there, each once."""
@@ -61,14 +66,27 @@ class Orders:
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
 
-    def stands(self, move: Move, place: DiscreteState, moves: Moves) -> bool:
-        """True where what was decided before the move stands after it: the same blocks hold, and the move resets no
-        clock of an automaton that they name."""
+    def after(
+        self, move: Move, place: DiscreteState, moves: Moves, since: Mapping[Entry, Since], before: Since, now: Since
+    ) -> Dict[Entry, Since]:
+        """For each block that holds after a move, since when what it decides stands: as before it (`since`; `before`
+        where that says nothing), or from `now` on.
+
+        It stands if the block held before as well, and the move resets no clock of an automaton that it names.
+        """
         there, resets = after(move, place)
-        holding = self.cover.holding(place)
-        if not holding or holding != self.cover.holding(there):
-            return False
-        return not any(moves.clocks.get(name, set()).intersection(resets) for names, _ in holding for name in names)
+        touched = {name for name, clocks in moves.clocks.items() if clocks.intersection(resets)}
+        held = self.cover.holding(place)
+        return {
+            block: since.get(block, before) if block in held and touched.isdisjoint(block[0]) else now
+            for block in self.cover.holding(there)
+        }
+
+
+def since_for(agent: str, since: Mapping[Entry, Since], now: Since) -> List[Since]:
+    """Since when what the blocks decide that may command the agent stands: those that name it, else all; `now` where
+    none holds."""
+    return [value for (names, _), value in since.items() if agent in names] or list(since.values()) or [now]
 
 
 def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:

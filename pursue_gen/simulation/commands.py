@@ -42,6 +42,10 @@ class ZonedCommand(NamedTuple):
         return min((first for first, last in windows if last - first > 3 * EPSILON), default=None)
 
 
+Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
+"""A block: the automata and variables that it names, and the location or value of each."""
+
+
 class Commands:
     """The commands of one plan, by discrete state (names of automata and variables to locations and values)."""
 
@@ -52,18 +56,15 @@ class Commands:
             table = self._tables.setdefault(names, {})
             table.setdefault(tuple(state[name] for name in names), []).append(held)
 
-    def find(self, state: Mapping[str, str], agent: str, event: str) -> List[ZonedCommand]:
-        """The commands by which the agent does the event in this state."""
-        return [held for held in self.all_in(state) if (held.agent, held.event) == (agent, event)]
-
-    def all_in(self, state: Mapping[str, str]) -> List[ZonedCommand]:
-        """All commands in this state."""
-        return [held for names, parts in self.holding(state) for held in self._tables[names][parts]]
-
-    def holding(self, state: Mapping[str, str]) -> List[Tuple[Tuple[str, ...], Tuple[str, ...]]]:
-        """What the blocks with commands name that hold in this state, and the locations and values of that."""
+    def holding(self, state: Mapping[str, str]) -> List[Entry]:
+        """The blocks with commands that hold in this state."""
         named = ((names, tuple(state.get(name, "") for name in names)) for names in self._tables)
         return [(names, parts) for names, parts in named if parts in self._tables[names]]
+
+    def held_by(self, block: Entry, agent: str = "", event: str = "") -> List[ZonedCommand]:
+        """The commands of a block; with an agent, those by which it does the event."""
+        held = self._tables[block[0]][block[1]]
+        return [command for command in held if not agent or (command.agent, command.event) == (agent, event)]
 
 
 def commands_of(strategy: Strategy) -> Commands:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
-from pursue_gen.simulation.commands import EPSILON, Commands, commands_in
+from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
 from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
@@ -44,7 +44,8 @@ class Judge:
         self._plans: Dict[int, Commands] = {0: commands}
         self._reaction, self._faults, self._offset = reaction, faults, offset
         self._before: Optional[SystemState] = None
-        self._entered = self._decided_since = 0.0
+        self._entered: Dict[Entry, float] = {}  # when what each block that holds decides was decided at the earliest
+        self._moved = self._decided_since = 0.0
         self._zeros: Dict[str, float] = {}
         self._ordered: Set[Tuple[str, int]] = set()
         self.lateness = 0.0
@@ -87,16 +88,19 @@ class Judge:
     def note_lateness(self, state: SystemState, now: float) -> None:
         """Takes that nothing has happened in the state until now. While a mission holds its commands are late, too."""
         plan = self._plans.get(state.plan) if state.status in LIVE else None
+        if plan is None:
+            return
         clocks = {clock: (now - zero) / state.unit for clock, zero in self._zeros.items()}
-        stay = (now - self._decided_since) / state.unit
-        for command in plan.all_in(state.discrete()) if plan else ():
-            due = command.first_due(clocks, -stay, 0.0)
-            if due is not None and -due > self.lateness:
-                self.lateness, self.latest = -due, f"{command.event} in state {state.seq}"
+        for block in plan.holding(state.discrete()):
+            stay = (now - max(self._decided_since, self._entered.get(block, self._moved))) / state.unit
+            for command in plan.held_by(block):
+                due = command.first_due(clocks, -stay, 0.0)
+                if due is not None and -due > self.lateness:
+                    self.lateness, self.latest = -due, f"{command.event} in state {state.seq}"
 
     def _check_start(self, state: SystemState, now: float) -> None:
         self._zeros = dict.fromkeys(self._arena.network.clocks, now)
-        self._entered = self._decided_since = now
+        self._moved = self._decided_since = now
         if (state.seq, self._key(state)) != (1, self._arena.initial):
             self._problem(f"the mission starts with state {state.seq}, not where the network starts")
         self._check_clocks(state, now)
@@ -122,22 +126,24 @@ class Judge:
         target = move.moves[0].edge.target
         self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
-        if self._is_seen(before, state, move):
-            self._entered = self._decided_since = now
+        self._entered = self._standing(before, state, move, now)
+        self._moved = now
 
-    def _is_seen(self, before: SystemState, state: SystemState, move: JointMove) -> bool:
-        """True unless the blocks that hold are the same ones, and the move resets no clock of an automaton that they
-        name: then what was commanded still is."""
+    def _standing(self, before: SystemState, state: SystemState, move: JointMove, now: float) -> Dict[Entry, float]:
+        """For each block that holds now, since when: what it decided stands if it held before as well, and the move
+        resets no clock of an automaton that it names."""
         plan = self._plans.get(state.plan)
-        if plan is None or (before.status, state.status, before.plan) != ("running", "running", state.plan):
-            return True
-        holding = plan.holding(before.discrete())
-        if not holding or holding != plan.holding(state.discrete()):
-            return True
-        named = {name for names, _ in holding for name in names}
+        if plan is None:
+            return {}
         network = self._arena.network
         reset = {network.clocks[index - 1] for index in move.resets}
-        return any(reset & clocks_of(automaton) for automaton in network.automata if automaton.name in named)
+        touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
+        goes_on = (before.status, state.status, before.plan) == ("running", "running", state.plan)
+        held = plan.holding(before.discrete()) if goes_on else []
+        return {
+            block: self._entered.get(block, self._moved) if block in held and touched.isdisjoint(block[0]) else now
+            for block in plan.holding(state.discrete())
+        }
 
     def _off_model(self, move: JointMove, clocks: Mapping[str, float], what: str) -> None:
         guard = move.moves[0].edge.guard.clocks
@@ -163,14 +169,16 @@ class Judge:
         if plan is None:
             self._problem(f"plan {before.plan} is in force, which was never published")
             return
-        held = plan.find(before.discrete(), state.agent, state.event)
-        if not held:
+        held = {block: plan.held_by(block, state.agent, state.event) for block in plan.holding(before.discrete())}
+        if not any(held.values()):
             self._problem(f"wrong command: the strategy does not hold {what} there")
             return
-        stay = (now - self._entered) / state.unit
-        back = stay + self._offset if self._faults else min(stay, self._reaction)
-        if not any(command.due_between(clocks, -back, self._offset) for command in held):
-            self._problem(f"wrong command: {what} was not due there")
+        for block, commands in held.items():
+            stay = (now - self._entered.get(block, self._moved)) / state.unit
+            back = stay + self._offset if self._faults else min(stay, self._reaction)
+            if any(command.due_between(clocks, -back, self._offset) for command in commands):
+                return
+        self._problem(f"wrong command: {what} was not due there")
 
     def _check_clocks(self, state: SystemState, now: float) -> None:
         for clock, zero in self._zeros.items():

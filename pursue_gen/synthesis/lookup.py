@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
 
@@ -20,8 +20,14 @@ class Blocks:
             self._tables.setdefault(_names(block.state), {})[block.state] = number, block
 
     def find(self, state: DiscreteState) -> Optional[Tuple[int, Block]]:
-        """The number of the block (from 1) and the block; None where the strategy has none."""
+        """The number of the block (from 1) and the block, the first one if there are several; None where the strategy
+        has none."""
+        return next(iter(self.find_all(state)), None)
+
+    def find_all(self, state: DiscreteState) -> List[Tuple[int, Block]]:
+        """All of them: parts of a strategy that are played at the same time have a block each."""
         places, values = dict(state.locations), dict(state.values)
+        found: List[Tuple[int, Block]] = []
         for (automata, variables), table in self._tables.items():
             if not (places.keys() >= set(automata) and values.keys() >= set(variables)):
                 continue
@@ -29,8 +35,8 @@ class Blocks:
                 tuple((name, places[name]) for name in automata), tuple((name, values[name]) for name in variables)
             )
             if some in table:
-                return table[some]
-        return None
+                found.append(table[some])
+        return found
 
 
 def _names(state: DiscreteState) -> Names:

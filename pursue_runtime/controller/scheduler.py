@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Callable, List, NamedTuple, Optional, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.locations import action, action_of, is_movement, is_under_way
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, WON, SystemState, older, rewinds
-from pursue_runtime.strategy import Command, Plans, Strategy
+from pursue_runtime.strategy import Command, Entry, Plans, Strategy
 from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
 
@@ -36,7 +36,7 @@ class CommandScheduler:
         self.counts = dict.fromkeys(("taken", "sent", "sent_again", "too_late", "not_ours", "old"), 0)
         self._name = name
         self._agents = strategy.agents
-        self._since: Optional[SystemState] = None  # the state in which is decided what stands in the present one
+        self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._own = strategy
         self._plans = Plans(strategy)
         self._newest = 0
@@ -52,8 +52,9 @@ class CommandScheduler:
         self._plans.add(plan, strategy)
         self._newest = max(plan, self._newest)
         if self.state is not None and self.state.plan == plan and self.planned is None:
-            self._since = self.state
-            self._plan(self.state, now)
+            self._since = {}
+            self._look_for_what_stands(None, self.state)
+            self._plan(now)
         return self._receipt(plan)
 
     def repeated_receipt(self) -> Optional[Word]:
@@ -76,9 +77,8 @@ class CommandScheduler:
             self._plans, self._newest = Plans(self._own), 0
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
             return []  # the answer to a ping, or a heartbeat
-        self.is_new = before is None or self._since is None or not self._sees_nothing_new(before, state)
+        self.is_new = self._look_for_what_stands(before, state)
         if self.is_new:
-            self._since = state
             self.planned, self._patience, self._unanswered = None, None, 0
         self.joined = self._joined(before, state) if state.status in (*LIVE, WON) else []
         if state.status == WON:  # what won it, if that is done at once
@@ -86,7 +86,7 @@ class CommandScheduler:
         if state.status not in LIVE:
             return []
         if self.is_new:
-            self._plan(state, now)
+            self._plan(now)
         orders = self._begun(before, state)
         self.counts["taken"] += len(orders)
         return orders
@@ -96,17 +96,17 @@ class CommandScheduler:
 
         One that begins an action is not published unless `is_placed` is true of its agent.
         """
-        state, since = self.state, self._since
-        if state is None or since is None or state.status != RUNNING:
+        state = self.state
+        if state is None or state.status != RUNNING:
             return None
         self._patience = None
         strategy = self._plans.strategy_for(state)
         if strategy is None:
             return None
         if self.planned is None:  # the last word was not answered
-            self.planned = strategy.decided(since, now)
+            self.planned = strategy.decided(self._since, now)
         elif now > self.planned[0] + strategy.lateness(state) + EPSILON:
-            self.planned = strategy.decided(since, now)
+            self.planned = strategy.decided(self._since, now)
             self.counts["too_late"] += self.planned is None or self.planned[0] > now
         if self.planned is None or now < self.planned[0]:
             return None
@@ -120,14 +120,16 @@ class CommandScheduler:
         self._unanswered += 1
         return Word(command.agent, command.event, state.seq)
 
-    def _plan(self, state: SystemState, now: float) -> None:
+    def _plan(self, now: float) -> None:
         """Find the next command: none while the mission holds, or before the plan in force has arrived."""
-        strategy = self._plans.strategy_for(state) if state.status == RUNNING else None
-        self.planned = strategy.decided(state, now) if strategy else None
+        strategy = self._plans.strategy_for(self.state) if self.state and self.state.status == RUNNING else None
+        self.planned = strategy.decided(self._since, now) if strategy else None
 
-    def _sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
-        strategy = self._plans.strategy_for(state)
-        return strategy is not None and strategy.sees_nothing_new(before, state)
+    def _look_for_what_stands(self, before: Optional[SystemState], state: SystemState) -> bool:
+        """Find in which states is decided what stands in this one; return True unless all is as in the one before."""
+        strategy, known = self._plans.strategy_for(state), self._since
+        self._since = strategy.since(known, before, state) if strategy is not None else {}
+        return not known or known != self._since
 
     def _begun(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
         """Return what our agents have begun since the state before, even if states in between were missed."""

@@ -13,6 +13,7 @@ from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.ways import Ways
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
+from pursue_runtime.strategy import Entry
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,
@@ -67,7 +68,7 @@ class Mission:
     ) -> None:
         self.model, self.name = model, name
         self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
-        self._since = 0  # what was decided in the state of this number, or later, stands
+        self._since: Dict[Entry, int] = {}  # the number of the state in which was decided what stands (else: this one)
         self.counts = dict.fromkeys(COUNTED, 0)
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
@@ -152,7 +153,7 @@ class Mission:
             return self._on_plan_receipt(word.agent, word.seq, now)
         elif word.seq is not None and self.status == HOLDING:
             self._reject("held", f"{text} while the mission holds", level="info")
-        elif word.seq is not None and not self._is_current(word.seq):
+        elif word.seq is not None and not self._is_current(word):
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         else:
             moves = self._moves_of(word, now)
@@ -223,7 +224,7 @@ class Mission:
         """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
         state = adoptable(found, self.model, self._unit, self.plan)
         self._automata.adopt(state)
-        self.seq, self.status, self.reason, self._since = state.seq, state.status, state.reason, state.seq
+        self.seq, self.status, self.reason, self._since = state.seq, state.status, state.reason, {}
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
         self._early, self._warned = {}, False
@@ -245,7 +246,7 @@ class Mission:
             self._log("warn", f"{START} while the mission is {self.status}: ignored")
             return []
         self._automata.start(now)
-        self.status, self.seq, self._since = RUNNING, 1, 1
+        self.status, self.seq = RUNNING, 1
         moves = self._evaluate(now)
         return [self.state(now), *self._take(moves, now)]
 
@@ -292,13 +293,18 @@ class Mission:
         """Return the moves of an early command that is due now; one that another event has overtaken is dropped."""
         for word in [word for word, moment in self._early.items() if now >= moment - EPSILON * self._unit]:
             del self._early[word]
-            if word.seq is not None and self._is_current(word.seq) and self.status == RUNNING:
+            if self._is_current(word) and self.status == RUNNING:
                 return self.model.joint_move(position, word.event, word.agent)
         return None
 
-    def _is_current(self, seq: int) -> bool:
-        """Return True for the number of the state, or of an earlier one: what was decided there stands."""
-        return self._since <= seq <= self.seq
+    def _is_current(self, word: Word) -> bool:
+        """Return True for a command for the present state, or for an earlier one: what was decided there stands.
+
+        The entries that name the agent are those that may command it.
+        """
+        known = [(names, since) for (names, _), since in self._since.items()]
+        since = [since for names, since in known if word.agent in names] or [since for _, since in known]
+        return word.seq is not None and max(since, default=self.seq) <= word.seq <= self.seq
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
@@ -329,8 +335,7 @@ class Mission:
             self._log("info", f"state {self.seq}: {self._event} by {self._agent}")
             moves = self._evaluate(now, why)
             states.append(self.state(now))
-            if not self._sees_nothing_new(before, states[-1]):
-                self._since = self.seq
+            self._since = self._still_standing(before, states[-1])
         return states
 
     def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
@@ -359,7 +364,7 @@ class Mission:
 
     def _new_state(self, now: float) -> List[SystemState]:
         self.seq, self._shown = self.seq + 1, self.robots.revision()
-        self._since = self.seq
+        self._since = {}
         self._event, self._agent, self._commanded = "", "", False
         return [self.state(now)]
 
@@ -406,11 +411,15 @@ class Mission:
         named = self._cover.names_in(self.state(now)) or self._cover.names
         return not named or name in named
 
-    def _sees_nothing_new(self, before: SystemState, state: SystemState) -> bool:
-        """Return True if commands that were decided before a move stand after it, as controllers see it too."""
+    def _still_standing(self, before: SystemState, state: SystemState) -> Dict[Entry, int]:
+        """Return where was decided what stands after a move, for each entry that applies, as controllers see it too."""
         if self._cover is None or (before.status, state.status) != (RUNNING, RUNNING):
-            return False
-        return self._cover.sees_nothing_new(before, state)
+            return {}
+        standing = self._cover.standing(before, state)
+        return {
+            entry: self._since.get(entry, before.seq) if entry in standing else state.seq
+            for entry in self._cover.applying(state)
+        }
 
     @property
     def _cover_grace(self) -> float:

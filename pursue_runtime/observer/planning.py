@@ -183,13 +183,17 @@ class Planning:
 
 
 def covers(cover: Cover, position: Position, tolerance: float) -> bool:
-    """Return True if the plan has a decision at this position."""
-    return any(holds(zone, position.clocks, tolerance) for zone in _zones(cover, position))
+    """Return True if the plan has a decision at this position: each entry that applies has one."""
+    applying = _zones(cover, position)
+    return bool(applying) and all(any(holds(z, position.clocks, tolerance) for z in zones) for zones in applying)
 
 
 def stays(cover: Optional[Cover], position: Position, tolerance: float) -> float:
     """Return the time units until the covered zones are left if only time passes; negative: they have been left."""
-    return INFINITY if cover is None else last_moment(_zones(cover, position), position.clocks, tolerance)
+    if cover is None:
+        return INFINITY
+    moments = [last_moment(zones, position.clocks, tolerance) for zones in _zones(cover, position)]
+    return min(moments, default=-INFINITY)
 
 
 def uncovered(cover: Optional[Cover], position: Position, tolerance: float, patience: float) -> str:
@@ -204,8 +208,10 @@ def uncovered(cover: Optional[Cover], position: Position, tolerance: float, pati
     return f"no strategy {what}: {where}"
 
 
-def _zones(cover: Cover, position: Position) -> List[Zone]:
-    return [zone for zones in cover.find(_state(position)) for zone in zones]
+def _zones(cover: Cover, position: Position) -> List[List[Zone]]:
+    """Return the zones of each entry that applies."""
+    applying = cover.applying(_state(position))
+    return [[zone for zones in cover.entered(entry) for zone in zones] for entry in applying]
 
 
 def _state(position: Position) -> SystemState:

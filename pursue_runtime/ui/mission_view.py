@@ -12,7 +12,7 @@ from pursue_runtime.model import Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import ACTING, report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
-from pursue_runtime.strategy import Plans, Strategy
+from pursue_runtime.strategy import Entry, Plans, Strategy
 from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
@@ -131,7 +131,7 @@ class MissionView:
         self._model = model
         self._environment = player
         self._orders = None if orders is None else Plans(orders)
-        self._since: Optional[SystemState] = None  # the state in which is decided what stands in the present one
+        self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
         self._people = {automaton.name for automaton in model.of_kind("human")}
 
@@ -151,8 +151,9 @@ class MissionView:
         if self.state is not None and (older(state, self.state) or rewinds(state, self.state)):
             return []
         news = self.state is None or self.state.seq != state.seq or self.state.status != state.status
-        if news and not self._sees_nothing_new(self.state, state):
-            self._since = state
+        orders = self._orders.strategy_for(state) if self._orders is not None and news else None
+        if news:
+            self._since = orders.since(self._since, self.state, state) if orders is not None else {}
         self.state = state
         if self.start is None and state.seq > 0:
             # After a restart, the oldest clock still shows the time since the start.
@@ -221,17 +222,13 @@ class MissionView:
         return real + resend_timeout(count, self._model.reaction * self.state.unit)
 
     def _next_order(self, now: float) -> Optional[Tuple[float, Word]]:
-        if self._orders is None or self.state is None or self._since is None or self.state.status != RUNNING:
+        if self._orders is None or self.state is None or self.state.status != RUNNING:
             return None
         orders = self._orders.strategy_for(self.state)
         order = orders.decided(self._since, now) if orders else None
         if order is None:
             return None
         return order[0], Word(order[1].agent, order[1].event, self.state.seq)
-
-    def _sees_nothing_new(self, before: Optional[SystemState], state: SystemState) -> bool:
-        orders = self._orders.strategy_for(state) if self._orders is not None else None
-        return before is not None and orders is not None and orders.sees_nothing_new(before, state)
 
     def _lines(self, state: SystemState) -> List[str]:
         lines = []

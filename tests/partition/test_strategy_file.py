@@ -20,6 +20,7 @@ from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteSt
 from pursue_gen.tga.network import Edge, Sync
 from pursue_gen.tga.words import event_word
 from tests.partition.games import AGENTS, QUICK, game, random_strategies, zones
+from tests.two_stages import LOADED, solved_in_stages
 
 TENTH = Fraction(1, 10)
 
@@ -193,3 +194,20 @@ def test_zones_keep_their_meaning(zone: Zone) -> None:
 )
 def test_words_of_events(automaton: str, edge: Edge, word: str) -> None:
     assert event_word(automaton, edge) == word
+
+
+def test_blocks_of_each_stage_name_what_matters_in_it() -> None:
+    scenario, won = solved_in_stages()
+    subs = {sub.controller: sub for sub in partition(won.strategy, won.network, scenario.agents)}
+    robot = [entry["state"] for entry in strategy_data(subs["controller_bot"], won.reaction)["strategy"]]
+    every = [entry["state"] for entry in cover_data(won.strategy)["cover"]]
+    for states in (robot, every):
+        assert {tuple(state) for state in states} == {
+            ("bot", "reachObj", "order"), ("bot", "visitor", "reachObj", "order")
+        }  # fmt: skip
+        assert all(("visitor" in state) is (state["order"] == LOADED) for state in states)
+
+
+def test_the_position_of_an_agent_that_is_not_named_itself_stays_in_the_state() -> None:
+    block = Block(DiscreteState((("bot", "hub"),), (("Pbot", 2), ("Pvisitor", 3))), ((),), ())
+    assert cover_data(Strategy((block,)))["cover"][0]["state"] == {"bot": "hub", "Pvisitor": 3}

@@ -1,13 +1,13 @@
 """Strategies whose blocks name different automata: what was decided stands for controllers as long as for the observer.
 
-Both are compared with a plain reference: a decision of state k stands in state n if the same block holds in all states
-from k to n, and no automaton that it names has reset its clock in between.
+Both are compared with a plain reference: what a block decided in state k stands in state n if the block holds in all
+states from k to n, and no automaton that it names has reset its clock in between.
 """
 
 from __future__ import annotations
 
 from itertools import product
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,7 +18,10 @@ from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.strategy import StateTable, Strategy, read_cover
 
-AGENTS = ("bot1", "bot2", "guest1", "guest2")
+ROBOTS, GUESTS = ("bot1", "bot2"), ("guest1", "guest2")
+AGENTS = (*ROBOTS, *GUESTS)
+PARTS: List[List[Tuple[str, ...]]] = [[ROBOTS], [("bot1",), ("bot2",)], [("bot1",)]]
+"""Who may be commanded by the parts of a stage: one for both robots, one for each, one for the first alone."""
 STAGES = ("first", "second", "third")
 
 
@@ -65,31 +68,35 @@ WORDS = sorted({(a.name, e.word) for a in MODEL.automata for e in a.edges if e.s
 
 
 class Block(NamedTuple):
-    """What holds in one state: who is commanded ("": nobody), from which moment of whose clock on."""
+    """What holds in one state: who is commanded ("": nobody), as soon as the clock has that value."""
 
     state: Mapping[str, Any]
     agent: str
-    zone: str
+    clock: str
+    opens: int
 
 
 @st.composite
 def strategies_of_stages(draw: st.DrawFn) -> List[Block]:
-    """Blocks of up to three stages; those of a stage name its place of the rule and the same others."""
+    """Blocks of up to three stages, each with a part for each robot or one for both.
+
+    Those of a part name its place of the rule and the same others; no part names the robot of another one.
+    """
     blocks: List[Block] = []
     for stage in STAGES:
-        agents = draw(st.sets(st.sampled_from(AGENTS)))
-        light = draw(st.booleans())
-        for places in product("ab", repeat=len(agents)):
-            for value in (0, 1) if light else (None,):
-                if draw(st.integers(0, 5)) == 0:
-                    continue  # not covered
-                state: Dict[str, Any] = {"rule": stage, **dict(zip(sorted(agents), places))}
-                if value is not None:
-                    state["Slight"] = value
-                agent = draw(st.sampled_from(["", "bot1", "bot2"])) if agents else ""
-                clock = draw(st.sampled_from(sorted(agents))) if agents else ""
-                zone = f"{draw(st.integers(1, 6))} <= C{clock}" if clock else "always"
-                blocks.append(Block(state, agent, zone))
+        for robots in draw(st.sampled_from(PARTS)):
+            agents = sorted(draw(st.sets(st.sampled_from(robots))) | draw(st.sets(st.sampled_from(GUESTS))))
+            light = draw(st.booleans())
+            for places in product("ab", repeat=len(agents)):
+                for value in (0, 1) if light else (None,):
+                    if draw(st.integers(0, 5)) == 0:
+                        continue  # not covered
+                    state: Dict[str, Any] = {"rule": stage, **dict(zip(agents, places))}
+                    if value is not None:
+                        state["Slight"] = value
+                    agent = draw(st.sampled_from(["", *sorted(set(agents) & set(robots))]))
+                    clock = draw(st.sampled_from(agents)) if agents else "reach"
+                    blocks.append(Block(state, agent, f"C{clock}", draw(st.integers(1, 6))))
     return blocks
 
 
@@ -98,7 +105,8 @@ def part_for(controller: str, blocks: Sequence[Block]) -> Strategy:
     return Strategy({
         "commands_agents": [controller], "reaction": 0.1, "strategy": [
             {"state": block.state, "commands": [
-                {"do": f"{controller}_goes", "agent": controller, "from": "a", "to": "b", "when": [block.zone]}]}
+                {"do": f"{controller}_goes", "agent": controller, "from": "a", "to": "b",
+                 "when": [f"{block.opens} <= {block.clock}"]}]}
             for block in blocks if block.agent == controller],
     })  # fmt: skip
 
@@ -110,23 +118,15 @@ class Recorded(NamedTuple):
     resets: Tuple[str, ...]
 
 
-def holding(blocks: Sequence[Block], state: SystemState) -> Optional[Block]:
-    """The block that holds in the state."""
+def holds(block: Block, state: SystemState) -> bool:
     everything: Dict[str, Any] = {**state.locations, **state.values}
-    found = [block for block in blocks if all(everything[name] == part for name, part in block.state.items())]
-    assert len(found) < 2
-    return found[0] if found else None
+    return all(everything[name] == part for name, part in block.state.items())
 
 
-def stands(blocks: Sequence[Block], states: Sequence[Recorded]) -> bool:
-    """The reference: what was decided in the first of these states stands in the last one."""
-    first = holding(blocks, states[0].state)
-    if first is None:
-        return len(states) == 1
-    clocks = {f"C{name}" for name in first.state}
-    return all(
-        holding(blocks, later.state) is first and clocks.isdisjoint(later.resets) for later in states[1:]
-    )
+def stands(block: Block, states: Sequence[Recorded]) -> bool:
+    """The reference: what the block decided in the first of these states stands in the last one."""
+    clocks = {f"C{name}" for name in block.state}
+    return all(holds(block, one.state) for one in states) and all(clocks.isdisjoint(one.resets) for one in states[1:])
 
 
 @given(
@@ -138,8 +138,7 @@ def test_a_decision_stands_for_controllers_as_long_as_for_the_observer(
 ) -> None:
     cover = read_cover({"cover": [{"state": block.state, "zones": ["always"]} for block in blocks]})
     observer = Mission(MODEL, cover, lambda level, text: None, on_uncovered="warn")
-    parts = {name: part_for(name, blocks) for name in ("bot1", "bot2")}
-    controllers = {name: CommandScheduler(part, name) for name, part in parts.items()}
+    controllers = {name: CommandScheduler(part_for(name, blocks), name) for name in ROBOTS}
     now = 100.0
     recorded = [Recorded(observer.on_word("_start_", now)[0], ())]
     for controller in controllers.values():
@@ -152,21 +151,29 @@ def test_a_decision_stands_for_controllers_as_long_as_for_the_observer(
             recorded.append(Recorded(state, tuple(clock for _, edge in moves for clock in edge.resets)))
             for controller in controllers.values():
                 controller.on_state(state, now)
-        last = recorded[-1].state
-        standing = [one.state for k, one in enumerate(recorded) if stands(blocks, recorded[k:])]
-        assert [is_taken(observer, one.state.seq, now) for one in recorded] == [
-            one.state in standing for one in recorded
-        ]
-        held = holding(blocks, last)
+        holding = [block for block in blocks if holds(block, recorded[-1].state)]
         for name, controller in controllers.items():
-            expected = parts[name].decided(standing[0], standing[0].stamp) if held and held.agent == name else None
-            assert controller.next_wakeup()[0] == (expected[0] if expected else None)
+            mine = [block for block in holding if name in block.state] or holding
+            for k, one in enumerate(recorded):
+                last = one is recorded[-1]
+                expected = last or (bool(mine) and all(stands(block, recorded[k:]) for block in mine))
+                assert is_taken(observer, name, one.state.seq, now) is expected
+            commands = [block for block in holding if block.agent == name]
+            assert len(commands) < 2
+            moments = [moment(block, recorded) for block in commands]
+            assert controller.next_wakeup()[0] == (moments[0] if moments else None)
 
 
-def is_taken(observer: Mission, seq: int, now: float) -> bool:
+def moment(block: Block, recorded: Sequence[Recorded]) -> float:
+    """When the command of a block that holds in the last of these states is due, by the first in which it stands."""
+    first = next(one.state for k, one in enumerate(recorded) if stands(block, recorded[k:]))
+    return first.stamp + max(0.0, block.opens - first.clocks[block.clock])
+
+
+def is_taken(observer: Mission, agent: str, seq: int, now: float) -> bool:
     """True unless a command for this number is stale; no agent can do what it names, so that nothing happens."""
     before = observer.counts["stale"]
-    observer.on_word(f"bot1:nothing@{seq}", now)
+    observer.on_word(f"{agent}:nothing@{seq}", now)
     return observer.counts["stale"] == before
 
 

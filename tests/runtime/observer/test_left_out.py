@@ -144,3 +144,41 @@ def test_where_no_entry_applies_a_command_counts_in_its_own_state_alone() -> Non
     made.hear("thief_leaves", 12.0)
     assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
     assert made.hear("bot:bot_a2b@2", 12.1).locations["bot"] == "going_a_to_b"
+
+
+PARTS = """
+format: 1
+cover:
+- state: {bot: a, rule: first}
+  zones: [Cbot <= 20]
+- state: {bot: going_a_to_b, rule: first}
+  zones: [always]
+- state: {dog: b, thief: b, rule: first}
+  zones: [always]
+- state: {dog: b, thief: gone, rule: first}
+  zones: [Cthief <= 30]
+"""
+"""Bot and dog are commanded at the same time, and only to the dog it matters where the thief is."""
+
+
+def parts(**options: Any) -> Journey:
+    made = Journey(CHASE, PARTS, **{"on_uncovered": "warn", **options})
+    made.hear("_start_", 0.0)
+    return made
+
+
+def test_what_matters_to_one_part_leaves_commands_of_the_other_alone() -> None:
+    made = parts()
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("dog:catch@1", 12.05) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:bot_a2b@1", 12.05).locations["bot"] == "going_a_to_b"
+    assert made.hear("dog:catch@2", 12.06) is None and made.mission.counts["impossible"] == 1
+
+
+def test_each_part_has_to_be_covered() -> None:
+    made = parts(on_uncovered="plan", controllers=("one",))
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("_ping_", 19.0).status == "running"
+    moment, state = made.tick_from(19.0)
+    assert moment == pytest.approx(22.1) and state.status == "holding"
+    assert "no strategy at these clocks" in state.reason
