@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 import traceback
+from pathlib import Path
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -326,6 +327,9 @@ def master_is_gone() -> bool:
     return False
 
 
+LOWER = 5
+"""By how much the nice value of nodes is raised that decide nothing about robots."""
+
 ANEW = "PURSUE_ANEW"
 """In the environment of a node that has begun anew."""
 
@@ -353,6 +357,24 @@ def run_node(name: str, run: Callable[[], int], *refusals: Type[Exception]) -> i
 
 
 def lower_priority() -> None:
-    """Lower the priority of this process, once: nodes that decide about robots come first."""
+    """Lower the priority of this process, once: nodes that decide about robots come first.
+
+    Where the kernel shares the processor among sessions (autogroup), nice counts within a session only, and roslaunch
+    starts each node in its own: then the priority of the session is lowered as well.
+    """
     if ANEW not in os.environ:
-        os.nice(5)
+        os.nice(LOWER)
+        if os.getsid(0) == os.getpid():
+            with contextlib.suppress(OSError, ValueError):  # there are no such groups
+                _lower_session(Path("/proc/self/autogroup"))
+
+
+def _lower_session(autogroup: Path) -> None:
+    """Lower the priority of our session. Raises OSError and ValueError."""
+    level = int(autogroup.read_text().rpartition(" ")[2]) + LOWER
+    for _ in range(20):
+        try:
+            autogroup.write_text(str(min(level, 19)))
+            return
+        except BlockingIOError:  # the kernel lets one process do so in a tenth of a second
+            time.sleep(0.1)
