@@ -13,20 +13,7 @@ import threading
 import time
 import traceback
 from pathlib import Path
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    Callable,
-    Dict,
-    Iterator,
-    List,
-    NamedTuple,
-    NoReturn,
-    Optional,
-    Sequence,
-    Tuple,
-    Type,
-)
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
 
 import rosgraph
 import rospy
@@ -192,7 +179,10 @@ class Alarm:
 
 
 class Later:
-    """Does things in their order, in a thread of its own, but only after a reaction has had the time that it takes."""
+    """Does things in their order, in a thread of its own, but only after a reaction has had the time that it takes.
+
+    What is passed in a `with` block is done after its end: the thread does not even wake before, which takes time too.
+    """
 
     def __init__(self, name: str, ending: Ending) -> None:
         self._changed = threading.Condition()
@@ -206,17 +196,16 @@ class Later:
             self._actions.append(action)
             self._wake()
 
-    @contextlib.contextmanager
-    def after(self) -> Iterator[None]:
-        """Do what is passed in this block after its end: the thread does not even wake before, which takes time too."""
+    def __enter__(self) -> None:
+        """A reaction begins."""
         with self._changed:
             self._reactions += 1
-        try:
-            yield
-        finally:
-            with self._changed:
-                self._reactions -= 1
-                self._wake()
+
+    def __exit__(self, *_: object) -> None:
+        """It is over."""
+        with self._changed:
+            self._reactions -= 1
+            self._wake()
 
     def _wake(self) -> None:
         if self._actions and not self._reactions:

@@ -273,7 +273,7 @@ class Observer:
 
     def call(self, name: str, *args: Any) -> None:
         """Call the mission by way of the journal, and publish what follows."""
-        with self.lock, self.log_lines.after():
+        with self.lock, self.log_lines:
             if self.over and self.mission.status == WAITING:
                 return
             self.publish(self.journal.call(name, *args, now=self.now()))

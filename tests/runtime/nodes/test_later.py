@@ -55,12 +55,12 @@ def test_what_is_passed_in_a_reaction_is_done_after_it() -> None:
     inside, go_on = threading.Event(), threading.Event()
 
     def react() -> None:
-        with later.after():
+        with later:
             inside.set()
             assert go_on.wait(PATIENCE)
 
     other = threading.Thread(target=react)
-    with later.after():
+    with later:
         other.start()
         assert inside.wait(PATIENCE)
         later.do(done.set)
@@ -73,7 +73,7 @@ def test_what_is_passed_in_a_reaction_is_done_after_it() -> None:
 def test_a_reaction_that_fails_keeps_nothing_back() -> None:
     ending: Any = Ending()
     later, done = Later("log", ending), threading.Event()
-    with pytest.raises(RuntimeError), later.after():
+    with pytest.raises(RuntimeError), later:
         later.do(done.set)
         raise RuntimeError
     assert done.wait(PATIENCE)
