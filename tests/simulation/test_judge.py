@@ -29,8 +29,8 @@ SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
     "an order for another place": (
         CommandScheduler,
         "_begun",
-        "orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, target))",
-        'orders.append(StartedActivity(agent, state.event if own else action_of(target), origin, "going_a_to_b_"))',
+        "orders.append(StartedActivity(agent, trigger, origin, target))",
+        'orders.append(StartedActivity(agent, trigger, origin, "going_a_to_b_"))',
         "wrong order: polBot1 gets the order",
     ),
 }  # fmt: skip
