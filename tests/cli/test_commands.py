@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import json
 import os
@@ -17,6 +18,7 @@ from typing import Dict, List, Type
 from unittest import mock
 
 import pytest
+import typer.main
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -63,6 +65,10 @@ class Terminal(io.TextIOWrapper):
         return True
 
 
+command_of = functools.lru_cache(maxsize=None)(typer.main.get_command)
+"""What typer makes of the program's functions, made once: a process calls the program many times here."""
+
+
 def pursue(*arguments: object, stream: Type[io.TextIOWrapper] = io.TextIOWrapper, **environment: str) -> Outcome:
     """Runs the program in this process."""
     out, err = (stream(io.BytesIO(), encoding="utf-8") for _ in range(2))
@@ -73,6 +79,7 @@ def pursue(*arguments: object, stream: Type[io.TextIOWrapper] = io.TextIOWrapper
         changed.enter_context(contextlib.redirect_stderr(err))
         changed.enter_context(mock.patch.object(sys, "argv", words))
         changed.enter_context(mock.patch.dict(os.environ, environment))
+        changed.enter_context(mock.patch.object(typer.main, "get_command", command_of))
         try:
             main()
         except SystemExit as end:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Dict, List
 
@@ -41,15 +42,24 @@ OTHER_FILES: Dict[str, List[str]] = {
 UNREADABLE = {"missing": None, "a folder": None, "no text": b"\xff\xfe\x00", "an archive": b"PK\3\4\0\0\xff"}
 
 
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder in which every other file of the commands is sound."""
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which every file of the commands is sound."""
     pytest.importorskip("cryptography", reason="cryptography is not installed")
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "robots.yaml").write_text("format: 1\nrobots: {bot1: {host: localhost, port: 1}}\n")
-    assert pursue("keys", "new", "lab", "--folder", "keys").status == 0
-    assert pursue("solve", FIRST, "-o", "plan.txt").status == 0
-    return tmp_path
+    made = tmp_path_factory.mktemp("sound")
+    (made / "robots.yaml").write_text("format: 1\nrobots: {bot1: {host: localhost, port: 1}}\n")
+    assert pursue("keys", "new", "lab", "--folder", made / "keys").status == 0
+    assert pursue("solve", FIRST, "-o", made / "plan.txt").status == 0
+    return made
+
+
+@pytest.fixture
+def folder(sound: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of that folder, in which the commands run."""
+    copy = tmp_path / "folder"
+    shutil.copytree(sound, copy)
+    monkeypatch.chdir(copy)
+    return copy
 
 
 def status(command: List[str], file: Path) -> int:
