@@ -15,7 +15,7 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 import yaml
-from ros_world import Ros, end, generated, make
+from ros_world import Ros, end, generated, lay_over
 
 from tests.waiting import PATIENCE
 
@@ -55,7 +55,7 @@ def robots_workspace(ros: Ros, scenario: str, robots: Sequence[str]) -> Path:
             text, count = re.subn(r"(, 0\.0, 0\.0, 0\.0), 0\.0\]", r"\1, 1.0]", file.read_text())
             assert count == 3, text
             file.write_text(text)
-        make(ros, workspace)
+        lay_over(ros, workspace)
 
     return ros.once(f"{Path(scenario).name}_of_robots", build)
 

@@ -241,6 +241,25 @@ def make_whole(ros: Ros, workspace: Path, *targets: str) -> Path:
 
 def make(ros: Ros, workspace: Path) -> Path:
     """Builds it over a workspace of the packages that all have in common: those are built once in a session."""
+    common = _common(ros, workspace)
+    done = ros.run(f"source {common}/devel/setup.bash; catkin_make", workspace, 900)
+    assert done.returncode == 0, done.stdout
+    return workspace
+
+
+def lay_over(ros: Ros, workspace: Path) -> Path:
+    """Has its nodes run from their sources over the built packages that all have in common: `source devel/setup.bash`
+    does as if it was built. For tests that build the same packages of another scenario elsewhere."""
+    (workspace / "devel").mkdir()
+    (workspace / "devel" / "setup.bash").write_text(
+        f"source {_common(ros, workspace)}/devel/setup.bash\n"
+        f"export ROS_PACKAGE_PATH={workspace}/src:$ROS_PACKAGE_PATH\n"
+    )
+    return workspace
+
+
+def _common(ros: Ros, workspace: Path) -> Path:
+    """The built packages that all workspaces have in common; those of this workspace do not count from now on."""
     found = [workspace / "src" / name for name in SHARED]
     digest = hashlib.sha256()
     for path in sorted(path for package in found for path in package.rglob("*") if path.is_file()):
@@ -254,9 +273,7 @@ def make(ros: Ros, workspace: Path) -> Path:
     common = ros.once(f"common_{digest.hexdigest()[:16]}", build)
     for package in found:
         (package / "CATKIN_IGNORE").touch()
-    done = ros.run(f"source {common}/devel/setup.bash; catkin_make", workspace, 900)
-    assert done.returncode == 0, done.stdout
-    return workspace
+    return common
 
 
 def judged(ros: Ros, workspace: Path) -> List[str]:

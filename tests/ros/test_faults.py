@@ -12,7 +12,7 @@ from typing import Callable, Dict, List, NamedTuple, Tuple
 
 import pytest
 from launched_mission import EVENTS, PLAYED, LaunchedMission, launched
-from ros_world import Ros, generated, make
+from ros_world import Ros, generated, lay_over
 
 from pursue_runtime.observer.records import read_records
 
@@ -225,7 +225,7 @@ def either(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workspace in which one robot can do another one's work."""
     folder = tmp_path_factory.mktemp("either")
     (folder / "either.pur").write_text(EITHER)
-    return make(ros, generated(str(folder / "either"), folder / "ws"))
+    return lay_over(ros, generated(str(folder / "either"), folder / "ws"))
 
 
 def test_early_and_late_robots_are_followed_failed_ones_replaced_and_where_nobody_is_left_it_stops(

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_mission import ENDED, PLAYED, LaunchedMission, State, launched
-from ros_world import Ros, generated, make
+from ros_world import Ros, generated, lay_over
 
 from tests.waiting import PATIENCE
 
@@ -54,7 +54,7 @@ def workspace(ros: Ros, folder: Path, *robots: str) -> Path:
     """A workspace of the ring with these robots."""
     lines = [line for line in RING.splitlines() if "agent" not in line or any(robot in line for robot in robots)]
     (folder / "ring.pur").write_text("\n".join(lines))
-    return make(ros, generated(str(folder / "ring"), folder / "ws", slack=dict.fromkeys(robots, LATE)))
+    return lay_over(ros, generated(str(folder / "ring"), folder / "ws", slack=dict.fromkeys(robots, LATE)))
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from typing import Dict, List
 
 import pytest
 from launched_mission import GOAL, launched
-from ros_world import Ros, make
+from ros_world import Ros, lay_over
 
 from pursue_gen.language import parse
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -37,7 +37,7 @@ def test_each_robot_is_sent_to_its_own_spot(ros: Ros, tmp_path: Path, controller
     options = Options(controllers=controllers, reaction=Rules().reaction)
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, options, tmp_path / "ws")
     robots = ("cart1", "cart2")
-    with launched(ros, make(ros, folder), tmp_path, robots, use_sim_time=True, speed=5, delays="middle") as run:
+    with launched(ros, lay_over(ros, folder), tmp_path, robots, use_sim_time=True, speed=5, delays="middle") as run:
         assert run.until_over() == "won", run.output()
         sent: Dict[str, List[List[float]]] = {robot: [] for robot in robots}
         for entry in run.of(GOAL):

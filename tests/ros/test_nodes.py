@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import shutil
+import subprocess
 import time
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, Tuple
@@ -13,6 +16,7 @@ from ros_world import Ros, end, generated, make_whole
 from tests.waiting import PATIENCE
 
 Build = Callable[..., Path]
+Launched = Callable[[str], "subprocess.CompletedProcess[str]"]
 
 pytestmark = pytest.mark.ros
 
@@ -25,18 +29,27 @@ def own(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_whole(ros, generated("thesis/scenario_1", tmp_path_factory.mktemp("own") / "ws"), "install")
 
 
-@pytest.fixture
-def installed(own: Path) -> Iterator[Path]:
+@contextlib.contextmanager
+def only_installed(own: Path) -> Iterator[Path]:
     """The workspace, while nothing but its install space is there."""
     others = [own / name for name in ("src", "build", "devel")]
     aside = own.parent / "aside"
     aside.mkdir()
     for folder in others:
         folder.rename(aside / folder.name)
-    yield own
-    for folder in others:
-        (aside / folder.name).rename(folder)
-    aside.rmdir()
+    try:
+        yield own
+    finally:
+        for folder in others:
+            (aside / folder.name).rename(folder)
+        aside.rmdir()
+
+
+@pytest.fixture
+def installed(own: Path) -> Iterator[Path]:
+    """The workspace, while nothing but its install space is there."""
+    with only_installed(own) as place:
+        yield place
 
 
 @pytest.fixture(params=["devel", "install"])
@@ -84,22 +97,33 @@ def ended(
     return {name: status if status == 0 else (status, (logs / name).read_text()) for name, status in found.items()}
 
 
-def test_the_launch_file_plays_the_mission_and_ends(ros: Ros, sourced: Tuple[Path, str]) -> None:
-    workspace, source = sourced
-    with ros.master() as there:
-        command = f"{source}roslaunch scenario_1_bringup mission.launch use_sim_time:=true speed:=10"
-        done = ros.run(command, workspace, **there)
+@pytest.fixture(scope="module")
+def launched(ros: Ros, built: Build, own: Path, tmp_path_factory: pytest.TempPathFactory) -> Launched:
+    """`launched(space)`: what `rosrun … run_mission` with the workspace's devel or install space does; each once."""
+
+    @functools.lru_cache(maxsize=None)
+    def play(space: str) -> "subprocess.CompletedProcess[str]":
+        with contextlib.ExitStack() as cleanup:
+            workspace = built("thesis/scenario_1") if space == "devel" else cleanup.enter_context(only_installed(own))
+            there = cleanup.enter_context(ros.master())
+            home = str(tmp_path_factory.mktemp("home"))
+            arguments = f"use_sim_time:=true speed:=10 wait:={PATIENCE:g}"
+            command = f"source {space}/setup.bash; exec rosrun scenario_1_bringup run_mission {arguments}"
+            return ros.run(command, workspace, ROS_HOME=home, **there)
+
+    return play
+
+
+@pytest.mark.parametrize("space", ["devel", "install"])
+def test_the_launch_file_plays_the_mission_and_ends(launched: Launched, space: str) -> None:
+    done = launched(space)
     assert "The goal is reached" in done.stdout, done.stdout
     assert "Traceback" not in done.stdout, done.stdout
 
 
-def test_run_mission_exits_with_0_where_the_goal_is_reached(
-    ros: Ros, sourced: Tuple[Path, str], tmp_path: Path
-) -> None:
-    workspace, source = sourced
-    with ros.master() as there:
-        command = f"{source}exec rosrun scenario_1_bringup run_mission use_sim_time:=true wait:={PATIENCE:g}"
-        done = ros.run(command, workspace, ROS_HOME=str(tmp_path), **there)
+@pytest.mark.parametrize("space", ["devel", "install"])
+def test_run_mission_exits_with_0_where_the_goal_is_reached(launched: Launched, space: str) -> None:
+    done = launched(space)
     last = done.stdout.rstrip().rpartition("\n")[2]
     assert (done.returncode, last.startswith("won: The goal is reached, after ")) == (0, True), done.stdout[-6000:]
     assert "ROS master" not in done.stdout, "nothing is wrong with it"

@@ -11,7 +11,7 @@ from typing import Callable
 
 import pytest
 import yaml
-from ros_world import SCENARIOS, Ros, end, generated, make
+from ros_world import SCENARIOS, Ros, end, generated, lay_over
 
 from pursue_gen.language import parse
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -46,7 +46,7 @@ def test_the_documented_line_wins_the_mission_on_robots_with_move_base(ros: Ros,
     wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
     if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
         pytest.skip(f"not all of {wanted} is here")
-    workspace = make(ros, generated("thesis/scenario_1", tmp_path / "ws", slack={"bot1": SLACK, "bot2": SLACK}))
+    workspace = lay_over(ros, generated("thesis/scenario_1", tmp_path / "ws", slack={"bot1": SLACK, "bot2": SLACK}))
     poses = yaml.safe_load((workspace / "src/controller_bot1/config/poses.yaml").read_text())["poses"]
     acts = {"bot1": 3.5, "bot2": 6.5}
     robots = {name: {"start": poses["c"][:2], "travel": 9.5, "acts": seconds} for name, seconds in acts.items()}
@@ -67,7 +67,7 @@ def test_a_person_reports_at_the_terminal_what_a_visitor_and_a_robot_have_done(r
     won = solve_scenario(scenario, rules)
     folder = tmp_path / "ws"
     write_workspace(scenario, won.network, won.objective, won.strategy, Options(reaction=rules.reaction), folder)
-    workspace = make(ros, folder)
+    workspace = lay_over(ros, folder)
     os.mkfifo(tmp_path / "keys")
     keys = os.open(tmp_path / "keys", os.O_RDWR)
     log = tmp_path / "terminal"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Callable, Iterator, Tuple
 
 import pytest
-from ros_world import SCENARIOS, Ros, end, make
+from ros_world import SCENARIOS, Ros, end, lay_over
 
 from pursue_gen.language import parse
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -138,7 +138,7 @@ def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path:
     won = solve_scenario(scenario, Rules())
     options = Options(reaction=Rules().reaction)
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, options, tmp_path / "ward")
-    workspace = make(ros, folder)
+    workspace = lay_over(ros, folder)
     planned = "document.querySelector('#tasks .task-time').textContent.match(/for ([0-9.]+) now; planned: ([0-9.]+)/)"
     with mission(ros, workspace, tmp_path, "ward", "time_unit:=0.8", "/simulator/reports '[bot1]'") as (page, launched):
         page.wait("document.getElementById('status').textContent === 'ready'")
