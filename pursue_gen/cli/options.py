@@ -105,7 +105,7 @@ WITHIN = typer.Option(
 WHOLE = typer.Option(
     False,
     "--whole",
-    help="An experiment: solve the whole game, agents and rules included that cannot matter to the objective.",
+    help="An experiment: solve the whole game in one piece, agents and rules included that cannot matter.",
 )
 EXPLAIN = typer.Option(
     True,

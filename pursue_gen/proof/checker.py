@@ -8,16 +8,18 @@ once). `native` has the same in C++. See the design of the game for the rules.
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
-from pursue_gen.proof.left_out import named_part, why_it_matters
+from pursue_gen.proof.left_out import proven_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth, Found, Searches
+from pursue_gen.proof.stages import Part, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
@@ -81,8 +83,10 @@ def verify(
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
-    part = named_part(network, strategy)
-    matters = why_it_matters(network, objective, part)
+    if strategy.stages:
+        how = limit, prompt, limits, progress
+        return _in_stages(network, objective, strategy, reaction, ranks, how)
+    part, matters = proven_part(network, objective, strategy)
     if matters:
         return Report(False, f"left out: the strategy does not speak of what matters: {matters}", (), frozenset(), 0)
     loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
@@ -103,6 +107,41 @@ def verify(
     except MemoryError:
         raise monitor.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
+
+
+def _in_stages(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction,
+    ranks: Optional[Mapping[ZoneKey, int]],
+    how: Tuple[int, Optional[bool], Limits, Optional[Listener]],
+) -> Report:
+    """The outcome of all stages, each of which has to win; `ranks` are those within the stages."""
+    limit, prompt, limits, progress = how
+    used: Set[ZoneKey] = set()
+    states, start = 0, time.monotonic()
+    for part in parts_of(network, objective, strategy):
+        if part.fault:
+            reason = f"left out: stage {part.stage + 1} cannot be played: {part.fault}"
+            return Report(False, reason, (), frozenset(), states)
+        own = None if ranks is None else _ranks_of(part, ranks)
+        left = max(1, limit - states), prompt, own, limits.since(start), progress
+        report = verify(part.game, part.objective, part.strategy, reaction, *left)
+        states += report.states
+        used.update((part.numbers[b], what, n) for b, what, n in report.used if part.numbers[b] >= 0)
+        if not report.ok:
+            return replace(report, used=frozenset(used), states=states)
+    return Report(True, "", (), frozenset(used), states)
+
+
+def _ranks_of(played: Part, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
+    """The ranks of the blocks of a part of a stage; where it begins is before all of them."""
+    place = {number: b for b, number in enumerate(played.numbers)}
+    found: Dict[ZoneKey, int] = {(place[b], part, n): rank for (b, part, n), rank in ranks.items() if b in place}
+    if -1 in place:
+        found[(place[-1], "wait", 0)] = max(found.values(), default=0) + 1
+    return found
 
 
 def pruned(strategy: Strategy, report: Report) -> Strategy:

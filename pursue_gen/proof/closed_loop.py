@@ -160,7 +160,7 @@ class ClosedLoop:
                 block = self.strategy.blocks[b]
                 wait += [(zone, (b, "wait", n)) for n, zone in self._zones(block.wait, situation)]
                 for k, command in enumerate(block.commands):
-                    move, fault = _joint_move(command, situation)
+                    move, fault = joint_move(command, situation)
                     acts += [Act(zone, (b, k, n), move, fault) for n, zone in self._zones(command.zones, situation)]
             found = self._advice[state] = Advice.of(wait, acts, self.rules.reaction)
         return found
@@ -198,7 +198,7 @@ class ClosedLoop:
         compared: List[Tuple[int, int]] = []
         for b in self._blocks[state]:
             block = self.strategy.blocks[b]
-            commanded = (_joint_move(command, situation)[0] for command in block.commands)
+            commanded = (joint_move(command, situation)[0] for command in block.commands)
             moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
             for c in (c for zone in _zones_of(block) for c in zone):
                 size = abs(self._scaled(c.bound))
@@ -206,7 +206,7 @@ class ClosedLoop:
         return tuple(moves.values()), compared
 
 
-def _joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
+def joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
     """The joint move that a command names, or None and why there is none."""
     for move in situation.moves:
         if move.moves[:1] == command.moves[:1] and _same(move.moves[1:], command.moves[1:]):

@@ -4,12 +4,14 @@ A strategy may speak of a part of the network: its blocks then name some of the 
 that part alone (`named_part`), and what `why_it_matters` finds is held against it. Where that finds nothing, each play
 of the network shows the part as one of its own plays: what is left out changes nothing in the part, takes no command
 from the controller, and cannot stop time. A move that changes nothing in the part is no move there (see `moves`).
+Edges that can never be taken while only the strategy commands change nothing at all: they are dead (see `live`).
 """
 
 from __future__ import annotations
 
-from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
+from pursue_gen.proof.live import Places, commanded, live
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
@@ -20,26 +22,49 @@ from pursue_gen.zones.scale import common_denominator
 
 
 def named_part(network: Network, strategy: Strategy) -> Network:
-    """The part of the network that the strategy speaks of; the network itself where it names everything.
+    """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages.
 
     The first block says what is named: one that names something else covers nothing.
     """
-    if not strategy.blocks:
-        return network
+    names = _names(network, strategy)
+    return network if names is None else part_of(network, *names)
+
+
+def proven_part(network: Network, objective: Objective, strategy: Strategy) -> Tuple[Network, str]:
+    """The same without dead edges, and why what it leaves out may matter; "" if it cannot."""
+    names = _names(network, strategy)
+    if names is None:
+        return network, ""
+    alive, places = live(network, commanded(strategy.blocks))
+    part = part_of(alive, *names)
+    return part, why_it_matters(alive, objective, part, places)
+
+
+def _names(network: Network, strategy: Strategy) -> Optional[Tuple[Set[str], Set[str]]]:
+    """The automata and variables that a strategy names; None where these are all, or it names unknown ones."""
+    if not strategy.blocks or strategy.stages:
+        return None
     state = strategy.blocks[0].state
     automata, variables = {name for name, _ in state.locations}, {name for name, _ in state.values}
     if not automata.issubset(a.name for a in network.automata):
-        return network
-    return part_of(network, automata, variables.intersection(name for name, _ in network.variables))
+        return None
+    variables.intersection_update(name for name, _ in network.variables)
+    if len(automata) == len(network.automata) and len(variables) == len(network.variables):
+        return None
+    return automata, variables
 
 
-def why_it_matters(network: Network, objective: Objective, part: Network) -> str:
-    """Why what the part of the network leaves out may matter in it; "" if it cannot."""
-    if part is network:
-        return ""
+def why_it_matters(
+    network: Network, objective: Objective, part: Network, places: Optional[Places] = None, from_start: bool = True
+) -> str:
+    """Why what the part of the network leaves out may matter in it; "" if it cannot.
+
+    `places`: where its automata may come to (see `live`); None: where they may without commands. `from_start`: they
+    begin in their initial locations, not in the middle of a play.
+    """
+    places = live(network, frozenset())[1] if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
     noticed = _Noticed({name for name, _ in part.variables}, set(part.clocks), *_channels(part.automata))
-    taken = _taken_over(network)
     for place in (objective.goal, objective.bad):
         if place is not None and place[0] not in kept:
             return f"the objective is about {place[0]}"
@@ -47,7 +72,8 @@ def why_it_matters(network: Network, objective: Objective, part: Network) -> str
         if automaton.name in kept:
             why = _why_an_edge_matters(automaton, kept[automaton.name], part)
         else:
-            why = _why_it_is_seen(automaton, noticed) or _why_it_may_stop_time(automaton, network, taken)
+            why = _why_it_is_seen(automaton, noticed)
+            why = why or _why_it_may_stop_time(automaton, network, places[automaton.name], from_start)
         if why:
             return f"{automaton.name} {why}"
     return ""
@@ -110,11 +136,13 @@ def _channels(automata: Iterable[Automaton]) -> Tuple[Set[str], Set[str]]:
     return sent, received
 
 
-def _why_it_may_stop_time(automaton: Automaton, network: Network, taken: AbstractSet[str]) -> str:
+def _why_it_may_stop_time(
+    automaton: Automaton, network: Network, places: AbstractSet[str], from_start: bool
+) -> str:
     """Why time may have to stop because of an automaton that nobody commands.
 
     At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
-    the first may last a time unit, so that these moves leave time its way. `taken`: as for `_visited`.
+    the first may last a time unit, so that these moves leave time its way. `places`: where it may be.
     """
     stays = {location.name: location for location in automaton.locations if location.invariant}
     if not stays:
@@ -123,13 +151,13 @@ def _why_it_may_stop_time(automaton: Automaton, network: Network, taken: Abstrac
     start = start_of(network, own)
     alone = Network(own, network.variables, network.channels, (automaton,), start)
     arena = Arena(alone, common_denominator([constraint.bound for constraint in start]))
-    for name in _visited(automaton, taken):
+    for name in sorted(places):
         if name not in stays:
             continue
         bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name].invariant)]
         clocks = {bound.clock for bound in stays[name].invariant}
         stay = Dbm.of(arena.dim, [(i, 0, bound) for _, i, bound in bounds])
-        if name == automaton.initial and (stay is None or not stay.includes(arena.start)):
+        if from_start and name == automaton.initial and (stay is None or not stay.includes(arena.start)):
             return f"may not stay in {name} at the start"
         entering = [edge for edge in automaton.edges if edge.target == name != edge.source]
         if any(not clocks.issubset(edge.resets) for edge in entering):
@@ -157,30 +185,3 @@ def _left_at(arena: Arena, stay: Dbm, bounds: Sequence[Bound], ways: Sequence[Ed
 def _is_free(edge: Edge) -> bool:
     """True for an edge that the environment can take whatever the variables are."""
     return not edge.controllable and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
-
-
-def _taken_over(network: Network) -> Set[str]:
-    """The channels whose moves are the environment's because of one who receives."""
-    return {
-        edge.sync.channel
-        for automaton in network.automata
-        for edge in automaton.edges
-        if edge.sync is not None and not edge.sync.sends and not edge.controllable
-    }
-
-
-def _visited(automaton: Automaton, taken: AbstractSet[str]) -> Set[str]:
-    """Where the automaton may come by moves of the environment, and by receiving; `taken`: `_taken_over`."""
-    ways: Dict[str, List[str]] = {}
-    for edge in automaton.edges:
-        commanded = edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))
-        if not commanded:
-            ways.setdefault(edge.source, []).append(edge.target)
-    visited = {automaton.initial}
-    pending = [automaton.initial]
-    while pending:
-        for target in ways.get(pending.pop(), ()):
-            if target not in visited:
-                visited.add(target)
-                pending.append(target)
-    return visited

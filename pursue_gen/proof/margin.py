@@ -61,7 +61,7 @@ def strategy_margin(
     depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found.
     """
     part = named_part(network, strategy)
-    left, arenas = states, Arena.kept(part)
+    left, arenas = states, None if strategy.stages else Arena.kept(part)
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Optional
+from typing import Dict, Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.stages import parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
@@ -87,6 +88,8 @@ def worst_case(
     """
     if objective.kind is Kind.SAFETY:
         return None
+    if strategy.stages:
+        return _of_stages(network, objective, strategy, reaction, limit, limits)
     game = with_deadline(with_counter(named_part(network, strategy)), objective, LONGEST)
     loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
     count = loop.arena.clock[counting_clock(game) or ""]
@@ -95,3 +98,16 @@ def worst_case(
     except PursueError:
         return None
     return None if latest is None else Fraction(latest, loop.arena.scale)
+
+
+def _of_stages(
+    network: Network, objective: Objective, strategy: Strategy, reaction: Fraction, limit: int, limits: Limits
+) -> Optional[Fraction]:
+    """The stages one after the other; each takes as long as the slowest of its parts."""
+    slowest: Dict[int, Fraction] = {}
+    for part in parts_of(network, objective, strategy):
+        took = worst_case(part.game, part.objective, part.strategy, reaction, limit, limits)
+        if part.fault or took is None:
+            return None
+        slowest[part.stage] = max(took, slowest.get(part.stage, took))
+    return sum(slowest.values(), Fraction(0))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Tuple
+from dataclasses import dataclass, replace
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language.scenario import Scenario
@@ -11,7 +11,7 @@ from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.game import Game, State, compile_game, initial_state, is_goal, joint_moves
-from pursue_gen.synthesis.strategy import DiscreteState, Zone
+from pursue_gen.synthesis.strategy import DiscreteState, Strategy, Zone
 from pursue_gen.tga import names
 
 Key = Tuple[Tuple[str, str, str, str], ...]
@@ -61,15 +61,16 @@ class StrategyData:
     left_out: Tuple[str, ...] = ()
 
 
+_ANYWHERE: Tuple[str, Tuple[str, ...]] = ("anywhere", ())
+"""The place of an automaton that a stage does not name."""
+
+
 def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
     """The data of a solution's strategy; `reach_obj` as for `partition`, which decides the controller of a command."""
+    if won.strategy.stages:
+        return _in_stages(scenario, won, reach_obj)
     builder = _Builder(scenario, won)
-    subs = partition(won.strategy, won.network, scenario.agents, reach_obj=reach_obj)
-    owners: Dict[str, Tuple[str, ...]] = {}
-    for sub in subs:
-        for agent in sub.agents:
-            owner = "instructed by the user interface" if sub.controller == UI else sub.controller
-            owners[agent] = (*owners.get(agent, ()), owner)
+    owners = _owners(scenario, won, reach_obj)
     automata = tuple(
         (a.name, _kind(scenario, a.name), tuple(builder.place(a.name, place) for place in a.locations))
         for a in builder.game.automata
@@ -78,6 +79,59 @@ def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> Strat
     shown = (state.name for state in scenario.states if names.state_value(state.name) in builder.game.variables)
     left_out = tuple(a.name for a in won.network.automata if a.name not in {a.name for a in builder.game.automata})
     return StrategyData(automata, tuple(shown), owners, tuple(builder.zones), situations, left_out)
+
+
+def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tuple[str, ...]]:
+    """The controllers that command each agent."""
+    owners: Dict[str, Tuple[str, ...]] = {}
+    for sub in partition(won.strategy, won.network, scenario.agents, reach_obj=reach_obj):
+        for agent in sub.agents:
+            owner = "instructed by the user interface" if sub.controller == UI else sub.controller
+            owners[agent] = (*owners.get(agent, ()), owner)
+    return owners
+
+
+def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
+    """The situations of each stage, one after the other; whom a stage does not name may be anywhere."""
+    words = _Builder(scenario, replace(won, strategy=Strategy(())))
+    zones: List[Tuple[str, str]] = []
+    situations: List[Situation] = []
+    every = [automaton.name for automaton in won.network.automata]
+    for stage, milestones in enumerate(won.strategy.stages):
+        blocks = tuple(won.strategy.blocks[n] for place in milestones for n in won.strategy.numbers_of(stage, place))
+        own = replace(won, objective=replace(won.objective, goal=milestones[0]), strategy=Strategy(blocks))
+        builder = _Builder(scenario, replace(own, network=own.part), words.words)
+        found = builder.situations()
+        is_last = stage == len(won.strategy.stages) - 1
+        at = [every.index(automaton.name) for automaton in builder.game.automata]
+        situations += [
+            _shifted(some, at, words.nowhere, len(zones), len(situations), some.goal and is_last) for some in found
+        ]
+        zones += builder.zones
+    automata = tuple(
+        (a.name, _kind(scenario, a.name), (*(words.place(a.name, place) for place in a.locations), _ANYWHERE))
+        for a in words.game.automata
+    )
+    variables: Tuple[str, ...] = ()
+    return StrategyData(automata, variables, _owners(scenario, won, reach_obj), tuple(zones), tuple(situations))
+
+
+def _shifted(
+    some: Situation, at: Sequence[int], nowhere: Sequence[int], zones: int, before: int, goal: bool
+) -> Situation:
+    """A situation of a stage among those of all: numbers of zones and situations count on, as do those of automata."""
+    places = list(nowhere)
+    for k, place in zip(at, some.places):
+        places[k] = place
+
+    def moved(steps: Sequence[Transition]) -> Tuple[Transition, ...]:
+        return tuple(
+            Transition(at[step.who], step.words, tuple(n + zones for n in step.when), step.target + before)
+            for step in steps
+        )
+
+    wait = tuple(n + zones for n in some.wait)
+    return Situation(tuple(places), (), wait, moved(some.commands), moved(some.others), goal)
 
 
 def as_json(data: StrategyData) -> Dict[str, Any]:
@@ -107,9 +161,9 @@ def as_json(data: StrategyData) -> Dict[str, Any]:
 class _Builder:
     """Numbers situations and zones in the order in which they are met."""
 
-    def __init__(self, scenario: Scenario, won: Solution) -> None:
+    def __init__(self, scenario: Scenario, won: Solution, words: Optional[Words] = None) -> None:
         self.game: Game = compile_game(won.part, won.objective, won.reaction)
-        self.words: Words = words_of(scenario, won.network)
+        self.words: Words = words or words_of(scenario, won.network)
         self.zones: List[Tuple[str, str]] = []
         self._zone_numbers: Dict[Zone, int] = {}
         self._places = [{name: k for k, name in enumerate(a.locations)} for a in self.game.automata]
@@ -117,15 +171,22 @@ class _Builder:
         shown = [names.state_value(state.name) for state in scenario.states]
         self._shown = [self.game.variables.index(name) for name in shown if name in self.game.variables]
 
+    @property
+    def nowhere(self) -> Tuple[int, ...]:
+        """For each automaton the number behind those of its locations."""
+        return tuple(len(automaton.locations) for automaton in self.game.automata)
+
     def place(self, automaton: str, location: str) -> Tuple[str, Tuple[str, ...]]:
         """A place in words, and its parts where it is an agent's."""
         return self.words.place(automaton, location), self.words.parts.get(location, ())
 
     def situations(self) -> Tuple[Situation, ...]:
         """In the order in which plays meet them, from the start; then, if there are any, the rest."""
-        numbers: Dict[State, int] = {initial_state(self.game): 0}
+        start = initial_state(self.game)
+        start = next(iter(self._blocks), start) if start not in self._blocks else start
+        numbers: Dict[State, int] = {start: 0}
         found: List[Situation] = []
-        waiting = [initial_state(self.game)]
+        waiting = [start]
         rest = iter(self._blocks)
         while True:
             for state in waiting:  # grows meanwhile

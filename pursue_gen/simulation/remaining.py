@@ -35,7 +35,8 @@ FOREVER = 1e9
 
 
 class Remaining:
-    """The worst times to the goal from points of plays, in time units; nothing is known where there is no goal."""
+    """The worst times to the goal from points of plays, in time units; nothing is known where there is no goal, or of
+    strategies in stages."""
 
     def __init__(self, won: Solution, states: int = STATES) -> None:
         self._loop: Optional[ClosedLoop] = None
@@ -44,7 +45,7 @@ class Remaining:
         """How often to look ahead where many missions are to be played: less often in larger games."""
         self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
         self._met = 0  # symbolic states that were looked at
-        if won.objective.kind is Kind.SAFETY:
+        if won.objective.kind is Kind.SAFETY or won.strategy.stages:
             return
         part = won.part
         game = with_deadline(with_counter(part), won.objective, LONGEST)

@@ -47,7 +47,7 @@ def prove(
         hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
         raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
     kept = pruned(strategy, report)
-    if not simpler or report.states > _LITTLE:
+    if not simpler or report.states > _LITTLE or kept.stages:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
     fewer = simplified(named_part(network, kept), kept, reaction, left)

@@ -30,6 +30,9 @@ WORK = 40_000_000
 _PROMPT, _PROMPT_GAME, _DELAYED_GAME = 0.6, 5_000_000, 8_000_000
 """The part of it for games without a reaction delay, and the work of each game without and with one."""
 
+_CLOCKS = 8
+"""In games of more clocks each piece of work takes longer: they get less of it."""
+
 STATES = 8_000
 """Symbolic states of the checker that a worst-case time may take."""
 
@@ -57,11 +60,12 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
     """
     start, options = time.monotonic(), replace(options, limits=options.limits.chosen)
     known = guaranteed(won, STATES, options.limits)
-    if known.worst is not None and known.worst <= _ENOUGH * known.least:
+    if won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
         return replace(won, guarantee=known)
     limits = options.limits.since(start)
-    budget = Budget(replace(limits, work=WORK), options.progress, options.engine, whole=options.whole)
-    least, kept, moves = _prompt(won, known, budget.split(_PROMPT))
+    scale = min(1.0, (_CLOCKS / (len(won.part.clocks) + 1)) ** 3)
+    budget = Budget(replace(limits, work=int(WORK * scale)), options.progress, options.engine, whole=options.whole)
+    least, kept, moves = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale))
     known = replace(known, least=max(known.least, least))
     if kept is None:
         return replace(won, guarantee=known)
@@ -72,7 +76,7 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
             break
         if late > 1 and not won.reaction:
             continue
-        faster, _ = _tried(some, won.objective, won.reaction * late, deadline, budget, _DELAYED_GAME)
+        faster, _ = _tried(some, won.objective, won.reaction * late, deadline, budget, int(_DELAYED_GAME * scale))
         better = None if faster is None else _better(won, known, faster, options.since(start))
         if better is not None:
             return better
@@ -166,7 +170,9 @@ def _tried(
         return None, False
 
 
-def _prompt(won: Solution, known: Guarantee, budget: Budget) -> Tuple[Fraction, Optional[Fraction], _Moves]:
+def _prompt(
+    won: Solution, known: Guarantee, budget: Budget, work: int
+) -> Tuple[Fraction, Optional[Fraction], _Moves]:
     """A lower bound, a deadline that is kept where commands take effect at once, and the moves that this needs.
 
     The deadline is None where none was found that is much shorter than what the strategy at hand takes.
@@ -177,7 +183,7 @@ def _prompt(won: Solution, known: Guarantee, budget: Budget) -> Tuple[Fraction, 
     for deadline in search.deadlines():
         if budget.used_up:
             break
-        faster, decided = _tried(network, won.objective, now, Fraction(deadline), budget, _PROMPT_GAME)
+        faster, decided = _tried(network, won.objective, now, Fraction(deadline), budget, work)
         best = faster or best
         search.answer(deadline, faster is not None, decided)
     if best is None:

@@ -11,6 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
+from pursue_gen.solving.crowds import little_work, won_by_some
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
@@ -18,7 +19,7 @@ from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
-from pursue_gen.synthesis.solve import Stats, solve
+from pursue_gen.synthesis.solve import Stats, Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -63,13 +64,34 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     """
     start = time.monotonic()
     game = played(network, rules)
-    how = options.engine, options.limits, options.progress
-    verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
+    verdict = None
+    if not options.whole and not options.limits.work:
+        verdict = _with_little_work(game, objective, rules.reaction, options)
+        some = None if verdict else won_by_some(game, objective, rules.reaction, options.since(start))
+        if some is not None:
+            return Solution(game, objective, some.strategy, rules.reaction, some.stats, rules=rules)
+    if verdict is None:
+        how = options.engine, options.since(start).limits, options.progress
+        verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     left = options.since(start)
     strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks, left)
     return Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
+
+
+def _with_little_work(
+    game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Verdict]:
+    """The verdict, if it takes little work (see `crowds`)."""
+    work = little_work(game)
+    limits = replace(options.limits, work=work, states=max(500, work // 100))
+    try:
+        return solve(game, objective, reaction, options.engine, limits, options.progress)
+    except PursueError as problem:
+        if problem.exit_status != 5:
+            raise
+        return None
 
 
 def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:

@@ -29,7 +29,9 @@ def verdict_text(won: Solution) -> str:
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
     kept = "" if won.within is None else f" within {decimal(won.within)} time units"
-    text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}, proven"
+    stages = len(won.strategy.stages)
+    order = f" in {stages} stages, one after the other" if stages else ""
+    text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}{order}, proven"
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
 
 
@@ -79,8 +81,8 @@ def verdict_json(
 
 
 def _left_out(won: Solution) -> List[str]:
-    """The automata of which the strategy does not speak: they cannot matter."""
-    named = {automaton.name for automaton in won.part.automata}
+    """The automata of which the strategy never speaks: they cannot matter."""
+    named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
     return [automaton.name for automaton in won.network.automata if automaton.name not in named]
 
 

@@ -17,7 +17,7 @@ import re
 from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.synthesis.plan_parts import left_out_lines, spoken_of
+from pursue_gen.synthesis.plan_parts import left_out_lines, read_stages, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
     assign_meaning,
@@ -68,8 +68,10 @@ class _Names:
 class _Reader:
     """Reads one plan, line by line. The caches hold what many lines say alike."""
 
-    def __init__(self, names: _Names, file: str) -> None:
+    def __init__(self, names: _Names, file: str, in_stages: bool) -> None:
+        """`in_stages`: a state may leave out automata and variables."""
         self.names = names
+        self.in_stages = in_stages
         self.file = file
         self.line = 1
         self.text = ""
@@ -131,8 +133,8 @@ class _Reader:
         self.compare("automaton", self.names.automata, tuple(at))
         self.compare("variable", self.names.variables, tuple(value))
         return DiscreteState(
-            tuple((name, at[name]) for name in self.names.automata),
-            tuple((name, value[name]) for name in self.names.variables),
+            tuple((name, at[name]) for name in self.names.automata if name in at),
+            tuple((name, value[name]) for name in self.names.variables if name in value),
         )
 
     def compare(self, what: str, known: Tuple[str, ...], given: Sequence[str]) -> None:
@@ -141,7 +143,7 @@ class _Reader:
             if name not in known:
                 self.fail("PLN005", f"the network has no {what} '{name}'", _OTHER_NETWORK)
         for name in known:
-            if name not in given:
+            if name not in given and not self.in_stages:
                 self.fail("PLN006", f"the state says nothing of {what} '{name}'", _OTHER_NETWORK)
 
     def location(self, automaton: str, printed: str) -> str:
@@ -190,7 +192,7 @@ class _Reader:
         """Fails unless exactly the automata take part that must in this state; a cut or mixed-up file shows so."""
         at, value = dict(state.locations), dict(state.values)
         for move in moves:
-            if at[move.automaton] != move.edge.source or not _integers_hold(move.edge.guard, value):
+            if at.get(move.automaton) != move.edge.source or not _integers_hold(move.edge.guard, value):
                 self.fail("PLN008", f"'{move.automaton}' cannot make this move in the state above", _RUN_AGAIN)
         sync = moves[0].edge.sync
         if sync is not None and not sync.sends:
@@ -202,7 +204,8 @@ class _Reader:
         taking = [move.automaton for move in moves[1:]]
         due: Set[str] = set()
         for automaton, edge in self.names.receivers.get(sync.channel, []) if sync else []:
-            if automaton != moves[0].automaton and at[automaton] == edge.source and _integers_hold(edge.guard, value):
+            able = at.get(automaton) == edge.source and _integers_hold(edge.guard, value)
+            if automaton != moves[0].automaton and able:
                 due.add(automaton)
         channels = {move.edge.sync and move.edge.sync.channel for move in moves}
         if len(channels) > 1 or len(taking) != len(set(taking)) or set(taking) != due:
@@ -237,7 +240,8 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
-    reader = _Reader(_Names(spoken_of(text[: header.start()], network, file)), file)
+    stages = read_stages(text[: header.start()], network, file)
+    reader = _Reader(_Names(spoken_of(text[: header.start()], network, file)), file, bool(stages))
     first = text.count("\n", 0, header.end()) + 1
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
@@ -259,7 +263,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     if not blocks:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", _RUN_AGAIN)
-    return Strategy(tuple(blocks), counter=header.group(1).lower().startswith("counter"))
+    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages)
 
 
 def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:
@@ -323,7 +327,7 @@ def _close(reader: _Reader, opened: Optional[_Open], blocks: List[Block]) -> Non
 
 def _integers_hold(guard: Guard, value: Dict[str, int]) -> bool:
     """True where the values satisfy the guard's tests of variables."""
-    return all(any(value[test.variable] == test.value for test in clause) for clause in guard.integers)
+    return all(any(value.get(test.variable) == test.value for test in clause) for clause in guard.integers)
 
 
 def _no_strategy(text: str, file: str) -> PursueError:

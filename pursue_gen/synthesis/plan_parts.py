@@ -1,30 +1,61 @@
-"""The line of a plan that names what it does not speak of, written and read:
+"""The lines of a plan that say what it does not speak of, or which stages it has, written and read:
 
     -- Left out: visitor Pvisitor
+    -- Stage: rule1.rule10 rule2.rule20
+    -- Stage: reachObj.win
+
+In a plan with stages each block names what matters to it.
 """
 
 from __future__ import annotations
 
 import re
-from typing import List, Set
+from typing import List, Match, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
 
+_STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 
 
 def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
-    """The line with the automata and variables that the strategy does not name; none where it names everything."""
+    """The line with the automata and variables that the strategy does not name; none where it names everything.
+
+    Of a strategy in stages a line for each of them, with its milestones.
+    """
     if not strategy.blocks:
         return []
+    if strategy.stages:
+        return [f" -- Stage: {' '.join(map('.'.join, milestones))}" for milestones in strategy.stages]
     state = strategy.blocks[0].state
     named = {name for name, _ in (*state.locations, *state.values)}
     every = (*(automaton.name for automaton in network.automata), *(name for name, _ in network.variables))
     left = [name for name in every if name not in named]
     return [f" -- Left out: {' '.join(left)}"] if left else []
+
+
+def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
+    """The stages of a plan, whose text above its title this is. Raises PursueError for an unknown milestone."""
+    known = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
+    stages: List[Tuple[Place, ...]] = []
+    for match in _STAGE.finditer(text):
+        milestones = []
+        for word in match.group(1).split():
+            automaton, _, location = word.partition(".")
+            if (automaton, location) not in known:
+                raise _unknown(text, match, f"the plan has a milestone '{word}', which the network does not have", file)
+            milestones.append((automaton, location))
+        stages.append(tuple(milestones))
+    return tuple(stages)
+
+
+def _unknown(text: str, match: Match[str], message: str, file: str) -> PursueError:
+    line = text.count("\n", 0, match.start()) + 1
+    span = Span(file, line, 1, line, len(match.group()) + 1)
+    return PursueError([error("PLN005", message, span, "read the plan with the network that it was made for")])
 
 
 def spoken_of(text: str, network: Network, file: str) -> Network:
@@ -38,9 +69,6 @@ def spoken_of(text: str, network: Network, file: str) -> Network:
         left.update(match.group(1).split())
         unknown = sorted(left - automata - variables)
         if unknown:
-            line = text.count("\n", 0, match.start()) + 1
-            span = Span(file, line, 1, line, len(match.group()) + 1)
             message = f"the plan leaves out '{unknown[0]}', which the network does not have"
-            hint = "read the plan with the network that it was made for"
-            raise PursueError([error("PLN005", message, span, hint)])
+            raise _unknown(text, match, message, file)
     return part_of(network, automata - left, variables - left)

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Tuple, Union
+from typing import Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.scale import common_denominator
+
+Place = Tuple[str, str]
+"""An automaton and one of its locations."""
 
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""
@@ -52,10 +55,33 @@ class Block:
 
 @dataclass(frozen=True)
 class Strategy:
-    """A strategy for the controller, or (`counter`) one for the environment that shows why the controller loses."""
+    """A strategy for the controller, or (`counter`) one for the environment that shows why the controller loses.
+
+    One in `stages` has for each of them its milestones, locations to be reached, the goal last; the stage ends when all
+    of them are. A block is for one milestone: the one that it names and is not at, of the first stage that is not over.
+    """
 
     blocks: Tuple[Block, ...]
     counter: bool = False
+    stages: Tuple[Tuple[Place, ...], ...] = ()
+
+    def numbers_of(self, stage: int, place: Place) -> Tuple[int, ...]:
+        """The numbers of the blocks that lead to a milestone."""
+        return tuple(n for n, part in enumerate(self.parts) if part == (stage, place))
+
+    @cached_property
+    def parts(self) -> Tuple[Optional[Tuple[int, Place]], ...]:
+        """For each block its stage and milestone; None where it has none."""
+        return tuple(map(self._part, self.blocks))
+
+    def _part(self, block: Block) -> Optional[Tuple[int, Place]]:
+        places = dict(block.state.locations)
+        for stage, milestones in enumerate(self.stages):
+            open_ones = [place for place in milestones if places.get(place[0]) != place[1]]
+            if open_ones:
+                named = [place for place in open_ones if place[0] in places]
+                return (stage, named[0]) if len(named) == 1 else None
+        return None
 
     @cached_property
     def scale(self) -> int:

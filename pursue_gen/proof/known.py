@@ -1,0 +1,133 @@
+"""What is known of a network when one stage of a strategy has ended and the next begins.
+
+For each automaton it is known where it may be, with which values of the variables that it alone sets; for every other
+variable, which values it may have. Clocks may have any value. More may seem possible than is, never less.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import AbstractSet, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.proof.live import Places
+from pursue_gen.tga.network import Automaton, Guard, Network
+
+State = Tuple[Tuple[str, ...], Tuple[int, ...]]
+"""The location of every automaton and the value of every variable, in a network's order."""
+
+Spot = Tuple[str, Tuple[int, ...]]
+"""A location of an automaton, and the values of the variables that it alone sets."""
+
+MOST = 5_000
+"""So many states a stage may begin in."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """`owned`: for each automaton the variables that it alone sets; `spots`: where it may be, with their values;
+    `values`: for each other variable what it may be."""
+
+    owned: Mapping[str, Tuple[str, ...]]
+    spots: Mapping[str, FrozenSet[Spot]]
+    values: Mapping[str, FrozenSet[int]]
+
+    def places(self) -> Places:
+        """The locations in which the automata may be."""
+        return {name: {location for location, _ in spots} for name, spots in self.spots.items()}
+
+    def states(self, part: Network) -> Optional[List[State]]:
+        """All states of a part of the network that may be; None where these are more than MOST."""
+        shared = [name for name, _ in part.variables if name in self.values]
+        choices: List[Sequence[object]] = [sorted(self.spots[a.name]) for a in part.automata]
+        choices += [sorted(self.values[name]) for name in shared]
+        count = 1
+        for choice in choices:
+            count *= len(choice)
+            if count > MOST:
+                return None
+        return [self._state(part, shared, chosen) for chosen in product(*choices)]
+
+    def _state(self, part: Network, shared: Sequence[str], chosen: Sequence[object]) -> State:
+        values: Dict[str, int] = {}
+        locations = []
+        for automaton, spot in zip(part.automata, chosen):
+            assert isinstance(spot, tuple)
+            locations.append(spot[0])
+            values.update(zip(self.owned[automaton.name], spot[1]))
+        for name, value in zip(shared, chosen[len(part.automata) :]):
+            assert isinstance(value, int)
+            values[name] = value
+        first = dict(part.variables)
+        return tuple(locations), tuple(values.get(name, first[name]) for name, _ in part.variables)
+
+
+def at_start(network: Network) -> Known:
+    """What is known at the start."""
+    setters: Dict[str, Set[str]] = {}
+    for automaton in network.automata:
+        for edge in automaton.edges:
+            for name, _ in edge.assign:
+                setters.setdefault(name, set()).add(automaton.name)
+    first = dict(network.variables)
+    owned: Dict[str, Tuple[str, ...]] = {
+        a.name: tuple(name for name in first if setters.get(name) == {a.name}) for a in network.automata
+    }
+    spots = {
+        a.name: frozenset([(a.initial, tuple(first[name] for name in owned[a.name]))]) for a in network.automata
+    }
+    every = {name for names in owned.values() for name in names}
+    return Known(owned, spots, {name: frozenset([value]) for name, value in first.items() if name not in every})
+
+
+def moved(known: Known, alive: Network) -> Known:
+    """What is known after a time in which `alive` could happen."""
+    spots = {a.name: _moved(known.spots[a.name], known, alive, a) for a in alive.automata}
+    return Known(known.owned, spots, {name: some | _set(alive, name) for name, some in known.values.items()})
+
+
+def after_part(known: Known, part: Network, ends: Sequence[State], idle: Optional[Network]) -> Known:
+    """What is known after a part of a stage that ended in one of the states; `known`: of all that it does not name.
+
+    `idle`: what could happen from then on until the stage ended; None: it ended at once.
+    """
+    spots, values = dict(known.spots), dict(known.values)
+    index = {name: k for k, (name, _) in enumerate(part.variables)}
+    for k, automaton in enumerate(part.automata):
+        places = (index[name] for name in known.owned[automaton.name])
+        owned = tuple(places)
+        here = frozenset((locations[k], tuple(state[n] for n in owned)) for locations, state in ends)
+        name = automaton.name
+        spots[name] = here if idle is None else _moved(here, known, idle, idle.automaton(name))
+    for name in index:
+        if name in values:
+            here_values = frozenset(state[index[name]] for _, state in ends)
+            values[name] = here_values if idle is None else here_values | _set(idle, name)
+    return Known(known.owned, spots, values)
+
+
+def _set(network: Network, variable: str) -> AbstractSet[int]:
+    """The values that edges give a variable."""
+    return {v for automaton in network.automata for e in automaton.edges for name, v in e.assign if name == variable}
+
+
+def _moved(spots: FrozenSet[Spot], known: Known, alive: Network, automaton: Automaton) -> FrozenSet[Spot]:
+    """Where an automaton may have come to from these spots, whatever the others do."""
+    owned = known.owned[automaton.name]
+    found = set(spots)
+    pending = list(found)
+    while pending:
+        location, values = pending.pop()
+        now = dict(zip(owned, values))
+        for edge in automaton.edges:
+            if edge.source == location and _may_hold(edge.guard, now):
+                spot = edge.target, tuple(dict(edge.assign).get(name, now[name]) for name in owned)
+                if spot not in found:
+                    found.add(spot)
+                    pending.append(spot)
+    return frozenset(found)
+
+
+def _may_hold(guard: Guard, now: Mapping[str, int]) -> bool:
+    """True if the tests of variables may be true where nothing is known but the values of some."""
+    return all(any(now.get(test.variable, test.value) == test.value for test in clause) for clause in guard.integers)

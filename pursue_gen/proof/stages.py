@@ -1,0 +1,193 @@
+"""A strategy in stages, taken apart: each part of a stage is a game of its own, from all that may be when it begins.
+
+A stage ends when its milestones are reached, locations of automata, and the next one begins there. Its parts, one for
+each milestone, are played at the same time, by different agents. The blocks of a part name the agents that matter to it
+and the milestones of the stages before, which holds them apart from the blocks of other stages. While a stage lasts,
+nobody commands what only other stages command (see `live`); what a part does not name must not matter to it (see
+`left_out`). Of where a stage begins nothing is used but what `known` says: so a part that is won from all these points
+is won, whatever was before, and every play goes through all stages to the goal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.proof.closed_loop import joint_move
+from pursue_gen.proof.known import Known, State, after_part, at_start, moved
+from pursue_gen.proof.left_out import why_it_matters
+from pursue_gen.proof.live import commanded, live
+from pursue_gen.proof.moves import Arena, Situation
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy
+from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
+from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.part import part_of
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a stage as a game: it is won if the strategy wins the game, unless there is a `fault`.
+
+    `stage` counts from 0. `numbers`: for each block of the strategy its number in the whole one; -1 for the one in
+    which the stage begins.
+    """
+
+    stage: int
+    game: Network
+    objective: Objective
+    strategy: Strategy
+    numbers: Tuple[int, ...]
+    fault: str = ""
+
+
+def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
+    """The parts of all stages, in the order of the stages. After one with a fault there are no more."""
+    fault = _misplaced(network, objective, strategy)
+    known = at_start(network)
+    for stage, milestones in enumerate(strategy.stages):
+        numbers = {place: strategy.numbers_of(stage, place) for place in milestones}
+        blocks = {place: [strategy.blocks[n] for n in numbers[place]] for place in milestones}
+        fault = fault or _misnamed(network, strategy, stage, blocks, known)
+        if fault:
+            yield Part(stage, network, objective, strategy, (), fault)
+            return
+        alive, places = live(network, commanded(block for some in blocks.values() for block in some), known.places())
+        following = after_stage(network, known, blocks)
+        if following is None:
+            yield Part(stage, network, objective, strategy, (), "it may begin in too many states")
+            return
+        # That nobody in a part stops time until it has ended is shown there.
+        busy = {name for own in blocks.values() for name in _names(own[0])[0]}
+        resting = {**places, **{name: following.places()[name] for name in busy}}
+        for place in milestones:
+            wanted = replace(objective, goal=place)
+            part = part_of(alive, *_names(blocks[place][0]))
+            starts = known.states(part)
+            assert starts is not None
+            fault = why_it_matters(alive, wanted, part, resting, from_start=stage == 0)
+            if fault:
+                yield Part(stage, part, wanted, strategy, (), fault)
+                return
+            if stage == 0:
+                own = Strategy(tuple(blocks[place]))
+                yield Part(stage, part, wanted, own, numbers[place])
+            else:
+                own = _begun(part, blocks[place])
+                yield Part(stage, beginning_in(part, starts), wanted, own, (-1, *numbers[place]))
+        known = following
+        lost = [place for place in milestones if known.places()[place[0]] != {place[1]}]
+        fault = f"{lost[0][0]} may leave {lost[0][1]} before the stage ends" if lost else ""
+
+
+def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[Block]]) -> Optional[Known]:
+    """What is known after a stage with these blocks for each of its milestones, that began with what is `known`.
+
+    None where a part of it may begin in too many states.
+    """
+    alive, places = live(network, commanded(block for some in blocks.values() for block in some), known.places())
+    following = moved(known, alive)
+    for place, own in blocks.items():
+        part = part_of(alive, *_names(own[0]))
+        starts = known.states(part)
+        if starts is None:
+            return None
+        idle = None if len(blocks) == 1 else live(network, _others(blocks, place), places)[0]
+        following = after_part(following, part, _ends(part, place, own, starts), idle)
+    return following
+
+
+def _ends(part: Network, milestone: Place, blocks: Iterable[Block], starts: Sequence[State]) -> List[State]:
+    """The discrete states at the milestone to which the commands of the blocks may lead, whatever the clocks are."""
+    arena = Arena(replace(part, start=()), 1)
+    number = [automaton.name for automaton in part.automata].index(milestone[0])
+    said: Dict[State, List[Block]] = {}
+    for block in blocks:
+        state = arena.state_of(block.state)
+        if state is not None:
+            said.setdefault(state, []).append(block)
+    met: Set[State] = set(starts)
+    pending = list(starts)
+    ends: List[State] = []
+    while pending:
+        state = pending.pop()
+        if state[0][number] == milestone[1]:
+            ends.append(state)
+            continue
+        for target in _next(arena.situation(state), said.get(state, ())):
+            if target not in met:
+                met.add(target)
+                pending.append(target)
+    return ends
+
+
+def _next(situation: Situation, blocks: Iterable[Block]) -> Iterator[State]:
+    for move in situation.moves:
+        if not move.controllable and move.enabled is not None:
+            yield move.target
+    for block in blocks:
+        for command in block.commands:
+            made, _ = joint_move(command, situation)
+            if made is not None and made.enabled is not None:
+                yield made.target
+
+
+def _others(blocks: Mapping[Place, Sequence[Block]], place: Place) -> AbstractSet[Tuple[str, Edge]]:
+    """What the other parts of the stage command."""
+    return commanded(block for other, some in blocks.items() if other != place for block in some)
+
+
+def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
+    """Why these stages cannot be those of a strategy for the objective; "" if they may."""
+    if objective.kind is Kind.SAFETY:
+        return "an objective without a goal has no stages"
+    if objective.kind is not Kind.REACH and any(len(milestones) != 1 for milestones in strategy.stages):
+        return "nobody guards against what is to be avoided where a part of a stage has ended before the others"
+    milestones = [place for stage in strategy.stages for place in stage]
+    if len({name for name, _ in milestones}) != len(milestones):
+        return "an automaton has two milestones"
+    if strategy.stages[-1] != (objective.goal,):
+        return "the last stage does not end at the goal"
+    if None in strategy.parts:
+        return "a block leads to no milestone"
+    names_in_use = (*network.clocks, *network.channels, *(automaton.name for automaton in network.automata))
+    if any(name.startswith(BEGIN) for name in names_in_use):
+        return f"a name begins with {BEGIN}"
+    names = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
+    return next((f"there is no {name}.{place}" for name, place in milestones if (name, place) not in names), "")
+
+
+def _misnamed(
+    network: Network, strategy: Strategy, stage: int, blocks: Mapping[Place, Sequence[Block]], known: Known
+) -> str:
+    """Why these blocks cannot be those of the parts of a stage; "" if they may."""
+    before = {name for milestones in strategy.stages[:stage] for name, _ in milestones}
+    busy: Set[str] = set()
+    for place, own in blocks.items():
+        if not own:
+            return f"no block leads to {place[0]}.{place[1]}"
+        automata, variables = _names(own[0])
+        if any(_names(block) != (automata, variables) for block in own):
+            return f"the blocks that lead to {place[0]}.{place[1]} do not all name the same"
+        if not automata.issubset(a.name for a in network.automata) or not variables.issubset(dict(network.variables)):
+            return "blocks name what the network does not have"
+        missing = sorted(before.union([place[0]]) - automata)
+        missing += [name for a in sorted(automata) for name in known.owned[a] if name not in variables]
+        if missing:
+            return f"the blocks that lead to {place[0]}.{place[1]} do not name {missing[0]}"
+        busy.update({name for name, _ in _others(blocks, place)} & automata)
+        busy.update({name for name, _ in blocks if (name, _) != place} & automata)
+    return f"{min(busy)} matters to two parts of a stage" if busy else ""
+
+
+def _names(block: Block) -> Tuple[Set[str], Set[str]]:
+    return {name for name, _ in block.state.locations}, {name for name, _ in block.state.values}
+
+
+def _begun(part: Network, blocks: Iterable[Block]) -> Strategy:
+    """The blocks in the network in which the stage begins anywhere, behind one for its beginning."""
+    first = DiscreteState((*((a.name, BEGIN) for a in part.automata), (BEGIN, BEGIN)), part.variables)
+    said = tuple(
+        replace(block, state=replace(block.state, locations=(*block.state.locations, (BEGIN, BEGUN))))
+        for block in blocks
+    )
+    return Strategy((Block(first, ((),), ()), *said))

@@ -1,0 +1,241 @@
+"""Games of many agents: with few of the robots, and in stages.
+
+Where a game is not decided with little work, it may be won by some of the robots while the others stand still, or in
+stages, a subgoal after the other, each in a game of those who matter to it (see `proof.stages`). Whatever wins so wins
+the game, in which it is proven; where nothing does, nothing is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import AbstractSet, Collection, Dict, FrozenSet, Iterator, List, Optional, Sequence, Set
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.known import Known, at_start
+from pursue_gen.proof.live import Commanded, is_controllers, live, taken_over
+from pursue_gen.proof.stages import after_stage
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.subgoals import Subgoal, commanded_agents, subgoals
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.cone import cone_of_influence
+from pursue_gen.synthesis.solve import Stats
+from pursue_gen.synthesis.strategy import Block, Place, Strategy
+from pursue_gen.tga.begin import BEGIN, beginning_in
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Kind, Network, Objective
+from pursue_gen.tga.part import part_of
+
+_FIRST = 20_000_000
+"""The work that is spent on a game as it is, a second or so, before it is tried so: divided by the size of a zone."""
+
+WORK = 60_000_000
+"""The work that is spent on trying."""
+
+_GAME = 8_000_000
+"""The work of one game of these."""
+
+_MOST = 4
+"""So many robots at most make a team."""
+
+_LIMIT_HIT, _LOST = 5, 4
+"""The exit statuses of errors at a limit, and of what is lost."""
+
+
+def little_work(network: Network) -> int:
+    """The work that is spent on a game as it is."""
+    return max(1, _FIRST // (len(network.clocks) + 1) ** 2)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A proven strategy, and what it took to find it."""
+
+    strategy: Strategy
+    stats: Stats
+
+
+def won_by_some(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Found]:
+    """A proven strategy for some of the robots, or one in stages; None where none is found with little work."""
+    budget = Budget(replace(options.limits, work=WORK), options.progress, options.engine, whole=True)
+    search = _Search(network, objective, reaction, options, budget)
+    try:
+        strategy = search.found()
+    except PursueError as problem:
+        if problem.exit_status not in (_LIMIT_HIT, _LOST):
+            raise
+        return None
+    return None if strategy is None else Found(strategy, search.stats())
+
+
+class _Search:
+    def __init__(
+        self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, budget: Budget
+    ) -> None:
+        self._network, self._objective, self._reaction = network, objective, reaction
+        self._options, self._budget = options, budget
+        self._taken = taken_over(network)
+        self._robots = commanded_agents(network)
+        self._subgoals: List[Place] = []
+        self._verdicts: List[Stats] = []
+
+    def stats(self) -> Stats:
+        """What all the games took."""
+        counts = [
+            (some.discrete_states, some.zones, some.seconds, some.symbolic_states, some.work) for some in self._verdicts
+        ]
+        states, zones, seconds, symbolic, work = (sum(column) for column in zip(*counts))
+        return Stats(self._verdicts[0].engine, int(states), int(zones), seconds, int(symbolic), int(work))
+
+    def found(self) -> Optional[Strategy]:
+        """The first strategy that is found; raises PursueError at a limit."""
+        if self._objective.goal is None:
+            return self._proven((), self._part(self._objective, self._robots, (), at_start(self._network)))
+        goals = subgoals(self._network, self._objective.goal)
+        if len(goals) == 1:
+            return self._proven((), self._part(self._objective, goals[0].agents, (), at_start(self._network)))
+        self._subgoals = [goal.place for goal in goals]
+        one_by_one = [[goal] for goal in goals]
+        at_once = self._options.together and self._objective.kind is Kind.REACH
+        together = _grouped(goals) if at_once else one_by_one
+        for stages in [together, one_by_one] if together != one_by_one else [together]:
+            strategy = self._in_stages(stages)
+            if strategy is not None:
+                return strategy
+        return None
+
+    def _in_stages(self, stages: Sequence[Sequence[Subgoal]]) -> Optional[Strategy]:
+        """A strategy that meets the subgoals of each stage at the same time."""
+        known = at_start(self._network)
+        milestones: List[Place] = []
+        blocks: List[Block] = []
+        for stage in stages:
+            own: Dict[Place, List[Block]] = {}
+            for goal in stage:
+                wanted = replace(self._objective, goal=goal.place)
+                found = self._part(wanted, goal.agents, milestones, known)
+                if found is None:
+                    return None
+                own[goal.place] = found
+                blocks += found
+            following = after_stage(self._network, known, own)
+            if following is None:
+                return None
+            known = following
+            milestones += own
+        return self._proven([[goal.place for goal in stage] for stage in stages], blocks)
+
+    def _proven(self, stages: Sequence[Sequence[Place]], blocks: Optional[Sequence[Block]]) -> Optional[Strategy]:
+        """The strategy of these blocks, if it wins the game."""
+        if blocks is None:
+            return None
+        strategy = Strategy(tuple(blocks), stages=tuple(map(tuple, stages)))
+        limits = self._options.limits
+        report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
+        return strategy if report.ok else None
+
+    def _part(
+        self, wanted: Objective, doers: Collection[str], milestones: Sequence[Place], known: Known
+    ) -> Optional[List[Block]]:
+        """The blocks of a part of a stage; None where no team wins it with little work."""
+        for team in self._teams(doers):
+            found = self._with_team(wanted, team, milestones, known)
+            if found is not None:
+                return found
+        return None
+
+    def _teams(self, doers: Collection[str]) -> Iterator[FrozenSet[str]]:
+        """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
+        guards: FrozenSet[str] = frozenset()
+        if self._objective.kind is Kind.REACH_WHILE_SAFE:
+            safe = replace(self._objective, kind=Kind.SAFETY, goal=None)
+            matter = {automaton.name for automaton in cone_of_influence(self._network, safe).automata}
+            guards = frozenset(matter.intersection(self._robots))
+        some = [name for name in self._robots if name in doers]
+        sizes = [size for size in range(1, _MOST + 1) if size < len(some)]
+        for size in sizes or [len(some)]:
+            yield guards.union(some[:size])
+        if sizes and len(some) <= _MOST + 1:
+            yield guards.union(some)
+
+    def _with_team(
+        self, wanted: Objective, team: AbstractSet[str], milestones: Sequence[Place], known: Known
+    ) -> Optional[List[Block]]:
+        """The same with this team; None where it does not win."""
+        alive, _ = live(self._network, self._allowed(team, wanted, milestones), known.places())
+        cone = cone_of_influence(alive, wanted)
+        names = {a.name for a in cone.automata} | {name for name, _ in milestones}
+        variables = {name for name, _ in cone.variables} | {v for name in names for v in known.owned[name]}
+        part = part_of(alive, names, variables)
+        starts = known.states(part)
+        if starts is None:
+            return None
+        game = beginning_in(part, starts) if milestones else part
+        try:
+            verdict = self._budget.verdict(game, wanted, self._reaction, min(1.0, _GAME / max(1, self._budget.work)))
+            self._verdicts.append(verdict.stats)
+            if verdict.strategy is None:
+                return None
+            proven = prove(game, wanted, verdict.strategy, self._reaction, verdict.ranks, self._options)
+        except PursueError as problem:
+            if problem.exit_status not in (_LIMIT_HIT, _LOST) or self._budget.used_up:
+                raise
+            return None
+        return _without_begin(proven)
+
+    def _allowed(self, team: AbstractSet[str], wanted: Objective, milestones: Sequence[Place]) -> Commanded:
+        """What may be commanded in a stage: what the team does, but for what undoes a milestone or is for another one.
+
+        The commands of objectives come last.
+        """
+        is_last = wanted == self._objective
+        undoing = set()
+        for name, place in self._subgoals:
+            if (name, place) != wanted.goal:
+                undoing.update(_received(self._network.automaton(name)))
+        if wanted.goal is not None:
+            undoing -= _received(self._network.automaton(wanted.goal[0]), wanted.goal[1])
+        return {
+            (automaton.name, edge)
+            for automaton in self._network.automata
+            if automaton.name in team or (is_last and not is_agent(automaton))
+            for edge in automaton.edges
+            if is_controllers(edge, self._taken)
+            and (edge.sync is None or edge.sync.channel not in undoing)
+        }
+
+
+def _grouped(goals: Sequence[Subgoal]) -> List[List[Subgoal]]:
+    """The subgoals in stages: those of a stage are for different agents, and need nothing of each other."""
+    stages: List[List[Subgoal]] = []
+    for goal in goals:
+        here = stages[-1] if stages and goal is not goals[-1] else None
+        if here is None or any(other.place in goal.before or other.agents & goal.agents for other in here):
+            stages.append([goal])
+        else:
+            here.append(goal)
+    return stages
+
+
+def _received(automaton: Automaton, until: str = "") -> Set[str]:
+    """The channels on which an automaton receives, but for those on which it leaves this location."""
+    return {
+        edge.sync.channel
+        for edge in automaton.edges
+        if edge.sync is not None and not edge.sync.sends and edge.source != until
+    }
+
+
+def _without_begin(strategy: Strategy) -> List[Block]:
+    """The blocks of a stage in the names of the network itself (see `tga.begin`)."""
+    blocks = []
+    for block in strategy.blocks:
+        places = dict(block.state.locations)
+        if places.pop(BEGIN, None) != BEGIN:
+            state = replace(block.state, locations=tuple(places.items()))
+            blocks.append(replace(block, state=state))
+    return blocks

@@ -1,0 +1,140 @@
+"""What has to be reached before the goal: locations of rules without which nobody can do what leads there.
+
+They are read off the guards, as the landmarks of a plan are (Hoffmann, Porteous, Sebastia, "Ordered landmarks in
+planning", JAIR 2004). What is found is only tried: stages that do not win are not used, and a missing one costs time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
+
+from pursue_gen.proof.live import taken_over
+from pursue_gen.synthesis.strategy import Place
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Edge, Network
+
+
+@dataclass(frozen=True)
+class Subgoal:
+    """A location to come to, the controllable agents who can do what leads there, and what has to be reached before."""
+
+    place: Place
+    agents: FrozenSet[str]
+    before: FrozenSet[Place] = frozenset()
+
+
+def subgoals(network: Network, goal: Place) -> Tuple[Subgoal, ...]:
+    """The subgoals of a goal in an order in which they can be met; the goal itself is the last."""
+    return _Search(network).of(goal)
+
+
+def commanded_agents(network: Network) -> Tuple[str, ...]:
+    """The agents with edges that only the controller takes."""
+    taken = taken_over(network)
+    return tuple(a.name for a in network.automata if is_agent(a) and any(_is_commanded(e, taken) for e in a.edges))
+
+
+def _is_commanded(edge: Edge, taken: AbstractSet[str]) -> bool:
+    return edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))
+
+
+class _Search:
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._commanded = set(commanded_agents(network))
+        self._senders: Dict[str, List[Tuple[Automaton, Edge]]] = {}
+        self._setters: Dict[str, Set[str]] = {}
+        for automaton in network.automata:
+            for edge in automaton.edges:
+                if edge.sync is not None and edge.sync.sends:
+                    self._senders.setdefault(edge.sync.channel, []).append((automaton, edge))
+                for name, _ in edge.assign:
+                    self._setters.setdefault(name, set()).add(automaton.name)
+        self._initial = dict(network.variables)
+        self._agents = {a.name for a in network.automata if is_agent(a)}
+
+    def of(self, goal: Place) -> Tuple[Subgoal, ...]:
+        """The subgoals of the goal, and the goal."""
+        found: Dict[Place, Optional[Subgoal]] = {}
+        self._visit(goal, found)
+        return tuple(subgoal for subgoal in found.values() if subgoal is not None)
+
+    def _visit(self, place: Place, found: Dict[Place, Optional[Subgoal]]) -> None:
+        """Add what comes before the place, then the place."""
+        under_way: Dict[Place, None] = {}
+
+        def visit(place: Place) -> None:
+            if place in found or place in under_way:
+                return
+            under_way[place] = None
+            doers: Set[str] = set()
+            earlier: Set[Place] = set()
+            for edge in _way_to(self._network.automaton(place[0]), place[1]):
+                moves = self._moves(place[0], edge)
+                doers.update(self._doers(moves))
+                for fact in _common(moves):
+                    before = self._place_of(fact, place[0])
+                    if before is not None:
+                        visit(before)
+                        known = found.get(before)
+                        earlier.update([before], known.before if known else ())
+            found[place] = Subgoal(place, frozenset(doers), frozenset(earlier))
+
+        visit(place)
+
+    def _moves(self, automaton: str, edge: Edge) -> List[Tuple[str, Edge]]:
+        """Who may make the edge be taken, and by which edges."""
+        if edge.sync is None or edge.sync.sends:
+            return [(automaton, edge)]
+        return [(sender.name, sending) for sender, sending in self._senders.get(edge.sync.channel, ())]
+
+    def _doers(self, moves: Iterable[Tuple[str, Edge]]) -> Iterator[str]:
+        """The commanded agents who make these moves or whose position they need."""
+        for name, edge in moves:
+            owners = {name}
+            for clause in edge.guard.integers:
+                for test in clause:
+                    owners |= self._setters.get(test.variable, set()) & self._agents
+            yield from owners & self._commanded
+
+    def _place_of(self, fact: Tuple[str, FrozenSet[int]], asking: str) -> Optional[Place]:
+        """The one place that makes the fact true; None where it is true at first, an agent's, or not of one place."""
+        variable, values = fact
+        setters = self._setters.get(variable, set())
+        if self._initial.get(variable) in values or len(setters) != 1 or setters & self._agents or asking in setters:
+            return None
+        owner = self._network.automaton(next(iter(setters)))
+        places = {e.target for e in owner.edges if any(n == variable and v in values for n, v in e.assign)}
+        if len(places) != 1 or places == {owner.initial}:
+            return None
+        return owner.name, places.pop()
+
+
+def _common(moves: Iterable[Tuple[str, Edge]]) -> List[Tuple[str, FrozenSet[int]]]:
+    """The facts that all of the moves need, in order."""
+    needed: Optional[List[Tuple[str, FrozenSet[int]]]] = None
+    for _, edge in moves:
+        facts = []
+        for clause in edge.guard.integers:
+            names = {test.variable for test in clause}
+            if len(names) == 1:
+                facts.append((names.pop(), frozenset(test.value for test in clause)))
+        needed = facts if needed is None else [fact for fact in needed if fact in facts]
+    return needed or []
+
+
+def _way_to(automaton: Automaton, location: str) -> List[Edge]:
+    """The edges of the only way from the start to a location, in order; of several ways those of their last parts."""
+    way: List[Edge] = []
+    place = location
+    met = {location}
+    while place != automaton.initial:
+        edges = [e for e in automaton.edges if e.target == place != e.source]
+        way = edges + way
+        sources = {e.source for e in edges}
+        if len(sources) != 1 or sources & met:
+            break
+        place = sources.pop()
+        met.add(place)
+    return way

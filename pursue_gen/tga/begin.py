@@ -1,0 +1,46 @@
+"""A network that may begin in any of several discrete states, with any values of its clocks.
+
+One more automaton takes it there: at first no time can pass, and the environment makes one of its moves, which leads
+all automata to one of the states. Where an invariant there does not hold of the clocks, that move is not possible.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import List, Sequence, Tuple
+
+from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Location, Network, Sync
+
+BEGIN = "_begin"
+"""The automaton that begins, its clock, and the location in which all the others are before."""
+
+BEGUN = "_begun"
+
+State = Tuple[Tuple[str, ...], Tuple[int, ...]]
+"""The location of every automaton and the value of every variable, in the network's order."""
+
+
+def beginning_in(network: Network, states: Sequence[State]) -> Network:
+    """The network that begins in one of the states. Its automata keep their order; the new one is the last."""
+    channels = tuple(f"{BEGIN}{number}" for number in range(len(states)))
+    assigned = [tuple(zip((name for name, _ in network.variables), values)) for _, values in states]
+    bound = (ClockBound(BEGIN, "<=", 0),)
+    edges = tuple(
+        Edge(BEGIN, BEGUN, sync=Sync(channel, True), assign=values, controllable=False)
+        for channel, values in zip(channels, assigned)
+    )
+    first = Automaton(BEGIN, (Location(BEGIN, bound), Location(BEGUN)), BEGIN, edges)
+    automata: List[Automaton] = []
+    for k, automaton in enumerate(network.automata):
+        led = tuple(
+            Edge(BEGIN, locations[k], sync=Sync(channel, False), controllable=False)
+            for channel, (locations, _) in zip(channels, states)
+        )
+        places = (*automaton.locations, Location(BEGIN))
+        home = automaton.home or automaton.initial
+        automata.append(replace(automaton, locations=places, initial=BEGIN, edges=(*automaton.edges, *led), home=home))
+    start = (Constraint(BEGIN, None, Fraction(0), False),)
+    return Network(
+        (*network.clocks, BEGIN), network.variables, (*network.channels, *channels), (*automata, first), start
+    )

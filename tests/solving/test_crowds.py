@@ -1,0 +1,140 @@
+"""Games of many agents: some of the robots suffice, or a subgoal is met after the other."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Callable, Set
+
+import pytest
+
+from benchmarks.families import catch_by_robots, clean_by_robots, deliver_by_robots, hand_to_visitors
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition import partition
+from pursue_gen.proof.checker import verify
+from pursue_gen.replay.game import Source, game_of
+from pursue_gen.simulation.make import make_case
+from pursue_gen.simulation.mission import Settings, simulate_mission
+from pursue_gen.simulation.runs import MissionRunner
+from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.solution import Solution, solution
+from pursue_gen.solving.subgoals import subgoals
+from pursue_gen.synthesis.plan import read_plan, write_plan
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
+
+DELAY = Fraction(1, 10)
+
+
+def scenario_of(text: str) -> Scenario:
+    return parse(text, "crowd.pur", "crowd")
+
+
+def won_so(text: str, together: bool = False) -> Solution:
+    """What is found for some of the robots or in stages, proven once more."""
+    scenario = scenario_of(text)
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    found = won_by_some(network, objective, DELAY, SolveOptions(together=together))
+    assert found is not None
+    assert verify(network, objective, found.strategy, DELAY).ok
+    return Solution(network, objective, found.strategy, DELAY, found.stats)
+
+
+def named(strategy: Strategy) -> Set[str]:
+    """Everybody of whom the strategy ever speaks."""
+    return {name for block in strategy.blocks for name, _ in block.state.locations}
+
+
+@pytest.mark.parametrize("family, robot", [(catch_by_robots, "officer1"), (clean_by_robots, "bot1")])
+def test_where_one_robot_suffices_the_others_do_not_matter(family: Callable[[int], str], robot: str) -> None:
+    strategy = won_so(family(20)).strategy
+    assert strategy.stages == ()
+    assert {name for name in named(strategy) if name.startswith(("officer", "bot"))} == {robot}
+
+
+def test_twenty_robots_cost_twenty_small_games() -> None:
+    few, many = won_so(deliver_by_robots(5)), won_so(deliver_by_robots(20))
+    assert len(many.strategy.stages) == 21
+    assert many.stats is not None and few.stats is not None
+    assert many.stats.discrete_states < 5 * few.stats.discrete_states
+    assert len(many.strategy.blocks) < 5 * len(few.strategy.blocks)
+
+
+def test_visitors_are_met_one_after_the_other() -> None:
+    won = won_so(hand_to_visitors(4))
+    assert [milestone for (milestone,) in won.strategy.stages] == [
+        ("rule1", "rule10"), ("rule2", "rule20"), ("rule3", "rule30"), ("rule4", "rule40"), ("reachObj", "win")
+    ]  # fmt: skip
+    for block in won.strategy.blocks:
+        assert sum(name.startswith("visitor") for name, _ in block.state.locations) <= 1, "the others may be anywhere"
+
+
+def test_a_game_that_takes_little_work_is_solved_in_one_piece() -> None:
+    scenario = scenario_of(hand_to_visitors(1))
+    won = solution(translate(scenario), scenario_objective(scenario), Rules())
+    assert won.strategy.stages == () and won.guarantee is None
+
+
+def test_a_larger_one_is_solved_in_stages() -> None:
+    scenario = scenario_of(hand_to_visitors(4))
+    network, objective = translate(scenario), scenario_objective(scenario)
+    assert len(solution(network, objective, Rules()).strategy.stages) == 5
+
+
+def test_what_cannot_be_won_is_not() -> None:
+    slow = hand_to_visitors(2).replace("controllable mobile 1", "controllable mobile 4")
+    scenario = scenario_of(slow)
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    found = won_by_some(network, objective, DELAY, SolveOptions())
+    assert found is None or verify(network, objective, found.strategy, DELAY).ok
+
+
+def test_subgoals_come_before_what_needs_them() -> None:
+    scenario = scenario_of(deliver_by_robots(2))
+    goals = subgoals(translate(scenario), ("reachObj", "win"))
+    assert [(goal.place[0], sorted(goal.agents)) for goal in goals] == [
+        ("rule1", ["bot1"]), ("rule2", ["bot2"]), ("reachObj", ["bot1"])
+    ]  # fmt: skip
+    assert goals[2].before == {goals[0].place, goals[1].place}
+
+
+@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3)])
+def test_a_plan_in_stages_is_read_as_it_was_written(text: str) -> None:
+    won = won_so(text)
+    plan = write_plan(won.strategy, won.network, won.objective)
+    assert read_plan(plan, won.network, "plan.txt") == won.strategy
+
+
+def test_a_milestone_that_the_network_does_not_have_is_an_error_with_its_line() -> None:
+    won = won_so(hand_to_visitors(2))
+    plan = write_plan(won.strategy, won.network, won.objective).replace("Stage: rule2.rule20", "Stage: rule2.nowhere")
+    with pytest.raises(PursueError, match="milestone 'rule2.nowhere'") as problem:
+        read_plan(plan, won.network, "plan.txt")
+    assert problem.value.diagnostics[0].span is not None and problem.value.diagnostics[0].span.line == 4
+
+
+def test_parts_that_are_played_at_the_same_time_are_not_given_to_controllers() -> None:
+    scenario = scenario_of(deliver_by_robots(2))
+    won = won_so(deliver_by_robots(2), together=True)
+    with pytest.raises(PursueError, match="at the same time"):
+        partition(won.strategy, won.network, scenario.agents)
+
+
+@pytest.mark.parametrize("controllers", ["distributed", "centralized"])
+@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3)])
+def test_controllers_play_the_stages_to_the_goal(text: str, controllers: str) -> None:
+    scenario, won = scenario_of(text), won_so(text)
+    runner = MissionRunner(make_case(scenario, won, SolveRequest(controllers=controllers), "random", (), None)[0])
+    settings = Settings("random")
+    missions = [simulate_mission(runner.stage, settings, number) for number in range(1, 16)]
+    assert [mission.end for mission in missions] == ["goal"] * 15, missions
+
+
+def test_a_recorded_game_in_stages_is_solved_again_for_replay() -> None:
+    text = hand_to_visitors(4)
+    game = game_of(Source("crowd", text, "crowd.pur", Rules()))
+    assert game.orders is not None
