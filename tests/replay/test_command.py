@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +14,13 @@ from pursue_gen.language import load
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from tests.cli.test_commands import Outcome, pursue
 
 
-def called(*words: Any) -> "subprocess.CompletedProcess[str]":
-    """The command in a process of its own."""
-    command = [sys.executable, "-m", "pursue_gen", "replay", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
-    assert "Traceback" not in done.stderr, done.stderr
+def called(*words: Any) -> Outcome:
+    """What the command leaves behind."""
+    done = pursue("replay", *words)
+    assert "Traceback" not in done.err, done.err
     return done
 
 
@@ -33,16 +31,16 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_bag_alone_is_enough(bag: Path) -> None:
     done = called(bag)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.splitlines()[-1] == "The mission kept to the model and was won."
-    assert "    10.40      5  bot1_going_c_to_b2b, report of simulator" in done.stdout
+    assert done.status == 0, done.out + done.err
+    assert done.out.splitlines()[-1] == "The mission kept to the model and was won."
+    assert "    10.40      5  bot1_going_c_to_b2b, report of simulator" in done.out
 
 
 def test_the_scenario_may_be_named(bag: Path, tmp_path: Path) -> None:
     bare = write_bag(mission(), tmp_path / "bare.bag")
-    assert called(bare, SCENARIO).returncode == 0
+    assert called(bare, SCENARIO).status == 0
     missing = called(bare)
-    assert missing.returncode == 2 and "SCENARIO.pur" in missing.stderr
+    assert missing.status == 2 and "SCENARIO.pur" in missing.err
 
 
 def test_what_a_workspace_knows_is_taken(bag: Path, tmp_path: Path) -> None:
@@ -52,25 +50,25 @@ def test_what_a_workspace_knows_is_taken(bag: Path, tmp_path: Path) -> None:
     journal = write_journal(PLAY, tmp_path / "journal-1.jsonl")
     for file in (bag, journal):
         done = called(file, "--workspace", place, "--quiet")
-        assert done.returncode == 0, done.stdout + done.stderr
-        assert len(done.stdout.splitlines()) == 2
-    assert called(bag, SCENARIO, "--workspace", place).returncode == 2
-    assert called(bag, "--workspace", tmp_path).returncode == 2
+        assert done.status == 0, done.out + done.err
+        assert len(done.out.splitlines()) == 2
+    assert called(bag, SCENARIO, "--workspace", place).status == 2
+    assert called(bag, "--workspace", tmp_path).status == 2
 
 
 def test_a_mission_that_left_the_model_gives_status_1_and_says_where(tmp_path: Path) -> None:
     play = tuple((at - 1.0 if "c_to_b2b" in word else at, word, node) for at, word, node in PLAY)
     bag = write_bag(mission(play), tmp_path / "early.bag", GAME)
     done = called(bag)
-    assert done.returncode == 1
-    assert "WORLD: bot1_going_c_to_b2b by bot1 comes 0.70 time units early for the model" in done.stdout
-    assert done.stdout.splitlines()[-1].startswith("The mission left the model")
-    assert called(bag, "--tolerance", "0.8").returncode == 0
+    assert done.status == 1
+    assert "WORLD: bot1_going_c_to_b2b by bot1 comes 0.70 time units early for the model" in done.out
+    assert done.out.splitlines()[-1].startswith("The mission left the model")
+    assert called(bag, "--tolerance", "0.8").status == 0
 
 
 def test_json_holds_everything(bag: Path) -> None:
     done = called(bag, "--json")
-    told = json.loads(done.stdout)
+    told = json.loads(done.out)
     assert (told["kept"], told["won"], told["status"], told["findings"]) == (True, True, "won", [])
     assert [step["event"] for step in told["steps"]][:2] == ["reachObj_going_initial_location2unlocked", "bot1_c2b"]
     assert told["steps"][1]["said_by"] == "controller_bot1" and told["steps"][1]["command"] is True
@@ -78,16 +76,16 @@ def test_json_holds_everything(bag: Path) -> None:
 
 def test_a_mission_that_was_not_won_gives_status_1(tmp_path: Path) -> None:
     done = called(write_bag(mission(PLAY[:-1]), tmp_path / "short.bag", GAME))
-    assert done.returncode == 1 and "had not ended when the recording did" in done.stdout
+    assert done.status == 1 and "had not ended when the recording did" in done.out
 
 
 def test_another_scenario_gives_status_1_and_says_so(bag: Path) -> None:
     done = called(bag, SCENARIO.parent / "scenario_3.pur")
-    assert done.returncode == 1 and "is it the right one?" in done.stdout
+    assert done.status == 1 and "is it the right one?" in done.out
 
 
 def test_a_file_that_is_no_recording_gives_status_2(tmp_path: Path) -> None:
     done = called(SCENARIO)
-    assert done.returncode == 2 and "neither a bag nor a journal" in done.stderr
+    assert done.status == 2 and "neither a bag nor a journal" in done.err
     (tmp_path / "plan.bag").write_bytes(b"#ROSBAG V2.0\n\xff\xff")
-    assert called(tmp_path / "plan.bag").returncode == 2
+    assert called(tmp_path / "plan.bag").status == 2

@@ -17,14 +17,22 @@ import pytest
 from stages import SCENARIOS
 
 from pursue_gen.synthesis.native import engine as native
+from tests.cli.test_commands import pursue
 
 FIRST, THIEF = (SCENARIOS / "thesis" / f"{name}.pur" for name in ("scenario_1", "catch_the_thief"))
 
 
-def called(*words: Any, **environment: str) -> "subprocess.CompletedProcess[str]":
-    """The command in a process of its own, with these environment variables as well."""
+def called(*words: Any) -> "subprocess.CompletedProcess[str]":
+    """The command in this process."""
+    done = pursue("sim", *words)
+    assert "Traceback" not in done.err, done.err
+    return subprocess.CompletedProcess(words, done.status, done.out, done.err)
+
+
+def hashed(seed: int, *words: Any) -> "subprocess.CompletedProcess[str]":
+    """The command in a process of its own with this seed of hashes."""
     command = [sys.executable, "-m", "pursue_gen", "sim", *map(str, words)]
-    environ = {**os.environ, **environment}
+    environ = {**os.environ, "PYTHONHASHSEED": str(seed)}
     done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False, env=environ)
     assert "Traceback" not in done.stderr, done.stderr
     return done
@@ -43,7 +51,7 @@ def test_a_table_and_what_is_guaranteed() -> None:
 
 def test_neither_the_number_of_processes_nor_the_hash_seed_changes_what_comes_out() -> None:
     words = (FIRST, "--runs", 45, "--faults", "delay,loss,deaths", "--json")
-    alone, both = (called(*words, "--jobs", jobs, PYTHONHASHSEED=str(jobs)) for jobs in (1, 2))
+    alone, both = (hashed(jobs, *words, "--jobs", jobs) for jobs in (1, 2))
     assert alone.returncode == both.returncode == 0, alone.stderr + both.stderr
     assert json.loads(alone.stdout) == json.loads(both.stdout)
     facts = json.loads(alone.stdout)
@@ -54,7 +62,7 @@ def test_neither_the_number_of_processes_nor_the_hash_seed_changes_what_comes_ou
 
 def test_new_plans_are_the_same_for_each_hash_seed() -> None:
     words = (THIEF, "--runs", 12, "--faults", "late,failed,silent", "--json")
-    one, other = (called(*words, PYTHONHASHSEED=seed) for seed in ("1", "2"))
+    one, other = (hashed(seed, *words) for seed in (1, 2))
     assert json.loads(one.stdout)["planned"] > 0
     assert json.loads(one.stdout) == json.loads(other.stdout)
 
