@@ -67,6 +67,15 @@ class PlayByPlay:
         bounds += [b.bound for a in network.automata for loc in a.locations for b in loc.invariant]
         self.longest = UNIT * (2 * max([3, *bounds]) + 3)
         self._moves: Dict[Entry, Tuple[Move, ...]] = {}
+        self._invariants: Dict[Tuple[str, ...], List[Tuple[Automaton, ClockBound]]] = {}
+        self._automaton = {automaton.name: k for k, automaton in enumerate(network.automata)}
+        self._variable = {name: k for k, (name, _) in enumerate(network.variables)}
+        self._clock = {name: k for k, name in enumerate(network.clocks)}
+        self._leaving = {
+            (a.name, loc.name): [e for e in a.edges if e.source == loc.name]
+            for a in network.automata
+            for loc in a.locations
+        }
 
     def broken(self, entries: int = 400) -> Optional[str]:
         """Why a play fails, or None if none is found within so many entries."""
@@ -166,16 +175,16 @@ class PlayByPlay:
             return fits and all(holds(b, clocks) for b in edge.guard.clocks)
 
         for automaton, place in zip(self.network.automata, now[0]):
-            for edge in automaton.edges:
-                if edge.source != place or (edge.sync and not edge.sync.sends) or not open_to(edge):
+            for edge in self._leaving[automaton.name, place]:
+                if (edge.sync and not edge.sync.sends) or not open_to(edge):
                     continue
                 choices = []
                 for other, there in zip(self.network.automata, now[0]):
                     hears = [
                         (other.name, e)
-                        for e in other.edges
-                        if other is not automaton and edge.sync and e.source == there and e.sync and open_to(e)
-                        and not e.sync.sends and e.sync.channel == edge.sync.channel
+                        for e in self._leaving[other.name, there]
+                        if other is not automaton and edge.sync and e.sync and not e.sync.sends
+                        and e.sync.channel == edge.sync.channel and open_to(e)
                     ]
                     choices += [hears] if hears else []
                 for receivers in itertools.product(*choices):
@@ -185,14 +194,14 @@ class PlayByPlay:
 
     def after(self, now: Entry, move: Move) -> Entry:
         """The point after a joint move."""
-        places = dict(zip((a.name for a in self.network.automata), now[0]))
-        values = dict(zip((name for name, _ in self.network.variables), now[1]))
-        clocks = self.clocks(now)
+        places, values, clocks = map(list, now)
         for name, edge in move:
-            places[name] = edge.target
-            values.update(edge.assign)
-            clocks.update({x: 0 for x in edge.resets})
-        return tuple(places.values()), tuple(values.values()), tuple(clocks.values())
+            places[self._automaton[name]] = edge.target
+            for variable, value in edge.assign:
+                values[self._variable[variable]] = value
+            for clock in edge.resets:
+                clocks[self._clock[clock]] = 0
+        return tuple(places), tuple(values), tuple(clocks)
 
     def clocks(self, now: Entry) -> Values:
         """The clocks by name."""
@@ -205,10 +214,12 @@ class PlayByPlay:
 
     def invariants(self, now: Entry) -> List[Tuple[Automaton, ClockBound]]:
         """The bounds of the locations."""
-        here: List[Tuple[Automaton, Location]] = [
-            (a, loc) for a, place in zip(self.network.automata, now[0]) for loc in a.locations if loc.name == place
-        ]
-        return [(a, b) for a, loc in here for b in loc.invariant]
+        if now[0] not in self._invariants:
+            here: List[Tuple[Automaton, Location]] = [
+                (a, loc) for a, place in zip(self.network.automata, now[0]) for loc in a.locations if loc.name == place
+            ]
+            self._invariants[now[0]] = [(a, b) for a, loc in here for b in loc.invariant]
+        return self._invariants[now[0]]
 
     def lasts(self, now: Entry) -> bool:
         """True within all invariants."""
