@@ -11,17 +11,17 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 LONGEST = (
-    "ros/test_missions", "ros/test_robots", "ros/test_faults", "ros/test_links", "ros/test_witness",
-    "ros/test_nodes", "ros/test_fleet", "ros/test_missions_with_blocked_ways", "ros/test_run_mission",
-    "ros/test_web", "ros/test_disturbed_missions", "ros/test_real_robots_launch", "ros/test_newcomer",
-    "ros/test_benchmarks", "ros/test_parameters", "ros/test_missions_with_spots", "ros/test_received_missions",
-    "ros/test_recording", "ros/test_ui_node", "ros/test_install_space", "workspace/test_writer_kills",
-    "scenarios/test_scenarios", "synthesis/test_verdicts", "proof/test_checker",
-    "simulation/test_simulated_command", "synthesis/test_engines", "language/test_hostile",
-    "simulation/test_simulated_missions", "runtime/manager/test_hostile_requests", "synthesis/test_start",
-    "workspace/test_generate", "solving/test_least_time", "workspace/test_writer_links", "lsp/test_packaging",
-    "proof/test_invariant", "synthesis/test_native", "solving/test_verifytga", "cli/test_progress",
-    "synthesis/test_plan", "test_tutorial", "cli/test_commands", "transport/test_bundles",
+    "ros/test_missions", "ros/test_missions_among_others", "ros/test_robots", "ros/test_faults", "ros/test_links",
+    "ros/test_witness", "ros/test_nodes", "ros/test_fleet", "ros/test_missions_with_blocked_ways",
+    "ros/test_run_mission", "ros/test_web", "ros/test_disturbed_missions", "ros/test_real_robots_launch",
+    "ros/test_newcomer", "ros/test_benchmarks", "ros/test_missions_with_spots", "ros/test_received_missions",
+    "ros/test_recording", "ros/test_ui_node", "ros/test_install_space",
+    "scenarios/test_scenarios", "proof/test_checker", "synthesis/test_engines", "simulation/test_simulated_command",
+    "language/test_hostile", "synthesis/test_cone", "synthesis/test_start", "runtime/manager/test_hostile_requests",
+    "simulation/test_simulated_missions", "synthesis/test_plan", "runtime/test_hostile_texts", "lsp/test_packaging",
+    "workspace/test_generate", "cli/test_progress", "synthesis/test_limits", "cli/test_commands", "cli/test_statuses",
+    "replay/test_command", "synthesis/test_verdicts", "solving/test_least_time", "proof/test_invariant",
+    "synthesis/test_native", "solving/test_verifytga", "test_tutorial", "transport/test_bundles",
 )
 """Files that take more than some ten seconds, the longest first; all others are short, in any order."""
 

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from pathlib import Path
-from typing import Callable, List
+from typing import Callable
 
 import pytest
-from ros_world import Ros, judged, make
+from ros_world import Ros, judged, make, missions
 
-from benchmarks.families import pass_bystanders
 from pursue_gen.language import parse
-from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options, write_workspace
@@ -26,11 +22,6 @@ ALONE = ["scenario_1", "scenario_2", "scenario_3", "scenario_4"]
 pytestmark = pytest.mark.ros
 
 
-def missions(results: List[str]) -> int:
-    """How many missions were played: each answers the five questions of mission_test.py."""
-    return sum(re.search(r"rosunit-mission_\w+\.xml: 5 tests$", line) is not None for line in results)
-
-
 @pytest.mark.parametrize("controllers", ["distributed", "centralized"])
 @pytest.mark.parametrize("name", ALONE)
 def test_missions_of_robots_alone(ros: Ros, built: Build, name: str, controllers: str) -> None:
@@ -40,23 +31,6 @@ def test_missions_of_robots_alone(ros: Ros, built: Build, name: str, controllers
 @pytest.mark.parametrize("controllers", ["distributed", "centralized"])
 def test_the_thief_of_the_thesis_is_caught_still_and_moving(ros: Ros, built: Build, controllers: str) -> None:
     assert missions(judged(ros, built("thesis/catch_the_thief", controllers))) == 4
-
-
-@pytest.mark.parametrize("name", ["catch_the_thief/one_officer", "work_cell/work_cell"])
-def test_missions_among_agents_that_nobody_controls(ros: Ros, built: Build, name: str) -> None:
-    assert missions(judged(ros, built(name))) == 4
-
-
-def test_passers_by_are_seen_and_change_nothing(ros: Ros, tmp_path: Path) -> None:
-    """They walk and shout all the time: the state follows them, and the commands name the robots' states alone."""
-    text = pass_bystanders(2).replace('event "report"', 'event "report"\nevent "shout"')
-    text = text.replace("mobile 3 location hub", "mobile 1 location hub can_do shout")
-    scenario = parse(text, "crowd.pur", "crowd")
-    won = solve_scenario(scenario, Rules())
-    folder = write_workspace(scenario, won.network, won.objective, won.strategy, Options(), tmp_path / "crowd")
-    assert "person1" not in (folder / "src" / "controller_bot1" / "config" / "strategy.yaml").read_text()
-    assert "person1" in (folder / "src" / "observer" / "config" / "model.yaml").read_text()
-    assert missions(judged(ros, make(ros, folder))) == 4
 
 
 def test_a_general_controller_decides_the_ends_itself(ros: Ros, built: Build) -> None:
