@@ -20,7 +20,6 @@ from pursue_gen.synthesis.game import (
     Game,
     JointMove,
     State,
-    changes_nothing,
     compile_game,
     initial_state,
     is_bad,
@@ -112,7 +111,7 @@ def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:
     known = {done[0].edges[0]} if done else set()
     found: List[Tuple[int, ...]] = [()] if done else []
     for move in joint_moves(game, start):
-        useful = move.controllable and move.owner in agents and not changes_nothing(move, start)
+        useful = move.controllable and move.owner in agents and not move.changes_nothing
         if useful and move.edges[0] not in known and not is_bad(game, move.target):
             known.add(move.edges[0])
             found.append(move.edges)
@@ -244,7 +243,7 @@ class _CounterPlayer:
 
     def _next(self, here: Position) -> Optional[Choice]:
         """What happens next; None: time just passes, for ever or until something is overdue."""
-        moves = [move for move in joint_moves(self._game, here.state) if not changes_nothing(move, here.state)]
+        moves = [move for move in joint_moves(self._game, here.state) if not move.changes_nothing]
         mine = [move for move in moves if move.controllable]
         theirs = [
             (move, window(self._game, here, move))
@@ -355,7 +354,7 @@ class _CounterPlayer:
             if constant(bound) == here.clocks[i - 1] + room
         )
         moves = (move for move in joint_moves(self._game, here.state) if not move.controllable)
-        moves = (move for move in moves if not changes_nothing(move, here.state))
+        moves = (move for move in moves if not move.changes_nothing)
         able = {move.owner for move in moves if window(self._game, here, move).holds(room)}
         if self._horizon is None and able & set(at_bound):
             return ()

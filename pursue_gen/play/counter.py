@@ -35,7 +35,7 @@ from pursue_gen.play.state import (
 )
 from pursue_gen.play.world import Offer
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.game import JointMove, changes_nothing, is_bad, is_goal
+from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 
 _FARTHEST = 32
@@ -202,7 +202,7 @@ class CounterPlay:
 
     def _theirs(self, play: PlayState) -> List[Tuple[JointMove, Window]]:
         moves = open_moves(self.setup, play, False)
-        return [pair for pair in moves if not changes_nothing(pair[0], play.position.state)]
+        return [pair for pair in moves if not pair[0].changes_nothing]
 
     def _preferred(self, driven: _Pairs) -> Iterator[Answer]:
         """Robots end as late as they may, others as soon as they can."""

@@ -50,8 +50,8 @@ class Situation:
 class Arena:
     """The discrete states of a network, worked out when they are asked for; constants are multiplied by `scale`.
 
-    A move of the environment that changes no location, variable or clock is none, unless `idle_moves` is set: nothing
-    has happened, however often it is made. Raises PursueError where the rules of the game do not cover the network.
+    A move that changes no location, variable or clock is none, unless `idle_moves` is set: nothing has happened,
+    however often it is made. Raises PursueError where the rules of the game do not cover the network.
     """
 
     def __init__(self, network: Network, scale: int, idle_moves: bool = False) -> None:
@@ -150,7 +150,7 @@ class Arena:
                 if (edge.sync is None or edge.sync.sends) and self._integers_hold(edge.guard, state[1]):
                     moves += [self._joint(state, invariant, k, edge, r) for r in self._receivers(state, k, edge)]
         if not self._idle_moves:
-            moves = [move for move in moves if move.controllable or move.resets or move.target != state]
+            moves = [move for move in moves if move.resets or move.target != state]
         return Situation(invariant, bounds, tuple(moves))
 
     def _integers_hold(self, guard: Guard, values: Tuple[int, ...]) -> bool:

@@ -10,7 +10,9 @@ NOT_ENABLED = "not enabled: the command's guard or an invariant does not hold he
 TOO_LATE = "may come too late: the command is no longer enabled when it takes effect here"
 CONTRADICTION = "contradiction: the strategy says both to wait and to act here"
 NOT_CONTROLLABLE = "not controllable: the command takes an edge of the environment"
-NO_JOINT_MOVE = "not a joint move: not exactly the sender and all who receive, or the integers do not allow it"
+NO_JOINT_MOVE = (
+    "not a joint move: not exactly the sender and all who receive, the integers do not allow it, or it changes nothing"
+)
 FOR_EVER = "for ever: a play comes back to where it was and need not reach the goal"
 NO_PROGRESS = "no progress: {} leads no nearer to the goal"
 LIMIT = "limit: not decided within {} symbolic states"

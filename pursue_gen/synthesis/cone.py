@@ -7,7 +7,7 @@ only such variables, change nothing for the others.
 
 What is left out cannot stop time: wherever it may be, the environment can let as much time pass as it likes. So each
 play of the part is one of the network, with or without moves of what is left out, and the part is won if and only if
-the network is, moves that change nothing for anybody else counted as none (see `game.changes_nothing`). Controllable
+the network is, moves that change nothing for anybody else counted as none (see `game.JointMove`). Controllable
 agents that are left out stay where they are.
 """
 

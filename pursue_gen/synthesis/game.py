@@ -78,7 +78,8 @@ class Game:
     """The game. `delta` is the scaled reaction delay; `max_constants[i]` the largest scaled constant of clock i.
 
     `goal` and `bad` are (automaton, location) or None. `edges[k]` is made from `origins[k]`, an edge of the network.
-    `start` bounds the clocks at the start (see `start_zone`); empty: they are 0.
+    `start` bounds the clocks at the start (see `start_zone`); empty: they are 0. `unseen` and `unseen_clocks`: what
+    cannot matter, indices of automata and, behind them, of variables; and of clocks.
     """
 
     kind: Kind
@@ -95,6 +96,8 @@ class Game:
     edges: Tuple[GameEdge, ...]
     origins: Tuple[Edge, ...]
     start: Tuple[Bound, ...] = ()
+    unseen: Tuple[int, ...] = ()
+    unseen_clocks: Tuple[int, ...] = ()
 
     @property
     def dim(self) -> int:
@@ -127,6 +130,10 @@ class JointMove:
     """A joint move from a discrete state: the edges (sender or tau first), and all that happens.
 
     `bounds` is the clock guard of all the edges; it says nothing of the target's invariant.
+
+    `changes_nothing`: it leads to the same state again, with all clocks as they were; a command also if it only changes
+    what cannot matter. It is no move to solver and checker: whoever makes it, and however often, nothing has happened.
+    So it makes no command stale, and is no way out at the bound of an invariant: nobody keeps time from passing by it.
     """
 
     edges: Tuple[int, ...]
@@ -135,10 +142,15 @@ class JointMove:
     resets: Tuple[int, ...]
     controllable: bool
     owner: int
+    changes_nothing: bool
 
 
-def compile_game(network: Network, objective: Objective, reaction: Fraction = Fraction(0)) -> Game:
+def compile_game(
+    network: Network, objective: Objective, reaction: Fraction = Fraction(0), part: Optional[Network] = None
+) -> Game:
     """The tables of a network and an objective, with a reaction delay in time units.
+
+    `part`: the part of the network that can matter, if that is not all of it.
 
     Raises PursueError with everything that the game does not support: clock guards on receiving edges, invariants that
     are not upper bounds with <=, unknown names, a start that no clock values satisfy.
@@ -177,7 +189,20 @@ def compile_game(network: Network, objective: Objective, reaction: Fraction = Fr
         edges=tuple(edges),
         origins=tuple(edge for automaton in network.automata for edge in automaton.edges),
         start=start,
+        unseen=() if part is None else _unseen(network, part),
+        unseen_clocks=() if part is None else tuple(_others(network.clocks, part.clocks, 1)),
     )
+
+
+def _unseen(network: Network, part: Network) -> Tuple[int, ...]:
+    """The indices in a discrete state of what the part does not have."""
+    automata, some = [a.name for a in network.automata], [a.name for a in part.automata]
+    variables, others = [name for name, _ in network.variables], [name for name, _ in part.variables]
+    return (*_others(automata, some), *_others(variables, others, len(automata)))
+
+
+def _others(names: Sequence[str], some: Sequence[str], first: int = 0) -> Iterator[int]:
+    return (k for k, name in enumerate(names, first) if name not in some)
 
 
 class _Tables:
@@ -351,15 +376,6 @@ def joint_moves(game: Game, state: State) -> Iterator[JointMove]:
                     yield _joint_move(game, state, number, (k, *receivers))
 
 
-def changes_nothing(move: JointMove, state: State) -> bool:
-    """True for a move of the environment from the state that leads to it again, with all clocks as they were.
-
-    It is no move to solver and checker: whoever makes it, and however often, nothing has happened. So it makes no
-    command stale, and is no way out at the bound of an invariant.
-    """
-    return not move.controllable and not move.resets and move.target == state
-
-
 def _receivers(game: Game, state: State, here: Sequence[Leaving], sender: GameEdge) -> List[List[int]]:
     if sender.channel == NO_CHANNEL:
         return []
@@ -383,11 +399,20 @@ def _joint_move(game: Game, state: State, owner: int, numbers: Tuple[int, ...]) 
         locations[edge.automaton] = edge.target
         for variable, value in edge.assignments:
             values[variable] = value
+    resets = tuple(sorted({clock for edge in edges for clock in edge.resets}))
+    controllable = all(edge.controllable for edge in edges)
+    before, after = (*state.locations, *state.values), (*locations, *values)
+    changed = [k for k, (old, new) in enumerate(zip(before, after)) if old != new]
+    if controllable:
+        noticed = any(k not in game.unseen for k in changed) or any(x not in game.unseen_clocks for x in resets)
+    else:
+        noticed = bool(changed or resets)
     return JointMove(
         edges=numbers,
         target=State(tuple(locations), tuple(values)),
         bounds=tuple(bound for edge in edges for bound in edge.bounds),
-        resets=tuple(sorted({clock for edge in edges for clock in edge.resets})),
-        controllable=all(edge.controllable for edge in edges),
+        resets=resets,
+        controllable=controllable,
         owner=owner,
+        changes_nothing=not noticed,
     )

@@ -86,9 +86,9 @@ def solve(
     """
     chosen = choose(engine)
     game = compile_game(network, objective, reaction)
-    part = network if whole else cone_of_influence(network, objective)
+    part = cone_of_influence(network, objective)
     if part is not network:
-        game = compile_game(part, objective, reaction)
+        game = compile_game(network if whole else part, objective, reaction, part)
     if not chosen.holds(game):
         if engine is not None:
             hint = "leave the choice to pursue-gen, or use --engine python"

@@ -439,3 +439,12 @@ def test_a_plan_passes_iff_no_block_is_missing_that_plays_reach(reference_dir: P
     missing |= set(data.draw(st.lists(st.sampled_from(sorted(needed)), max_size=2)))
     rest = replace(plan, blocks=tuple(one for b, one in enumerate(plan.blocks) if b not in missing))
     assert verify(net, objective, rest).ok == (not missing & needed)
+
+
+def test_a_command_that_changes_nothing_keeps_no_time_from_passing() -> None:
+    stay, renew = edge("a", "a", "x>=1"), edge("a", "a", "x>=1", resets="x")
+    net = network(automaton("bot", "a:x<=2 lose", stay, renew), automaton("other", "o"))
+    again = block(net, "a o", ("x<1",), ("x>=1", moves(net, ("bot", 0))))
+    report = checked(net, SAFETY, again)
+    assert kind(report) == "not a joint move" and report.reason.endswith("it changes nothing")
+    assert kind(checked(net, SAFETY, block(net, "a o", ("x<1",), ("x>=1", moves(net, ("bot", 1)))))) == "ok"

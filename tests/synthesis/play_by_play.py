@@ -149,8 +149,17 @@ class PlayByPlay:
             moves = [m for m in self.moves(then) if commanded == {(a, e) for a, e in m if a in self.named}]
             if not moves or not all(edge.controllable for _, edge in moves[0]):
                 raise Broken("not enabled")
-            yield self.after(then, moves[0])
+            after = self.after(then, moves[0])
+            if not self._changes(then, after, moves[0]):
+                raise Broken("changes nothing")
+            yield after
             yield from self.environment(then)
+
+    def _changes(self, now: Entry, after: Entry, move: Move) -> bool:
+        """True if a command does something to what the strategy names."""
+        places = any(now[0][k] != after[0][k] for k in self._places)
+        values = any(now[1][k] != after[1][k] for k in self._values)
+        return places or values or any(edge.resets for name, edge in move if name in self.named)
 
     def environment(self, now: Entry) -> Iterator[Entry]:
         """What the environment may make of this point."""

@@ -146,10 +146,10 @@ class RegionGame:
         return self._afters[position]
 
     def moves(self, state: State) -> List[JointMove]:
-        """The joint moves of the state, but for moves of the environment after which nothing has changed."""
+        """The joint moves of the state, but for moves after which nothing has changed."""
         if state not in self._moves:
             moves = joint_moves(self.game, state)
-            self._moves[state] = [m for m in moves if m.controllable or m.resets or m.target != state]
+            self._moves[state] = [m for m in moves if m.resets or m.target != state]
         return self._moves[state]
 
     def _holds(self, region: Region, bounds: Tuple[Bound, ...]) -> bool:

@@ -124,6 +124,61 @@ def test_a_move_that_changes_nothing_makes_no_command_stale(engine: str) -> None
     assert verify(network, objective, verdict.strategy, DEFAULT.reaction, ranks=verdict.ranks).ok
 
 
+SOON_OVER = (Location("here", (ClockBound("x", "<=", 1),)), Location("there"), Location("bad"))
+AWAY = Edge("here", "there", Guard((ClockBound("x", "<", 1),)), controllable=False)
+NEVER_BAD = Objective(Kind.SAFETY, bad=("A", "bad"))
+
+IDLE = Edge("here", "here")
+GO, BACK = Edge("here", "there"), Edge("there", "here")
+CALLING = Edge("here", "here", sync=Sync("a", True))
+HEARING = (Edge("here", "there", sync=Sync("a", False)), Edge("there", "here", sync=Sync("a", False)))
+
+
+@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("whole", [False, True])
+@pytest.mark.parametrize(
+    ("own", "others"),
+    [
+        ((), ()),
+        ((), (IDLE,)),
+        ((), (GO, BACK)),
+        ((IDLE,), ()),
+        ((CALLING,), ()),
+        ((CALLING,), HEARING),
+        ((replace(IDLE, assign=(("w", 0),)),), ()),
+    ],
+    ids=["nobody", "idle", "to and fro", "itself", "calling", "calling, heard", "the same again"],
+)
+def test_no_command_that_changes_nothing_keeps_time_from_passing(
+    engine: str, whole: bool, own: Tuple[Edge, ...], others: Tuple[Edge, ...]
+) -> None:
+    # Whoever has to be away before the end of his time and is not must not be saved by moves without end.
+    late = Automaton("A", SOON_OVER, "here", (AWAY, *own))
+    bystander = Automaton("B", (Location("here"), Location("there")), "here", others)
+    network = Network(("x",), (("w", 0),), ("a",), (late, bystander))
+    assert not solve(network, NEVER_BAD, engine=engine, whole=whole).won
+    saved = replace(network, automata=(replace(late, edges=(*late.edges, GO)), bystander))
+    assert solve(saved, NEVER_BAD, engine=engine, whole=whole).won
+
+
+@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_robot_that_talks_to_itself_meets_no_deadline(engine: str, whole: bool) -> None:
+    text = """
+poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "call"
+event "beep"
+event "fetch" location shelf
+agent "bot" controllable mobile 1 location desk can_do fetch, beep
+agent "visitor" location desk can_do call
+objective: if call then fetch within 2
+"""
+    scenario = parse(text, "desk.pur", "desk")
+    assert not solve(translate(scenario), scenario_objective(scenario), engine=engine, whole=whole).won
+
+
 def test_many_bystanders_cost_no_states() -> None:
     def states(bystanders: int) -> int:
         scenario = parse(pass_bystanders(bystanders), "crowd.pur", "crowd")

@@ -154,8 +154,8 @@ class Arena {
             std::vector<std::pair<int, int>> parts{{owner, sender}};
             for (std::size_t c = 0; c < choices.size(); ++c) parts.push_back(choices[c][chosen[c]]);
             JointMove<Z> move = joint(state, out, owner, parts);
-            // After a move of the environment that changes no location, variable or clock nothing has happened.
-            const bool idle = !move.controllable && move.resets.empty() && states_[move.target] == state;
+            // After a move that changes no location, variable or clock nothing has happened.
+            const bool idle = move.resets.empty() && states_[move.target] == state;
             if (!idle) out.moves.push_back(std::move(move));
             std::size_t c = choices.size();
             while (c > 0 && ++chosen[c - 1] == choices[c - 1].size()) chosen[--c] = 0;

@@ -133,6 +133,8 @@ def _tables(game: Game) -> Dict[str, Any]:
         "delta": game.delta,
         "variables": list(game.initial_values),
         "start": game.start,
+        "unseen": game.unseen,
+        "unseen_clocks": game.unseen_clocks,
         "goal": game.goal,
         "bad": game.bad,
         "automata": [

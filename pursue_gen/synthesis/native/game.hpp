@@ -52,6 +52,7 @@ struct Game {
     std::vector<Bound> start;  // of the clocks at the start; none: they are 0
     std::vector<Automaton> automata;
     Place goal, bad;
+    std::vector<int> unseen, unseen_clocks;  // of a discrete state, and clocks: what cannot matter
 };
 
 // A discrete state: a location per automaton, then a value per variable.

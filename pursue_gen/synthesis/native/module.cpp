@@ -40,6 +40,8 @@ Game read_game(const py::dict& in) {
     game.delta = in["delta"].cast<wide_t>();
     game.variables = in["variables"].cast<std::vector<int>>();
     game.start = bounds(in["start"]);
+    game.unseen = in["unseen"].cast<std::vector<int>>();
+    game.unseen_clocks = in["unseen_clocks"].cast<std::vector<int>>();
     game.goal = place(in["goal"]);
     game.bad = place(in["bad"]);
     for (const auto& a : in["automata"]) {

@@ -128,7 +128,7 @@ class ZoneGraph {
         bool chosen = false;
         for (const int j : enabled_) {
             const Joint& joint = joints_[j];
-            if (joint.changes_nothing(d)) continue;
+            if (joint.changes_nothing(d, game_)) continue;
             if (full || follows(d, joint, preferred, chosen)) follow(k, j, node(joint.target(d)));
             else if (!joint.controllable) nodes_[k].unfollowed.push_back({j, node(joint.target(d))});
         }

@@ -14,7 +14,6 @@ from pursue_gen.synthesis.game import (
     Game,
     JointMove,
     State,
-    changes_nothing,
     initial_state,
     invariant,
     is_bad,
@@ -128,13 +127,13 @@ class ZoneGraph:
     def _expand(self, node: Node) -> None:
         # At the goal and at what is to be avoided the game is decided.
         decided = is_goal(self.game, node.state) or is_bad(self.game, node.state)
-        moves = [] if decided else list(joint_moves(self.game, node.state))
+        all_moves = () if decided else joint_moves(self.game, node.state)
+        moves = [joint for joint in all_moves if not joint.changes_nothing]
         commands = [joint for joint in moves if joint.controllable]
         chosen = commands if self._choose is None else self._choose(node.state, commands)
         node.controllable = [Transition(joint) for joint in commands if joint in chosen]
         node.omitted = [Transition(joint) for joint in commands if joint not in chosen]
-        others = (joint for joint in moves if not joint.controllable and not changes_nothing(joint, node.state))
-        node.uncontrollable = [Transition(joint) for joint in others]
+        node.uncontrollable = [Transition(joint) for joint in moves if not joint.controllable]
         node.expanded = True
 
     def _follow(self, number: int, moves: Iterable[Transition]) -> None:
