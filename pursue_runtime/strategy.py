@@ -106,10 +106,37 @@ class Command(NamedTuple):
     when: Tuple[Zone, ...]
 
 
-def read_cover(data: Mapping[str, Any]) -> StateTable[Tuple[Zone, ...]]:
-    """For each state the zones in which the strategy knows what to do, from cover.yaml. Raises DataError."""
+class Cover(StateTable[Tuple[Zone, ...]]):
+    """For each state the zones in which the strategy knows what to do, from cover.yaml.
+
+    `stages`: for each stage of the strategy its milestones, automata with a location; the stage ends when all are
+    there. Until then each part of the stage must know what to do. Raises KeyError, TypeError or ValueError.
+    """
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        super().__init__((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
+        self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
+
+    def zones(self, state: SystemState) -> List[List[Zone]]:
+        """The zones of each entry that applies in this state; () where a part of the stage has no entry for it."""
+        applying = self.applying(state)
+        if any(all(name not in names for names, _ in applying) for name in self._awaited(state)):
+            return []
+        return [[zone for zones in self.entered(entry) for zone in zones] for entry in applying]
+
+    def _awaited(self, state: SystemState) -> List[str]:
+        """The automata that are not at their milestones of the present stage."""
+        for stage in self._stages:
+            awaited = [name for name, place in stage if state.locations.get(name) != place]
+            if awaited:
+                return awaited
+        return []
+
+
+def read_cover(data: Mapping[str, Any]) -> Cover:
+    """What cover.yaml says. Raises DataError."""
     try:
-        return StateTable((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
+        return Cover(data)
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise DataError(f"cover.yaml lacks or misspells something: {problem!r}") from problem
 

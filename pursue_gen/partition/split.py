@@ -59,8 +59,8 @@ def partition(
     but for `general`; every other command is in exactly one sub-strategy, with `all` those of the objectives in every
     robot's.
 
-    Raises PursueError for an unknown shape or policy (exit status 2), for a counter-strategy, for a strategy with a
-    stage in several parts, and for a command of an uncontrollable automaton.
+    Raises PursueError for an unknown shape or policy (exit status 2), for a counter-strategy, and for a command of an
+    uncontrollable automaton.
     """
     robots = tuple(agent.name for agent in agents if agent.is_robot)
     humans = tuple(agent.name for agent in agents if agent.controllable and agent.human)
@@ -68,9 +68,6 @@ def partition(
     if strategy.counter:
         message = "a counter-strategy cannot be given to controllers: its moves are the opponent's"
         raise PursueError([error("PAR003", message, hint="use a plan whose property is satisfied")], exit_status=4)
-    if any(len(milestones) > 1 for milestones in strategy.stages):
-        message = "the strategy has a stage whose parts are played at the same time, which no controllers can do"
-        raise PursueError([error("PAR005", message, hint="solve the scenario again without that experiment")])
     _check_senders(strategy, network, (*robots, *humans))
     senders = {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
     names = tuple(automaton.name for automaton in network.automata)

@@ -36,12 +36,13 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state the zones in which the strategy is defined, wait or command."""
+    """For each state the zones in which the strategy is defined, wait or command; its stages, if it has any."""
     cover = []
     for block in strategy.blocks:
         zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
         cover.append({"state": _state(block.state), "zones": _zones(zones)})
-    return {"format": 1, "cover": cover}
+    stages = [[list(place) for place in milestones] for milestones in strategy.stages]
+    return {"format": 1, **({"stages": stages} if stages else {}), "cover": cover}
 
 
 def number(value: Fraction) -> Union[int, float, str]:

@@ -36,5 +36,7 @@ def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
         "In a state below, it holds as long as one of the zones (clocks in time units) does.",
     )
     data = cover_data(strategy)
+    if "stages" in data:
+        data["stages"] = [inline(milestones) for milestones in data["stages"]]
     data["cover"] = [{**entry, "state": inline(entry["state"])} for entry in data["cover"]]
     return yaml_text(data, head)

@@ -12,8 +12,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from pursue_runtime.model import Model
-from pursue_runtime.observer.planning import Cover
-from pursue_runtime.strategy import Strategy, read_cover
+from pursue_runtime.strategy import Cover, Strategy, read_cover
 
 
 @dataclass(frozen=True)

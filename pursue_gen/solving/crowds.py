@@ -100,8 +100,7 @@ class _Search:
             return self._proven((), self._part(self._objective, goals[0].agents, (), at_start(self._network)))
         self._subgoals = [goal.place for goal in goals]
         one_by_one = [[goal] for goal in goals]
-        at_once = self._options.together and self._objective.kind is Kind.REACH
-        together = _grouped(goals) if at_once else one_by_one
+        together = _grouped(goals) if self._objective.kind is Kind.REACH else one_by_one
         for stages in [together, one_by_one] if together != one_by_one else [together]:
             strategy = self._in_stages(stages)
             if strategy is not None:

@@ -18,9 +18,8 @@ class SolveOptions:
     "python", or None for the native one where it was built. `optimize`: "time" for the strategy with the least
     worst-case time to the goal, "none" for the first one found, None for a quick one that is found with little work.
     `within`: the goal has to be reached in so many time units; None: some time. `whole`: what cannot matter is not left
-    out of the game, and the game is solved in one piece (an experiment). `together`: parts of a stage may be played at
-    the same time (an experiment: such strategies are proven, but nodes cannot play them). `solver`: None for the
-    built-in solver, "verifytga" for UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
+    out of the game, and the game is solved in one piece (an experiment). `solver`: None for the built-in solver,
+    "verifytga" for UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
     """
 
     limits: Limits = NO_LIMITS
@@ -29,7 +28,6 @@ class SolveOptions:
     optimize: Optional[str] = None
     within: Optional[Fraction] = None
     whole: bool = False
-    together: bool = False
     solver: Optional[str] = None
     verifytga: Optional[Path] = None
 

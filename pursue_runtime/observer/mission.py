@@ -8,12 +8,12 @@ from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
-from pursue_runtime.observer.planning import Cover, Planning, PlanRequest, covers, stays, uncovered
+from pursue_runtime.observer.planning import Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.ways import Ways
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
-from pursue_runtime.strategy import Entry
+from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,

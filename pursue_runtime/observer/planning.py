@@ -7,7 +7,7 @@ from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, N
 from pursue_runtime.model import Position
 from pursue_runtime.observer.ways import Way, Ways, blocked_reason, check_avoids
 from pursue_runtime.state import SystemState
-from pursue_runtime.strategy import StateTable, read_cover
+from pursue_runtime.strategy import Cover, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
 
 MIN_LEAD_TIME = 1.0
@@ -19,7 +19,6 @@ ATTEMPTS = 5
 UNKNOWN = 1000
 """More requests than a mission can have made without a trace of them in the journal."""
 
-Cover = StateTable[Tuple[Zone, ...]]
 """The zones of each discrete state in which a plan has a decision."""
 
 
@@ -209,9 +208,8 @@ def uncovered(cover: Optional[Cover], position: Position, tolerance: float, pati
 
 
 def _zones(cover: Cover, position: Position) -> List[List[Zone]]:
-    """Return the zones of each entry that applies."""
-    applying = cover.applying(_state(position))
-    return [[zone for zones in cover.entered(entry) for zone in zones] for entry in applying]
+    """Return the zones of each entry that applies; none where a part of the plan has no decision."""
+    return cover.zones(_state(position))
 
 
 def _state(position: Position) -> SystemState:

@@ -11,7 +11,6 @@ from benchmarks.families import catch_by_robots, clean_by_robots, deliver_by_rob
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.partition import partition
 from pursue_gen.proof.checker import verify
 from pursue_gen.replay.game import Source, game_of
 from pursue_gen.simulation.make import make_case
@@ -34,11 +33,11 @@ def scenario_of(text: str) -> Scenario:
     return parse(text, "crowd.pur", "crowd")
 
 
-def won_so(text: str, together: bool = False) -> Solution:
+def won_so(text: str) -> Solution:
     """What is found for some of the robots or in stages, proven once more."""
     scenario = scenario_of(text)
     network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
-    found = won_by_some(network, objective, DELAY, SolveOptions(together=together))
+    found = won_by_some(network, objective, DELAY, SolveOptions())
     assert found is not None
     assert verify(network, objective, found.strategy, DELAY).ok
     return Solution(network, objective, found.strategy, DELAY, found.stats)
@@ -58,7 +57,7 @@ def test_where_one_robot_suffices_the_others_do_not_matter(family: Callable[[int
 
 def test_twenty_robots_cost_twenty_small_games() -> None:
     few, many = won_so(deliver_by_robots(5)), won_so(deliver_by_robots(20))
-    assert len(many.strategy.stages) == 21
+    assert [len(milestones) for milestones in many.strategy.stages] == [20, 1]
     assert many.stats is not None and few.stats is not None
     assert many.stats.discrete_states < 5 * few.stats.discrete_states
     assert len(many.strategy.blocks) < 5 * len(few.strategy.blocks)
@@ -115,13 +114,6 @@ def test_a_milestone_that_the_network_does_not_have_is_an_error_with_its_line() 
     with pytest.raises(PursueError, match="milestone 'rule2.nowhere'") as problem:
         read_plan(plan, won.network, "plan.txt")
     assert problem.value.diagnostics[0].span is not None and problem.value.diagnostics[0].span.line == 4
-
-
-def test_parts_that_are_played_at_the_same_time_are_not_given_to_controllers() -> None:
-    scenario = scenario_of(deliver_by_robots(2))
-    won = won_so(deliver_by_robots(2), together=True)
-    with pytest.raises(PursueError, match="at the same time"):
-        partition(won.strategy, won.network, scenario.agents)
 
 
 @pytest.mark.parametrize("controllers", ["distributed", "centralized"])
