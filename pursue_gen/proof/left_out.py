@@ -9,6 +9,7 @@ Edges that can never be taken while only the strategy commands change nothing at
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import AbstractSet, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.live import Places, commanded, live
@@ -36,8 +37,16 @@ def proven_part(network: Network, objective: Objective, strategy: Strategy) -> T
     if names is None:
         return network, ""
     alive, places = live(network, commanded(strategy.blocks))
-    part = part_of(alive, *names)
+    part = _with_clocks_of(part_of(alive, *names), network, strategy)
     return part, why_it_matters(alive, objective, part, places)
+
+
+def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
+    """The part with the clocks that the strategy compares, though only dead edges of the part's automata may."""
+    zones = (zone for block in strategy.blocks for zone in (*block.wait, *(z for c in block.commands for z in c.zones)))
+    compared = {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
+    clocks = tuple(clock for clock in network.clocks if clock in part.clocks or clock in compared)
+    return part if clocks == part.clocks else replace(part, clocks=clocks, start=start_of(network, clocks))
 
 
 def _names(network: Network, strategy: Strategy) -> Optional[Tuple[Set[str], Set[str]]]:

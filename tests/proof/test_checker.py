@@ -448,3 +448,14 @@ def test_a_command_that_changes_nothing_keeps_no_time_from_passing() -> None:
     report = checked(net, SAFETY, again)
     assert kind(report) == "not a joint move" and report.reason.endswith("it changes nothing")
     assert kind(checked(net, SAFETY, block(net, "a o", ("x<1",), ("x>=1", moves(net, ("bot", 1)))))) == "ok"
+
+
+def test_a_strategy_may_compare_a_clock_of_edges_that_are_never_taken() -> None:
+    dead, free = edge("b", "a", "y>1"), edge("o", "p", env=True)
+    net = network(automaton("bot", "a b lose", dead), automaton("other", "o:y<=9 p", free))
+    named = DiscreteState((("bot", "a"),), ())
+    assert checked(net, SAFETY, Block(named, (zone("y<=5"), zone("y>5")), ())).ok
+    reset = edge("o", "p", resets="y", env=True)
+    noticed = network(automaton("bot", "a b lose", dead), automaton("other", "o p", reset))
+    report = checked(noticed, SAFETY, Block(named, (zone("y<=5"), zone("y>5")), ()))
+    assert kind(report) == "left out" and report.reason.endswith("other resets y")
