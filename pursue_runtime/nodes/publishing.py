@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import socket
+import time
 from typing import Any, Callable, List
 
 import rospy
+from rospy.impl.tcpros_pubsub import QueuedConnection
 
 
 def listeners(publisher: rospy.Publisher) -> List[str]:
@@ -34,10 +37,10 @@ def publish_to_one(publisher: rospy.Publisher, peer_publish: Callable[[Any], Non
 
 
 class ServedFirst(rospy.SubscribeListener):
-    """Has rospy send what is published on a topic to chosen nodes first.
+    """Has rospy send what is published on a topic to chosen nodes first, and at once.
 
-    rospy wakes its connections one after the other, in the order in which they were made. Each node that is woken takes
-    processor time, so on a machine with few cores chance would decide how soon a controller has a state.
+    rospy wakes the threads of its connections one after the other, in the order in which they were made. Each node that
+    is woken takes processor time, so on a machine with few cores chance would decide how soon a controller has a state.
     """
 
     def __init__(self, publisher: rospy.Publisher, is_first: Callable[[str], bool]) -> None:
@@ -55,5 +58,54 @@ class ServedFirst(rospy.SubscribeListener):
     def arrange(self) -> None:
         """Put the connections in order: to be called when `is_first` returns something else than before."""
         with self._impl.c_lock:
-            connections = self._impl.connections
-            self._impl.connections = sorted(connections, key=lambda each: not self._is_first(each.endpoint_id))
+            connections = sorted(self._impl.connections, key=lambda each: not self._is_first(each.endpoint_id))
+            for connection in connections:
+                is_queued = isinstance(connection, QueuedConnection) and "write_data" not in vars(connection)
+                if is_queued and self._is_first(connection.endpoint_id):
+                    connection.write_data = AtOnce(connection).write
+            self._impl.connections = connections
+
+
+class AtOnce:
+    """Writes messages to a subscriber in the thread that publishes them, where the subscriber reads.
+
+    rospy passes each message to a thread of the connection, and a reaction would wait until that runs. Here it gets
+    only what the system does not take at once, and what is published until it has sent that: the order stays, and a
+    subscriber that does not read holds nothing up.
+    """
+
+    def __init__(self, connection: QueuedConnection) -> None:
+        self._connection = connection
+        self._rest = b""  # of a message of which a part was written; where it is in the queue, it is the first there
+
+    def write(self, data: bytes) -> bool:
+        """Write a message; in place of the connection's `write_data`, whose errors it raises."""
+        there, changed = self._connection, self._connection._cond_data_available
+        with changed:
+            if there._error is not None:
+                error, there._error = there._error, None
+                raise error
+            queue: List[bytes] = there._queue
+            if not queue and changed._waiters:  # the thread waits: nothing is on the way
+                sent = _sent(there._connection, data)
+                if sent == len(data):
+                    return True
+                data = self._rest = data[sent:]
+            elif there._queue_size and len(queue) >= there._queue_size:
+                oldest = int(queue[0] is self._rest)
+                del queue[oldest : oldest + 1]
+            queue.append(data)
+            changed.notify()
+        time.sleep(0)  # as rospy does: the thread may begin
+        return True
+
+
+def _sent(transport: Any, data: bytes) -> int:
+    """The number of bytes that could be written at once. What is wrong with the connection, its thread will find."""
+    try:
+        sent = int(transport.socket.send(data, socket.MSG_DONTWAIT))
+    except (OSError, AttributeError):  # it has no socket any more
+        return 0
+    transport.stat_bytes += sent
+    transport.stat_num_msg += sent == len(data)  # else the thread counts it
+    return sent

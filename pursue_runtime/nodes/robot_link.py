@@ -16,7 +16,7 @@ from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.nodes.publishing import publish_to_one
+from pursue_runtime.nodes.publishing import ServedFirst, publish_to_one
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
@@ -103,6 +103,8 @@ class RobotLink(rospy.SubscribeListener):
         else:
             topic, kind = f"{robot}/move_base_simple/goal", PoseStamped
         self._move = rospy.Publisher(topic, kind, self, queue_size=10)
+        for orders in (self._act, self._move):
+            ServedFirst(orders, lambda _: True)
         if settings.on_stop == "cancel":
             self._ids = needed("actionlib_msgs", "actionlib_msgs.msg", "on_stop:=cancel").GoalID
             self._cancel = rospy.Publisher(f"{robot}/move_base/cancel", self._ids, queue_size=10)

@@ -9,6 +9,8 @@ import pytest
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 import rospy
+from rospy.topics import _PublisherImpl
+from std_msgs.msg import String
 
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.settings import Settings
@@ -26,6 +28,7 @@ def happened(monkeypatch: pytest.MonkeyPatch) -> List[str]:
 
         def __init__(self, topic: str, *_: object, **__: object) -> None:
             self.resolved_name = topic
+            self.impl = _PublisherImpl(topic, String)
 
         def get_num_connections(self) -> int:
             return 0
