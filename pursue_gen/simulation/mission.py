@@ -330,6 +330,8 @@ class SimulatedMission:
         self.fault_plan.count(crash.kind)
         self._note(f"{crash.node} dies")
         node.kill()
+        if node is self._observer:
+            self._planner.request_plan(None)  # a planner ends with its observer
         self.events.schedule(self.events.now + crash.seconds, lambda: self._restart(crash.node, node))
 
     def _restart(self, name: str, node: Union[ObserverNode, ControllerNode]) -> None:
