@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 from benchmarks.ros_world import ROOT, World, generated, world
-from benchmarks.synthesis import machine
+from benchmarks.synthesis import machine, version
 from pursue_gen.replay import Findings, check, game_of, read_recording
 from pursue_gen.replay.finding import FAULT
 from pursue_gen.replay.game import from_workspace
@@ -214,13 +214,6 @@ def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
         "table": {name: {head: old[head] + new[head] for head in OUTCOMES} for name, (old, new) in rows.items()},
         "reasons": dict(reasons.most_common()),
     }
-
-
-def version() -> str:
-    """Return the commit that is played; "" outside a repository."""
-    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
-    found = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
-    return found.stdout.strip()
 
 
 def _part_line(part: Dict[str, Any]) -> str:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from benchmarks import simulation_page
-from benchmarks.synthesis import machine
+from benchmarks.synthesis import machine, version
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.simulation.faults import read_faults
@@ -158,7 +158,7 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     names = given.scenarios or bundled()
     path = given.out / "benchmarks" / "simulation.json" if given.out else None
     results: Dict[str, Any] = json.loads(path.read_text()) if path and path.exists() else {}
-    stamp = {"date": datetime.date.today().isoformat(), "machine": machine()}
+    stamp = {"date": datetime.date.today().isoformat(), "machine": machine(), "commit": version()}
     if given.speed:
         found = {name: speed(name) for name in names}
         results["speed"] = {**stamp, "rates": {name: round(rate) for name, rate in found.items() if rate}}

@@ -52,8 +52,9 @@ def _line(name: str, margin: str, rows: List[Row]) -> List[str]:
     ends = [total("ends", end) for end in ("stopped", "held")]
     causes = [total("causes", cause) for cause in ("command", "agent", "ours")]
     latest = max(row["latest"] for row in rows)
-    figures = [f"{missions:,}", f"{good:,}", f"{100 * good / missions:.2f}", *map(str, ends)]
-    return [name, margin, *figures, str(total("ends", "lost", "failed")), f"{latest:.3f}", *map(str, causes)]
+    figures = [f"{missions:,}", f"{good:,}", f"{100 * good / missions:.2f}"]
+    bad = [f"{number:,}" for number in (*ends, total("ends", "lost", "failed"))]
+    return [name, margin, *figures, *bad, f"{latest:.3f}", *(f"{number:,}" for number in causes)]
 
 
 def tables(results: Results) -> str:
@@ -93,7 +94,12 @@ def count(results: Results) -> str:
     rows = list(results.get("cells", {}).values())
     missions = sum(row["missions"] for row in rows)
     wrong = sum(row["causes"].get("ours", 0) for row in rows)
-    return f"{missions:,} missions; {wrong} of them failed a check, or were lost without a fault that was too long.\n"
+    faults = sum(row["missions"] for row in rows if row["faults"] == "all")
+    what = f"{missions:,} missions, {faults:,} of them with all faults"
+    end = f"{wrong} of them failed a check, or were lost without a fault that was too long"
+    played = results.get("played", {})
+    commit = f"\n\nPlayed {played['date']} with commit {played['commit']}." if played.get("commit") else ""
+    return f"{what}; {end}.{commit}\n"
 
 
 PARTS: Dict[str, Callable[[Results], str]] = {

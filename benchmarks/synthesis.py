@@ -12,6 +12,7 @@ import datetime
 import json
 import os
 import platform
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
@@ -82,6 +83,13 @@ def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
         if case.group == "reference":
             row.update({f"tiga_{what}": value for what, value in tiga_figures(case).as_json().items()})
         yield row
+
+
+def version() -> str:
+    """Return the commit that is played; "" outside a repository."""
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
+    found = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    return found.stdout.strip()
 
 
 def machine() -> str:

@@ -41,7 +41,10 @@ def test_tables_add_up() -> None:
     assert "| one | 0.3 | 10 | 10 | 100.00 | 0 | 0 | 0 | 0.125 | 0 | 0 | 0 |" in table
     assert "| all |  | 20 | 17 | 85.00 | 1 | 0 | 2 | 0.900 | 2 | 0 | 0 |" in table
     assert "| two | `loss` | 4 | go in state 3 was due for" in simulation_page.examples({"cells": rows})
-    assert simulation_page.count({"cells": rows}).startswith("20 missions; 0 of them failed")
+    stamp = {"date": "a day", "commit": "abc1234"}
+    text = simulation_page.count({"cells": rows, "played": stamp})
+    assert text.startswith("20 missions, 0 of them with all faults; 0 of them failed")
+    assert text.endswith("\n\nPlayed a day with commit abc1234.\n")
 
 
 def test_the_page_shows_the_data(project_root: Path) -> None:
