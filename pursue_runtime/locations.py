@@ -6,6 +6,8 @@ generator has them from here.
 
 from __future__ import annotations
 
+from typing import Iterable
+
 _MOVEMENT, _ACTION = "going_", "doing_"
 
 
@@ -44,9 +46,14 @@ def action_of(location: str) -> str:
     return location[len(_ACTION) :].rsplit("_in_", 1)[0] if is_action(location) else location
 
 
-def place_of(location: str) -> str:
-    """Return the POI where an agent is, also in an action; of a movement the location as it is."""
-    return location[len(_ACTION) :].rsplit("_in_", 1)[1] if is_action(location) else location
+def place_of(location: str, places: Iterable[str]) -> str:
+    """Return the POI, one of the places, where an agent is, also in an action; of a movement the location as it is.
+
+    A POI may have `_in_` in its name: the longest that fits is meant.
+    """
+    if not is_action(location):
+        return location
+    return max((place for place in places if location.endswith(f"_in_{place}")), key=len, default=location)
 
 
 def position_variable(agent: str) -> str:

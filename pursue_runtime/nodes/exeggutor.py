@@ -119,7 +119,7 @@ class Exeggutor:
         """What the state says about this robot."""
         here = state.locations.get(name, "") if state.status in LIVE else ""
         lists = (name in names for names in (state.lost, state.held, state.displaced, state.returning))
-        way, post = self._ways[name].get(here), self._places[name].get(poi_of(here))
+        way, post = self._ways[name].get(here), self._places[name].get(poi_of(here, self._places[name]))
         return View(here, way, post, state.status == RUNNING, *lists)
 
     def is_placed(self, name: str) -> bool:
