@@ -28,7 +28,7 @@ from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
-_FIRST = 20_000_000
+_FIRST = 60_000_000
 """The work that is spent on a game as it is, a second or so, before it is tried so: divided by the size of a zone."""
 
 WORK = 60_000_000

@@ -85,7 +85,7 @@ def _with_little_work(
 ) -> Optional[Verdict]:
     """The verdict, if it takes little work (see `crowds`)."""
     work = little_work(game)
-    limits = replace(options.limits, work=work, states=max(500, work // 100))
+    limits = replace(options.limits, work=work, states=max(3000, work // 40))
     try:
         return solve(game, objective, reaction, options.engine, limits, options.progress)
     except PursueError as problem:
