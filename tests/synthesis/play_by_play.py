@@ -176,6 +176,8 @@ class PlayByPlay:
         return self._moves[now]
 
     def _enabled(self, now: Entry) -> Iterator[Move]:
+        if not self.lasts(now):
+            return
         clocks = self.clocks(now)
         values = dict(zip((name for name, _ in self.network.variables), now[1]))
 
@@ -188,7 +190,7 @@ class PlayByPlay:
                 if (edge.sync and not edge.sync.sends) or not open_to(edge):
                     continue
                 choices = []
-                for other, there in zip(self.network.automata, now[0]):
+                for other, there in zip(self.network.automata, now[0]) if edge.sync else ():
                     hears = [
                         (other.name, e)
                         for e in self._leaving[other.name, there]
@@ -198,7 +200,7 @@ class PlayByPlay:
                     choices += [hears] if hears else []
                 for receivers in itertools.product(*choices):
                     move = ((automaton.name, edge), *receivers)
-                    if self.lasts(now) and self.lasts(self.after(now, move)):
+                    if self.lasts(self.after(now, move)):
                         yield move
 
     def after(self, now: Entry, move: Move) -> Entry:
@@ -232,8 +234,9 @@ class PlayByPlay:
 
     def lasts(self, now: Entry) -> bool:
         """True within all invariants."""
-        clocks = self.clocks(now)
-        return all(holds(b, clocks) for _, b in self.invariants(now))
+        bounds = self.invariants(now)
+        clocks = self.clocks(now) if bounds else {}
+        return all(holds(b, clocks) for _, b in bounds)
 
     def check_obliged(self, now: Entry) -> None:
         """At the end of an invariant while waiting. Raises Broken unless someone is obliged to move."""
