@@ -98,6 +98,8 @@ class UI:
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
+        awaited = ", ".join(options.nodes) or "the observer"
+        self.terminal.line(f"{model.scenario}: waiting for {awaited}", PLAIN)  # before anything can come
         self.states = subscribe_states(self.on_state, ending, on_malformed=membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
@@ -329,8 +331,6 @@ class UI:
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""
-        awaited = ", ".join(self.options.nodes) or "the observer"
-        self.terminal.line(f"{self.model.scenario}: waiting for {awaited}", PLAIN)
         if self.board is not None:
             self.terminal.line(f"The page is at {self.board.web.url}", BOLD)
         if self.reads():
