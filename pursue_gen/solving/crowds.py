@@ -29,10 +29,10 @@ from pursue_gen.tga.network import Automaton, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _FIRST = 60_000_000
-"""The work that is spent on a game as it is, a second or so, before it is tried so: divided by the size of a zone."""
+"""The work that is spent on a game in one piece first, a second or so: it is divided by the size of a zone."""
 
 WORK = 60_000_000
-"""The work that is spent on trying."""
+"""The work that is spent on games with some of the robots, and on those of stages."""
 
 _GAME = 8_000_000
 """The work of one game of these."""
@@ -45,7 +45,7 @@ _LIMIT_HIT, _LOST = 5, 4
 
 
 def little_work(network: Network) -> int:
-    """The work that is spent on a game as it is."""
+    """The work that is spent on a game in one piece before anything else is tried."""
     return max(1, _FIRST // (len(network.clocks) + 1) ** 2)
 
 

@@ -7,9 +7,9 @@ planning", JAIR 2004). What is found is only tried: stages that do not win are n
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
 
-from pursue_gen.proof.live import taken_over
+from pursue_gen.proof.live import is_controllers, taken_over
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network
@@ -32,11 +32,7 @@ def subgoals(network: Network, goal: Place) -> Tuple[Subgoal, ...]:
 def commanded_agents(network: Network) -> Tuple[str, ...]:
     """The agents with edges that only the controller takes."""
     taken = taken_over(network)
-    return tuple(a.name for a in network.automata if is_agent(a) and any(_is_commanded(e, taken) for e in a.edges))
-
-
-def _is_commanded(edge: Edge, taken: AbstractSet[str]) -> bool:
-    return edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))
+    return tuple(a.name for a in network.automata if is_agent(a) and any(is_controllers(e, taken) for e in a.edges))
 
 
 class _Search:
