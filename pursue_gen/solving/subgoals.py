@@ -52,32 +52,24 @@ class _Search:
 
     def of(self, goal: Place) -> Tuple[Subgoal, ...]:
         """The subgoals of the goal, and the goal."""
-        found: Dict[Place, Optional[Subgoal]] = {}
-        self._visit(goal, found)
-        return tuple(subgoal for subgoal in found.values() if subgoal is not None)
+        found: Dict[Place, Subgoal] = {}
+        self._visit(goal, found, set())
+        return tuple(found.values())
 
-    def _visit(self, place: Place, found: Dict[Place, Optional[Subgoal]]) -> None:
-        """Add what comes before the place, then the place."""
-        under_way: Dict[Place, None] = {}
-
-        def visit(place: Place) -> None:
-            if place in found or place in under_way:
-                return
-            under_way[place] = None
-            doers: Set[str] = set()
-            earlier: Set[Place] = set()
-            for edge in _way_to(self._network.automaton(place[0]), place[1]):
-                moves = self._moves(place[0], edge)
-                doers.update(self._doers(moves))
-                for fact in _common(moves):
-                    before = self._place_of(fact, place[0])
-                    if before is not None:
-                        visit(before)
-                        known = found.get(before)
-                        earlier.update([before], known.before if known else ())
-            found[place] = Subgoal(place, frozenset(doers), frozenset(earlier))
-
-        visit(place)
+    def _visit(self, place: Place, found: Dict[Place, Subgoal], met: Set[Place]) -> None:
+        """Add what has to be reached before the place, then the place."""
+        met.add(place)
+        doers: Set[str] = set()
+        earlier: Set[Place] = set()
+        for edge in _way_to(self._network.automaton(place[0]), place[1]):
+            moves = self._moves(place[0], edge)
+            doers.update(self._doers(moves))
+            for before in filter(None, (self._place_of(fact, place[0]) for fact in _common(moves))):
+                if before not in met:
+                    self._visit(before, found, met)
+                known = found.get(before)  # None where each of the two needs the other
+                earlier.update([before], known.before if known else ())
+        found[place] = Subgoal(place, frozenset(doers), frozenset(earlier))
 
     def _moves(self, automaton: str, edge: Edge) -> List[Tuple[str, Edge]]:
         """Who may make the edge be taken, and by which edges."""

@@ -97,15 +97,7 @@ def test_instructions_of_people_stand_as_well() -> None:
     assert view.due(105.19, 0.09) == []
 
 
-STAGES = """
-format: 1
-controller: controller_bot
-commands_agents: [bot]
-reaction: 0.2
-strategy:
-- state: {bot: a, rule: first}
-  commands:
-  - {do: bot_a2b, agent: bot, from: a, to: going_a_to_b, when: ["5 <= Cbot && Cbot <= 5.05"]}
+STAGES = STRATEGY + """\
 - state: {bot: a, guest: a, rule: second}
   commands:
   - {do: bot_a2c, agent: bot, from: a, to: going_a_to_c, when: ["2 <= Cguest"]}

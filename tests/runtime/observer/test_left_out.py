@@ -8,13 +8,15 @@ import pytest
 
 from tests.runtime.observer.test_mission import CHASE, Journey
 
-COVER = """
+BEGINNING = """
 format: 1
 cover:
 - state: {bot: a, rule: first, reachObj: initial_location}
   zones: [always]
 - state: {bot: going_a_to_b, rule: first, reachObj: initial_location}
   zones: [always]
+"""
+COVER = BEGINNING + """\
 - state: {bot: b, rule: first, reachObj: initial_location}
   zones: [always]
 """
@@ -78,13 +80,7 @@ def test_a_plan_that_names_everybody_is_as_before() -> None:
     assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
 
 
-STAGES = """
-format: 1
-cover:
-- state: {bot: a, rule: first, reachObj: initial_location}
-  zones: [always]
-- state: {bot: going_a_to_b, rule: first, reachObj: initial_location}
-  zones: [always]
+STAGES = BEGINNING + """\
 - state: {bot: b, thief: gone, reachObj: initial_location}
   zones: [Cthief <= 30]
 - state: {bot: b, thief: b, reachObj: initial_location}
