@@ -16,7 +16,7 @@ import http.client
 import threading
 import time
 import xmlrpc.client
-from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Set, Tuple
 from xml.parsers.expat import ExpatError
 
 import rosgraph
@@ -180,7 +180,7 @@ class Links:
     def _watch_master(self) -> None:
         reported = False
         while not rospy.is_shutdown():
-            found, publishers = self._ask_master()
+            found, publishers = ask_master()
             if self._ending.called:
                 return  # a node that ends is not registered any more
             with self._lock:
@@ -193,35 +193,22 @@ class Links:
                 self._lost(MASTER_PROBLEMS[found])
             reported = reported or lost
             if found == REGISTERED:
-                for topic, names in publishers.items():
-                    for name in names:
-                        with contextlib.suppress(*_CALL_ERRORS):
-                            self._complete(topic, name)
+                connect_missing(publishers)
             time.sleep(MASTER_PERIOD if found == REGISTERED else PERIOD)
 
-    @staticmethod
-    def _ask_master() -> Tuple[str, Dict[str, List[str]]]:
-        """Is it there, does it know us? And who publishes what."""
-        try:
-            publishers, subscribers, _ = _call(rosgraph.get_master_uri(), "getSystemState")
-            known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
-            return (REGISTERED if known else NOT_REGISTERED), dict(publishers)
-        except ConnectionRefusedError:
-            return REFUSED, {}
-        except (*_NO_ANSWER_OF_A_MASTER, ConnectionResetError, BrokenPipeError):
-            return FOREIGN, {}
-        except OSError:
-            return UNREACHABLE, {}
 
-    @staticmethod
-    def _complete(topic: str, name: str) -> None:
-        """Connects to this publisher if rospy has given it up, or has not learned of it."""
-        for impl in _subscriptions():
-            if impl.resolved_name == topic and all(name != other.callerid_pub for other in _live(impl)):
-                uri = _call(rosgraph.get_master_uri(), "lookupNode", name)
-                if not impl.has_connection(uri):
-                    _call(uri, "getPid")
-                    connect(topic, uri)
+def ask_master() -> Tuple[str, Dict[str, List[str]]]:
+    """Is it there, does it know us? And who publishes what."""
+    try:
+        publishers, subscribers, _ = _call(rosgraph.get_master_uri(), "getSystemState")
+        known = any(rospy.get_name() in names for _, names in (*publishers, *subscribers))
+        return (REGISTERED if known else NOT_REGISTERED), dict(publishers)
+    except ConnectionRefusedError:
+        return REFUSED, {}
+    except (*_NO_ANSWER_OF_A_MASTER, ConnectionResetError, BrokenPipeError):
+        return FOREIGN, {}
+    except OSError:
+        return UNREACHABLE, {}
 
 
 def log_without_master() -> None:
@@ -248,6 +235,19 @@ def is_gone(node: str) -> bool:
 def connect(topic: str, uri: str) -> None:
     """Has rospy connect this topic to the publisher at the address, as if the master had announced it."""
     _call(rospy.get_node_uri(), "publisherUpdate", topic, [uri])
+
+
+def connect_missing(publishers: Mapping[str, Iterable[str]]) -> None:
+    """Connects this node to whom rospy has given up, or has not learned of: the publishers of topics, by topic."""
+    for topic, names in publishers.items():
+        for impl in _subscriptions():
+            if impl.resolved_name == topic:
+                for name in sorted(set(names) - {connection.callerid_pub for connection in _live(impl)}):
+                    with contextlib.suppress(*_CALL_ERRORS):
+                        uri = _call(rosgraph.get_master_uri(), "lookupNode", name)
+                        if not impl.has_connection(uri):
+                            _call(uri, "getPid")
+                            connect(topic, uri)
 
 
 def _subscriptions() -> List[Any]:

@@ -67,6 +67,16 @@ def ready(output: str, scenario: str) -> bool:
     return bool(starts) and starts[-1].group(1) == scenario and "All nodes are ready" in output[starts[-1].end():]
 
 
+class Hasty(xmlrpc.client.Transport):
+    """Calls that do not wait for ever: the port of a node that was killed may be anybody's by now."""
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        """The connection, with a timeout."""
+        connection = super().make_connection(host)
+        connection.timeout = 5
+        return connection
+
+
 class Node(NamedTuple):
     """A node that was started by hand, and the file of its output."""
 
@@ -221,7 +231,7 @@ class LaunchedMission:
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 code, _, uri = master.lookupNode("/test", f"/{node}")  # type: ignore[misc]
             if code == 1:
-                with xmlrpc.client.ServerProxy(str(uri)) as slave:
+                with xmlrpc.client.ServerProxy(str(uri), transport=Hasty()) as slave:
                     return int(slave.getPid("/test")[2])  # type: ignore[index]
         return 0
 
@@ -294,7 +304,7 @@ def launched(
             with open(folder / "topics.jsonl", "wb") as topics, open(folder / "topic_logger.log", "wb") as log:
                 run.logger = subprocess.Popen(
                     ["python3", str(LOGGER), *robots],
-                    env={**ros.environment, **there},
+                    env={**ros.sourced(workspace / "devel/setup.bash"), **there},
                     stdin=subprocess.PIPE,
                     stdout=topics,
                     stderr=log,

@@ -5,6 +5,8 @@ Standard output: {"at": seconds of a monotonic clock, "topic": …, "from": node
 "robot". Standard input: {"publish": [texts]}, {"bytes": [hexadecimal texts]} (what is on the wire, right or wrong), or
 {"repeat": [seconds]}: from now on each event of another node is published again after so many seconds.
 
+rospy may not learn of a publisher that was started anew: the logger looks for those that it is not connected to.
+
 Usage: topic_logger.py ROBOT…
 """
 
@@ -21,6 +23,8 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
+
+from pursue_runtime.nodes.links import ask_master, connect_missing
 
 
 class Bytes(String):
@@ -86,9 +90,17 @@ def data_of(message: Any) -> Any:
     return message.data if len(message.data) < 20000 else message.data[:100]
 
 
+def stay_connected() -> None:
+    """Connects to each publisher, again and again."""
+    while not rospy.is_shutdown():
+        connect_missing(ask_master()[1])
+        time.sleep(1.0)
+
+
 def main() -> None:
     rospy.init_node("topic_logger", disable_rosout=True)
     logger = TopicLogger(sys.argv[1:])
+    threading.Thread(target=stay_connected, daemon=True).start()
     logger.write({"topic": "here", "from": "topic_logger", "robot": "", "data": ""})
     for line in sys.stdin:
         logger.execute(json.loads(line))
