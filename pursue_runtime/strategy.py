@@ -109,8 +109,9 @@ class Command(NamedTuple):
 class Cover(StateTable[Tuple[Zone, ...]]):
     """For each state the zones in which the strategy knows what to do, from cover.yaml.
 
-    `stages`: for each stage of the strategy its milestones, automata with a location; the stage ends when all are
-    there. Until then each part of the stage must know what to do. Raises KeyError, TypeError or ValueError.
+    `stages`: for each stage of the strategy its milestones, locations of automata or values of variables; the stage
+    ends when all are reached. Until then each part of the stage must know what to do. Raises KeyError, TypeError or
+    ValueError.
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
@@ -125,9 +126,9 @@ class Cover(StateTable[Tuple[Zone, ...]]):
         return [[zone for zones in self.entered(entry) for zone in zones] for entry in applying]
 
     def _awaited(self, state: SystemState) -> List[str]:
-        """The automata that are not at their milestones of the present stage."""
+        """The automata and variables that are not at their milestones of the present stage."""
         for stage in self._stages:
-            awaited = [name for name, place in stage if state.locations.get(name) != place]
+            awaited = [name for name, wanted in stage if _parts(state, (name,)) != (wanted,)]
             if awaited:
                 return awaited
         return []

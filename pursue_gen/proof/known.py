@@ -7,11 +7,12 @@ variable, which values it may have. Clocks may have any value. More may seem pos
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import AbstractSet, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.proof.live import Places
-from pursue_gen.tga.network import Automaton, Guard, Network
+from pursue_gen.proof.live import Extent, may_hold
+from pursue_gen.tga.network import Automaton, Network
 
 State = Tuple[Tuple[str, ...], Tuple[int, ...]]
 """The location of every automaton and the value of every variable, in a network's order."""
@@ -32,34 +33,39 @@ class Known:
     spots: Mapping[str, FrozenSet[Spot]]
     values: Mapping[str, FrozenSet[int]]
 
-    def places(self) -> Places:
-        """The locations in which the automata may be."""
-        return {name: {location for location, _ in spots} for name, spots in self.spots.items()}
+    @cached_property
+    def extent(self) -> Extent:
+        """The locations in which the automata may be, and the values that variables may have."""
+        values = dict(self.values)
+        for name, owned in self.owned.items():
+            for k, variable in enumerate(owned):
+                values[variable] = frozenset(some[k] for _, some in self.spots[name])
+        return Extent({name: {location for location, _ in spots} for name, spots in self.spots.items()}, values)
 
     def states(self, part: Network) -> Optional[List[State]]:
         """All states of a part of the network that may be; None where these are more than MOST."""
-        shared = [name for name, _ in part.variables if name in self.values]
+        own = {name for automaton in part.automata for name in self.owned[automaton.name]}
+        others = [name for name, _ in part.variables if name not in own]
         choices: List[Sequence[object]] = [sorted(self.spots[a.name]) for a in part.automata]
-        choices += [sorted(self.values[name]) for name in shared]
+        choices += [sorted(self.extent.values[name]) for name in others]
         count = 1
         for choice in choices:
             count *= len(choice)
             if count > MOST:
                 return None
-        return [self._state(part, shared, chosen) for chosen in product(*choices)]
+        return [self._state(part, others, chosen) for chosen in product(*choices)]
 
-    def _state(self, part: Network, shared: Sequence[str], chosen: Sequence[object]) -> State:
+    def _state(self, part: Network, others: Sequence[str], chosen: Sequence[object]) -> State:
         values: Dict[str, int] = {}
         locations = []
         for automaton, spot in zip(part.automata, chosen):
             assert isinstance(spot, tuple)
             locations.append(spot[0])
             values.update(zip(self.owned[automaton.name], spot[1]))
-        for name, value in zip(shared, chosen[len(part.automata) :]):
+        for name, value in zip(others, chosen[len(part.automata) :]):
             assert isinstance(value, int)
             values[name] = value
-        first = dict(part.variables)
-        return tuple(locations), tuple(values.get(name, first[name]) for name, _ in part.variables)
+        return tuple(locations), tuple(values[name] for name, _ in part.variables)
 
 
 def at_start(network: Network) -> Known:
@@ -118,16 +124,12 @@ def _moved(spots: FrozenSet[Spot], known: Known, alive: Network, automaton: Auto
     pending = list(found)
     while pending:
         location, values = pending.pop()
-        now = dict(zip(owned, values))
+        now = {name: frozenset([value]) for name, value in zip(owned, values)}
         for edge in automaton.edges:
-            if edge.source == location and _may_hold(edge.guard, now):
-                spot = edge.target, tuple(dict(edge.assign).get(name, now[name]) for name in owned)
+            if edge.source == location and may_hold(edge.guard, now):
+                assigned = dict(edge.assign)
+                spot = edge.target, tuple(assigned.get(name, value) for name, value in zip(owned, values))
                 if spot not in found:
                     found.add(spot)
                     pending.append(spot)
     return frozenset(found)
-
-
-def _may_hold(guard: Guard, now: Mapping[str, int]) -> bool:
-    """True if the tests of variables may be true where nothing is known but the values of some."""
-    return all(any(now.get(test.variable, test.value) == test.value for test in clause) for clause in guard.integers)

@@ -36,9 +36,9 @@ def proven_part(network: Network, objective: Objective, strategy: Strategy) -> T
     names = _names(network, strategy)
     if names is None:
         return network, ""
-    alive, places = live(network, commanded(strategy.blocks))
+    alive, extent = live(network, commanded(strategy.blocks))
     part = _with_clocks_of(part_of(alive, *names), network, strategy)
-    return part, why_it_matters(alive, objective, part, places)
+    return part, why_it_matters(alive, objective, part, extent.places)
 
 
 def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
@@ -71,7 +71,7 @@ def why_it_matters(
     `places`: where its automata may come to (see `live`); None: where they may without commands. `from_start`: they
     begin in their initial locations, not in the middle of a play.
     """
-    places = live(network, frozenset())[1] if places is None else places
+    places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
     noticed = _Noticed({name for name, _ in part.variables}, set(part.clocks), *_channels(part.automata))
     for place in (objective.goal, objective.bad):

@@ -1,11 +1,12 @@
 """A strategy in stages, taken apart: each part of a stage is a game of its own, from all that may be when it begins.
 
-A stage ends when its milestones are reached, locations of automata, and the next one begins there. Its parts, one for
-each milestone, are played at the same time, by different agents. The blocks of a part name the agents that matter to it
-and the milestones of the stages before, which holds them apart from the blocks of other stages. While a stage lasts,
-nobody commands what only other stages command (see `live`); what a part does not name must not matter to it (see
-`left_out`). Of where a stage begins nothing is used but what `known` says: so a part that is won from all these points
-is won, whatever was before, and every play goes through all stages to the goal.
+A stage ends when its milestones are reached, locations of automata or values of variables, and the next one begins
+there. Its parts, one for each milestone, are played at the same time, by different agents. The blocks of a part name
+the agents that matter to it and the milestones of the stages before, which holds them apart from the blocks of other
+stages. While a stage lasts, nobody commands what only other stages command (see `live`); what a part does not name must
+not matter to it (see `left_out`). Of where a stage begins nothing is used but what `known` says: so a part that is won
+from all these points is won, whatever was before, and every play goes through all stages to the goal. What is to be
+avoided, and cannot happen any more in a stage, needs no guard there.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optiona
 from pursue_gen.proof.closed_loop import joint_move
 from pursue_gen.proof.known import Known, State, after_part, at_start, moved
 from pursue_gen.proof.left_out import why_it_matters
-from pursue_gen.proof.live import commanded, live
+from pursue_gen.proof.live import Extent, commanded, live
 from pursue_gen.proof.moves import Arena, Situation
-from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
+from pursue_gen.tga.ending import ending_at, is_value, owner_of
 from pursue_gen.tga.network import Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
@@ -51,32 +53,50 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
         if fault:
             yield Part(stage, network, objective, strategy, (), fault)
             return
-        alive, places = live(network, commanded(block for some in blocks.values() for block in some), known.places())
+        alive, extent = live(network, commanded(block for some in blocks.values() for block in some), known.extent)
         following = after_stage(network, known, blocks)
         if following is None:
             yield Part(stage, network, objective, strategy, (), "it may begin in too many states")
             return
         # That nobody in a part stops time until it has ended is shown there.
         busy = {name for own in blocks.values() for name in _names(own[0])[0]}
-        resting = {**places, **{name: following.places()[name] for name in busy}}
+        resting = {**extent.places, **{name: following.extent.places[name] for name in busy}}
         for place in milestones:
-            wanted = replace(objective, goal=place)
             part = part_of(alive, *_names(blocks[place][0]))
+            ending = ending_at(part, place)
+            wanted = stage_objective(objective, ending.goal, extent)
             starts = known.states(part)
             assert starts is not None
             fault = why_it_matters(alive, wanted, part, resting, from_start=stage == 0)
+            if wanted.kind is not Kind.REACH and len(milestones) > 1:
+                fault = "where one part has ended before the others, nobody guards against what is to be avoided"
             if fault:
                 yield Part(stage, part, wanted, strategy, (), fault)
                 return
+            own = with_edges(blocks[place], ending.goal[0], ending.changed)
             if stage == 0:
-                own = Strategy(tuple(blocks[place]))
-                yield Part(stage, part, wanted, own, numbers[place])
+                yield Part(stage, ending.network, wanted, Strategy(own), numbers[place])
             else:
-                own = _begun(part, blocks[place])
-                yield Part(stage, beginning_in(part, starts), wanted, own, (-1, *numbers[place]))
+                game = beginning_in(ending.network, starts)
+                yield Part(stage, game, wanted, _begun(ending.network, own), (-1, *numbers[place]))
         known = following
-        lost = [place for place in milestones if known.places()[place[0]] != {place[1]}]
-        fault = f"{lost[0][0]} may leave {lost[0][1]} before the stage ends" if lost else ""
+        lost = [place for place in milestones if not _is_kept(known, place)]
+        fault = f"{'.'.join(lost[0])} may be lost before the stage ends" if lost else ""
+
+
+def stage_objective(objective: Objective, goal: Place, extent: Extent) -> Objective:
+    """What is wanted in a part of a stage: to come to its goal, and to avoid what may happen at all in the stage."""
+    bad = objective.bad
+    if objective.kind is Kind.REACH_WHILE_SAFE and bad is not None and bad[1] not in extent.places[bad[0]]:
+        return Objective(Kind.REACH, goal)
+    return replace(objective, goal=goal)
+
+
+def _is_kept(known: Known, milestone: Place) -> bool:
+    name, value = milestone
+    if name in known.extent.places:
+        return known.extent.places[name] == {value}
+    return known.extent.values[name] == {int(value)}
 
 
 def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[Block]]) -> Optional[Known]:
@@ -84,14 +104,14 @@ def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[
 
     None where a part of it may begin in too many states.
     """
-    alive, places = live(network, commanded(block for some in blocks.values() for block in some), known.places())
+    alive, extent = live(network, commanded(block for some in blocks.values() for block in some), known.extent)
     following = moved(known, alive)
     for place, own in blocks.items():
         part = part_of(alive, *_names(own[0]))
         starts = known.states(part)
         if starts is None:
             return None
-        idle = None if len(blocks) == 1 else live(network, _others(blocks, place), places)[0]
+        idle = None if len(blocks) == 1 else live(network, _others(blocks, place), extent)[0]
         following = after_part(following, part, _ends(part, place, own, starts), idle)
     return following
 
@@ -99,7 +119,8 @@ def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[
 def _ends(part: Network, milestone: Place, blocks: Iterable[Block], starts: Sequence[State]) -> List[State]:
     """The discrete states at the milestone to which the commands of the blocks may lead, whatever the clocks are."""
     arena = Arena(replace(part, start=()), 1)
-    number = [automaton.name for automaton in part.automata].index(milestone[0])
+    names = [*(automaton.name for automaton in part.automata), *(name for name, _ in part.variables)]
+    number = names.index(milestone[0])
     said: Dict[State, List[Block]] = {}
     for block in blocks:
         state = arena.state_of(block.state)
@@ -110,7 +131,7 @@ def _ends(part: Network, milestone: Place, blocks: Iterable[Block], starts: Sequ
     ends: List[State] = []
     while pending:
         state = pending.pop()
-        if state[0][number] == milestone[1]:
+        if (*state[0], *map(str, state[1]))[number] == milestone[1]:
             ends.append(state)
             continue
         for target in _next(arena.situation(state), said.get(state, ())):
@@ -140,8 +161,6 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
     """Why these stages cannot be those of a strategy for the objective; "" if they may."""
     if objective.kind is Kind.SAFETY:
         return "an objective without a goal has no stages"
-    if objective.kind is not Kind.REACH and any(len(milestones) != 1 for milestones in strategy.stages):
-        return "nobody guards against what is to be avoided where a part of a stage has ended before the others"
     milestones = [place for stage in strategy.stages for place in stage]
     if len({name for name, _ in milestones}) != len(milestones):
         return "an automaton has two milestones"
@@ -152,8 +171,8 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
     names_in_use = (*network.clocks, *network.channels, *(automaton.name for automaton in network.automata))
     if any(name.startswith(BEGIN) for name in names_in_use):
         return f"a name begins with {BEGIN}"
-    names = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
-    return next((f"there is no {name}.{place}" for name, place in milestones if (name, place) not in names), "")
+    known = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
+    return next((f"there is no {'.'.join(m)}" for m in milestones if m not in known and not is_value(network, m)), "")
 
 
 def _misnamed(
@@ -161,6 +180,7 @@ def _misnamed(
 ) -> str:
     """Why these blocks cannot be those of the parts of a stage; "" if they may."""
     before = {name for milestones in strategy.stages[:stage] for name, _ in milestones}
+    owner = {name: owner_of(network, name) or name for name, _ in blocks}
     busy: Set[str] = set()
     for place, own in blocks.items():
         if not own:
@@ -170,12 +190,14 @@ def _misnamed(
             return f"the blocks that lead to {place[0]}.{place[1]} do not all name the same"
         if not automata.issubset(a.name for a in network.automata) or not variables.issubset(dict(network.variables)):
             return "blocks name what the network does not have"
-        missing = sorted(before.union([place[0]]) - automata)
+        if place[0] in variables and int(place[1]) in known.extent.values[place[0]]:
+            return f"{place[0]} may be {place[1]} before"
+        missing = sorted(before.union([place[0], owner[place[0]]]) - automata - variables)
         missing += [name for a in sorted(automata) for name in known.owned[a] if name not in variables]
         if missing:
             return f"the blocks that lead to {place[0]}.{place[1]} do not name {missing[0]}"
         busy.update({name for name, _ in _others(blocks, place)} & automata)
-        busy.update({name for name, _ in blocks if (name, _) != place} & automata)
+        busy.update({owner[other] for other, _ in blocks if other != place[0]} & automata)
     return f"{min(busy)} matters to two parts of a stage" if busy else ""
 
 

@@ -9,23 +9,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import AbstractSet, Collection, Dict, FrozenSet, Iterator, List, Optional, Sequence, Set
+from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.known import Known, at_start
-from pursue_gen.proof.live import Commanded, is_controllers, live, taken_over
-from pursue_gen.proof.stages import after_stage
+from pursue_gen.proof.live import Commanded, Extent, is_controllers, live, taken_over
+from pursue_gen.proof.stages import after_stage, stage_objective
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
-from pursue_gen.solving.subgoals import Subgoal, commanded_agents, subgoals
+from pursue_gen.solving.subgoals import Subgoal, commanded_agents, protections, subgoals
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.solve import Stats
-from pursue_gen.synthesis.strategy import Block, Place, Strategy
+from pursue_gen.synthesis.strategy import Block, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, beginning_in
+from pursue_gen.tga.ending import ending_at
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _FIRST = 60_000_000
@@ -80,7 +81,8 @@ class _Search:
         self._options, self._budget = options, budget
         self._taken = taken_over(network)
         self._robots = commanded_agents(network)
-        self._subgoals: List[Place] = []
+        self._subgoals: List[Subgoal] = []
+        self._variables = dict(network.variables)
         self._verdicts: List[Stats] = []
 
     def stats(self) -> Stats:
@@ -93,19 +95,32 @@ class _Search:
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises PursueError at a limit."""
-        if self._objective.goal is None:
-            return self._proven((), self._part(self._objective, self._robots, (), at_start(self._network)))
-        goals = subgoals(self._network, self._objective.goal)
+        goal = self._objective.goal
+        if goal is None:
+            return self._proven((), self._part(None, self._robots, (), at_start(self._network)))
+        goals = subgoals(self._network, goal)
+        first = protections(self._network, self._objective.bad) if self._objective.bad else ()
+        self._subgoals = [*first, *goals]
         if len(goals) == 1:
-            return self._proven((), self._part(self._objective, goals[0].agents, (), at_start(self._network)))
-        self._subgoals = [goal.place for goal in goals]
-        one_by_one = [[goal] for goal in goals]
-        together = _grouped(goals) if self._objective.kind is Kind.REACH else one_by_one
-        for stages in [together, one_by_one] if together != one_by_one else [together]:
+            blocks = self._part(goal, goals[0].agents, (), at_start(self._network))
+            if blocks is not None:
+                return self._proven((), blocks)
+        for stages in self._orders(first, goals):
             strategy = self._in_stages(stages)
             if strategy is not None:
                 return strategy
         return None
+
+    def _orders(self, first: Sequence[Subgoal], goals: Sequence[Subgoal]) -> Iterator[List[List[Subgoal]]]:
+        """The orders in which subgoals may be met; what makes impossible what is to be avoided comes first."""
+        one_by_one = [[goal] for goal in goals]
+        together = _grouped(goals)
+        if first:
+            yield [*([goal] for goal in first), *together]
+        if self._objective.kind is Kind.REACH and together != one_by_one:
+            yield together
+        if len(goals) > 1:
+            yield one_by_one
 
     def _in_stages(self, stages: Sequence[Sequence[Subgoal]]) -> Optional[Strategy]:
         """A strategy that meets the subgoals of each stage at the same time."""
@@ -115,8 +130,7 @@ class _Search:
         for stage in stages:
             own: Dict[Place, List[Block]] = {}
             for goal in stage:
-                wanted = replace(self._objective, goal=goal.place)
-                found = self._part(wanted, goal.agents, milestones, known)
+                found = self._part(goal.place, goal.agents, milestones, known)
                 if found is None:
                     return None
                 own[goal.place] = found
@@ -138,21 +152,24 @@ class _Search:
         return strategy if report.ok else None
 
     def _part(
-        self, wanted: Objective, doers: Collection[str], milestones: Sequence[Place], known: Known
+        self, goal: Optional[Place], doers: Collection[str], milestones: Sequence[Place], known: Known
     ) -> Optional[List[Block]]:
         """The blocks of a part of a stage; None where no team wins it with little work."""
-        for team in self._teams(doers):
-            found = self._with_team(wanted, team, milestones, known)
+        for team in self._teams(goal, doers, milestones, known):
+            found = self._with_team(goal, team, milestones, known)
             if found is not None:
                 return found
         return None
 
-    def _teams(self, doers: Collection[str]) -> Iterator[FrozenSet[str]]:
+    def _teams(
+        self, goal: Optional[Place], doers: Collection[str], milestones: Sequence[Place], known: Known
+    ) -> Iterator[FrozenSet[str]]:
         """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
         guards: FrozenSet[str] = frozenset()
-        if self._objective.kind is Kind.REACH_WHILE_SAFE:
+        alive, extent = self._alive(goal, self._robots, milestones, known)
+        if goal is not None and stage_objective(self._objective, goal, extent).kind is Kind.REACH_WHILE_SAFE:
             safe = replace(self._objective, kind=Kind.SAFETY, goal=None)
-            matter = {automaton.name for automaton in cone_of_influence(self._network, safe).automata}
+            matter = {automaton.name for automaton in cone_of_influence(alive, safe).automata}
             guards = frozenset(matter.intersection(self._robots))
         some = [name for name in self._robots if name in doers]
         sizes = [size for size in range(1, _MOST + 1) if size < len(some)]
@@ -162,17 +179,24 @@ class _Search:
             yield guards.union(some)
 
     def _with_team(
-        self, wanted: Objective, team: AbstractSet[str], milestones: Sequence[Place], known: Known
+        self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place], known: Known
     ) -> Optional[List[Block]]:
         """The same with this team; None where it does not win."""
-        alive, _ = live(self._network, self._allowed(team, wanted, milestones), known.places())
+        alive, extent = self._alive(goal, team, milestones, known)
+        wanted = self._objective
+        if goal is not None:
+            wanted = stage_objective(wanted, ending_at(alive, goal).goal, extent)
         cone = cone_of_influence(alive, wanted)
-        names = {a.name for a in cone.automata} | {name for name, _ in milestones}
-        variables = {name for name, _ in cone.variables} | {v for name in names for v in known.owned[name]}
-        part = part_of(alive, names, variables)
+        reached = {name for name, _ in milestones}
+        names = {a.name for a in cone.automata} | reached.intersection(known.owned)
+        variables = {name for name, _ in cone.variables} | reached.difference(known.owned)
+        part = part_of(alive, names, variables.union(v for name in names for v in known.owned[name]))
         starts = known.states(part)
         if starts is None:
             return None
+        changed: Mapping[Edge, Edge] = {}
+        if goal is not None:
+            part, _, changed = ending_at(part, goal)
         game = beginning_in(part, starts) if milestones else part
         try:
             verdict = self._budget.verdict(game, wanted, self._reaction, min(1.0, _GAME / max(1, self._budget.work)))
@@ -184,20 +208,32 @@ class _Search:
             if problem.exit_status not in (_LIMIT_HIT, _LOST) or self._budget.used_up:
                 raise
             return None
-        return _without_begin(proven)
+        blocks = _without_begin(proven)
+        if wanted.goal is None:
+            return blocks
+        return list(with_edges(blocks, wanted.goal[0], {there: here for here, there in changed.items()}))
 
-    def _allowed(self, team: AbstractSet[str], wanted: Objective, milestones: Sequence[Place]) -> Commanded:
+    def _alive(
+        self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place], known: Known
+    ) -> Tuple[Network, Extent]:
+        """What can happen in a stage in which only this team gets commands."""
+        return live(self._network, self._allowed(goal, team, milestones), known.extent)
+
+    def _allowed(self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place]) -> Commanded:
         """What may be commanded in a stage: what the team does, but for what undoes a milestone or is for another one.
 
         The commands of objectives come last.
         """
-        is_last = wanted == self._objective
-        undoing = set()
-        for name, place in self._subgoals:
-            if (name, place) != wanted.goal:
-                undoing.update(_received(self._network.automaton(name)))
-        if wanted.goal is not None:
-            undoing -= _received(self._network.automaton(wanted.goal[0]), wanted.goal[1])
+        undoing: Set[str] = set()
+        fixed: Dict[str, int] = {}
+        for name, place in (subgoal.place for subgoal in self._subgoals):
+            if name in self._variables:
+                fixed[name] = int(place)
+            elif (name, place) != goal:
+                undoing |= _received(self._network.automaton(name))
+        if goal is not None and goal[0] not in self._variables:
+            undoing -= _received(self._network.automaton(goal[0]), goal[1])
+        is_last = goal == self._objective.goal
         return {
             (automaton.name, edge)
             for automaton in self._network.automata
@@ -205,6 +241,7 @@ class _Search:
             for edge in automaton.edges
             if is_controllers(edge, self._taken)
             and (edge.sync is None or edge.sync.channel not in undoing)
+            and all(fixed.get(name, value) == value for name, value in edge.assign)
         }
 
 

@@ -7,6 +7,7 @@ planning", JAIR 2004). What is found is only tried: stages that do not win are n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
 
 from pursue_gen.proof.live import is_controllers, taken_over
@@ -17,7 +18,7 @@ from pursue_gen.tga.network import Automaton, Edge, Network
 
 @dataclass(frozen=True)
 class Subgoal:
-    """A location to come to, the controllable agents who can do what leads there, and what has to be reached before."""
+    """A location or value to come to, the controllable agents who can do what leads there, what is needed before."""
 
     place: Place
     agents: FrozenSet[str]
@@ -27,6 +28,11 @@ class Subgoal:
 def subgoals(network: Network, goal: Place) -> Tuple[Subgoal, ...]:
     """The subgoals of a goal in an order in which they can be met; the goal itself is the last."""
     return _Search(network).of(goal)
+
+
+def protections(network: Network, bad: Place) -> Tuple[Subgoal, ...]:
+    """The values after which nobody can do what leads to the location, each given by a controllable agent."""
+    return tuple(dict.fromkeys(_Search(network).against(bad)))
 
 
 def commanded_agents(network: Network) -> Tuple[str, ...]:
@@ -55,6 +61,28 @@ class _Search:
         found: Dict[Place, Subgoal] = {}
         self._visit(goal, found, set())
         return tuple(found.values())
+
+    def against(self, bad: Place) -> Iterator[Subgoal]:
+        """For each edge into the location the first value that a controllable agent can give, and that forbids it."""
+        for edge in self._network.automaton(bad[0]).edges:
+            if edge.target == bad[1] != edge.source:
+                values = (value for fact in _common(self._moves(bad[0], edge)) for value in self._other_values(fact))
+                yield from islice(values, 1)
+
+    def _other_values(self, fact: Tuple[str, FrozenSet[int]]) -> Iterator[Subgoal]:
+        variable, needed = fact
+        setters = self._setters.get(variable, set())
+        if len(setters) != 1 or self._initial[variable] not in needed:
+            return
+        (owner,) = setters
+        doers: Dict[int, Set[str]] = {}
+        for edge in self._network.automaton(owner).edges:
+            for name, value in edge.assign:
+                if name == variable and value not in needed:
+                    doers.setdefault(value, set()).update(self._doers(self._moves(owner, edge)))
+        for value, some in sorted(doers.items()):
+            if some:
+                yield Subgoal((variable, str(value)), frozenset(some))
 
     def _visit(self, place: Place, found: Dict[Place, Subgoal], met: Set[Place]) -> None:
         """Add what has to be reached before the place, then the place."""

@@ -1,10 +1,12 @@
 """The lines of a plan that say what it does not speak of, or which stages it has, written and read:
 
     -- Left out: visitor Pvisitor
+    -- Stage: Slocked=1
     -- Stage: rule1.rule10 rule2.rule20
     -- Stage: reachObj.win
 
-In a plan with stages each block names what matters to it.
+In a plan with stages each block names what matters to it. A stage's milestones are locations of automata and values of
+variables.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from typing import List, Match, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.synthesis.strategy import Place, Strategy
+from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
 
@@ -29,7 +32,11 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     if not strategy.blocks:
         return []
     if strategy.stages:
-        return [f" -- Stage: {' '.join(map('.'.join, milestones))}" for milestones in strategy.stages]
+        variables = dict(network.variables)
+        return [
+            f" -- Stage: {' '.join(('=' if name in variables else '.').join((name, at)) for name, at in milestones)}"
+            for milestones in strategy.stages
+        ]
     state = strategy.blocks[0].state
     named = {name for name, _ in (*state.locations, *state.values)}
     every = (*(automaton.name for automaton in network.automata), *(name for name, _ in network.variables))
@@ -44,10 +51,10 @@ def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ..
     for match in _STAGE.finditer(text):
         milestones = []
         for word in match.group(1).split():
-            automaton, _, location = word.partition(".")
-            if (automaton, location) not in known:
+            name, sign, value = re.split(r"([.=]|$)", word, maxsplit=1)
+            if not (is_value(network, (name, value)) if sign == "=" else (name, value) in known):
                 raise _unknown(text, match, f"the plan has a milestone '{word}', which the network does not have", file)
-            milestones.append((automaton, location))
+            milestones.append((name, value))
         stages.append(tuple(milestones))
     return tuple(stages)
 

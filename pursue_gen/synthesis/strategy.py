@@ -5,16 +5,16 @@ All bounds are exact (Fraction, in time units): a reaction delay of 1/10 gives b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Optional, Tuple, Union
+from typing import Iterable, Mapping, Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.scale import common_denominator
 
 Place = Tuple[str, str]
-"""An automaton and one of its locations."""
+"""An automaton and one of its locations; as a milestone also a variable and one of its values."""
 
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""
@@ -57,8 +57,9 @@ class Block:
 class Strategy:
     """A strategy for the controller, or (`counter`) one for the environment that shows why the controller loses.
 
-    One in `stages` has for each of them its milestones, locations to be reached, the goal last; the stage ends when all
-    of them are. A block is for one milestone: the one that it names and is not at, of the first stage that is not over.
+    One in `stages` has for each of them its milestones, locations or values of variables to be reached, the goal last;
+    the stage ends when all of them are. A block is for one milestone: the one that it names and is not at, of the first
+    stage that is not over.
     """
 
     blocks: Tuple[Block, ...]
@@ -75,7 +76,7 @@ class Strategy:
         return tuple(map(self._part, self.blocks))
 
     def _part(self, block: Block) -> Optional[Tuple[int, Place]]:
-        places = dict(block.state.locations)
+        places = {**{name: str(value) for name, value in block.state.values}, **dict(block.state.locations)}
         for stage, milestones in enumerate(self.stages):
             open_ones = [place for place in milestones if places.get(place[0]) != place[1]]
             if open_ones:
@@ -88,6 +89,18 @@ class Strategy:
         """The least scale in which all of its bounds are integers."""
         zones = (zone for b in self.blocks for zones in (b.wait, *(c.zones for c in b.commands)) for zone in zones)
         return common_denominator(constraint.bound for zone in zones for constraint in zone)
+
+
+def with_edges(blocks: Iterable[Block], automaton: str, changed: Mapping[Edge, Edge]) -> Tuple[Block, ...]:
+    """The blocks whose commands take other edges of the automaton in place of these."""
+    if not changed:
+        return tuple(blocks)
+
+    def moved(command: Command) -> Command:
+        moves = (replace(m, edge=changed.get(m.edge, m.edge)) if m.automaton == automaton else m for m in command.moves)
+        return replace(command, moves=tuple(moves))
+
+    return tuple(replace(block, commands=tuple(map(moved, block.commands))) for block in blocks)
 
 
 ZoneKey = Tuple[int, Union[str, int], int]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Callable, Set
 
 import pytest
 
+from benchmarks import families
 from benchmarks.families import catch_by_robots, clean_by_robots, deliver_by_robots, hand_to_visitors
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
@@ -27,6 +29,8 @@ from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
 DELAY = Fraction(1, 10)
+
+MUSEUM = (Path(families.__file__).parent / "stories/museum.pur").read_text()
 
 
 def scenario_of(text: str) -> Scenario:
@@ -72,6 +76,12 @@ def test_visitors_are_met_one_after_the_other() -> None:
         assert sum(name.startswith("visitor") for name, _ in block.state.locations) <= 1, "the others may be anywhere"
 
 
+def test_what_makes_a_threat_impossible_comes_first() -> None:
+    first, *others = won_so(MUSEUM).strategy.stages
+    assert first == (("Slocked", "1"),)
+    assert others == [(("visit", "visit0"), ("floor", "floor0")), (("reachObj", "win"),)]
+
+
 def test_a_game_that_takes_little_work_is_solved_in_one_piece() -> None:
     scenario = scenario_of(hand_to_visitors(1))
     won = solution(translate(scenario), scenario_objective(scenario), Rules())
@@ -101,7 +111,7 @@ def test_subgoals_come_before_what_needs_them() -> None:
     assert goals[2].before == {goals[0].place, goals[1].place}
 
 
-@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3)])
+@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3), MUSEUM])
 def test_a_plan_in_stages_is_read_as_it_was_written(text: str) -> None:
     won = won_so(text)
     plan = write_plan(won.strategy, won.network, won.objective)
@@ -117,7 +127,7 @@ def test_a_milestone_that_the_network_does_not_have_is_an_error_with_its_line() 
 
 
 @pytest.mark.parametrize("controllers", ["distributed", "centralized"])
-@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3)])
+@pytest.mark.parametrize("text", [hand_to_visitors(3), deliver_by_robots(3), MUSEUM])
 def test_controllers_play_the_stages_to_the_goal(text: str, controllers: str) -> None:
     scenario, won = scenario_of(text), won_so(text)
     runner = MissionRunner(make_case(scenario, won, SolveRequest(controllers=controllers), "random", (), None)[0])

@@ -1,0 +1,61 @@
+"""Networks that end where a milestone is reached: a location of an automaton, or a value of a variable.
+
+A value is reached by the edges that give it to the variable. Where one automaton alone sets the variable, these edges
+can lead to a location of their own, which then stands for the value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, Mapping, NamedTuple, Optional, Tuple
+
+from pursue_gen.tga.network import Edge, Location, Network
+
+REACHED = "_reached"
+"""The location to which edges lead that give a variable its value."""
+
+Milestone = Tuple[str, str]
+"""An automaton and its location, or a variable and its value."""
+
+
+class Ending(NamedTuple):
+    """A network that ends at a milestone, the location that stands for it, and the edges that were changed for that."""
+
+    network: Network
+    goal: Tuple[str, str]
+    changed: Mapping[Edge, Edge]
+
+
+def ending_at(network: Network, milestone: Milestone) -> Ending:
+    """The network that ends at the milestone; the network itself where that is a location.
+
+    Raises ValueError for a variable that not exactly one automaton sets.
+    """
+    name, value = milestone
+    if name not in dict(network.variables):
+        return Ending(network, milestone, {})
+    owner = owner_of(network, name)
+    if owner is None:
+        raise ValueError(f"{name} is not set by one automaton alone")
+    automaton = network.automaton(owner)
+    changed: Dict[Edge, Edge] = {
+        edge: replace(edge, target=REACHED) for edge in automaton.edges if (name, int(value)) in edge.assign
+    }
+    edges = tuple(changed.get(edge, edge) for edge in automaton.edges)
+    ended = replace(automaton, locations=(*automaton.locations, Location(REACHED)), edges=edges)
+    automata = tuple(ended if other.name == owner else other for other in network.automata)
+    return Ending(replace(network, automata=automata), (owner, REACHED), changed)
+
+
+def owner_of(network: Network, variable: str) -> Optional[str]:
+    """The one automaton that sets the variable; None where none does, or several."""
+    setters = {a.name for a in network.automata for edge in a.edges if any(name == variable for name, _ in edge.assign)}
+    return setters.pop() if len(setters) == 1 else None
+
+
+def is_value(network: Network, milestone: Milestone) -> bool:
+    """True for a value that edges of one automaton alone give a variable."""
+    name, value = milestone
+    if owner_of(network, name) is None or any(automaton.name == name for automaton in network.automata):
+        return False
+    return any((name, value) == (n, str(v)) for a in network.automata for edge in a.edges for n, v in edge.assign)
