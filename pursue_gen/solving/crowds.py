@@ -73,6 +73,11 @@ def won_by_some(
     return None if strategy is None else Found(strategy, search.stats())
 
 
+def works_in_parallel(network: Network, goal: Place) -> bool:
+    """True if some subgoals of the goal can be met at the same time."""
+    return any(len(stage) > 1 for stage in _grouped(subgoals(network, goal)))
+
+
 class _Search:
     def __init__(
         self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, budget: Budget

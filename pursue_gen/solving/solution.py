@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.crowds import little_work, won_by_some
+from pursue_gen.solving.crowds import little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
@@ -25,6 +25,12 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
 
 _CANNOT_BE_MET = "SYN021"
+
+_MANY = 100
+"""A strategy with more blocks than this is compared with one in stages."""
+
+_SLOWER = Fraction(11, 10)
+"""So much longer a smaller strategy may take."""
 
 _FOR_IDEAL = 50_000_000
 """The work that may be spent on whether a lost game is won ideally: some ten seconds."""
@@ -65,7 +71,8 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     start = time.monotonic()
     game = played(network, rules)
     verdict = None
-    if not options.whole and not options.limits.work:
+    in_parts = not options.whole and not options.limits.work
+    if in_parts:
         verdict = _with_little_work(game, objective, rules.reaction, options)
         some = None if verdict else won_by_some(game, objective, rules.reaction, options.since(start))
         if some is not None:
@@ -77,7 +84,23 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     left = options.since(start)
     strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks, left)
-    return Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
+    won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
+    return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
+
+
+def _smaller(won: Solution, options: SolveOptions) -> Solution:
+    """The solution, or one in stages that is much smaller and hardly slower.
+
+    Robots that work at the same time arrive in any order, and a strategy in one piece has blocks for each order.
+    """
+    if won.objective.goal is None or not works_in_parallel(won.network, won.objective.goal):
+        return won
+    some = won_by_some(won.network, won.objective, won.reaction, options)
+    if some is None or 2 * len(some.strategy.blocks) > len(won.strategy.blocks):
+        return won
+    smaller = replace(won, strategy=some.strategy, stats=some.stats)
+    takes, took = (guaranteed(each, limits=options.limits).worst for each in (smaller, won))
+    return smaller if takes is not None and (took is None or takes <= _SLOWER * took) else won
 
 
 def _with_little_work(

@@ -22,7 +22,7 @@ from pursue_gen.solving.crowds import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, solution
+from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.subgoals import subgoals
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.strategy import Strategy
@@ -92,6 +92,17 @@ def test_a_larger_one_is_solved_in_stages() -> None:
     scenario = scenario_of(hand_to_visitors(4))
     network, objective = translate(scenario), scenario_objective(scenario)
     assert len(solution(network, objective, Rules()).strategy.stages) == 5
+
+
+def test_a_strategy_with_a_block_for_every_order_of_arrivals_gives_way_to_one_in_stages() -> None:
+    scenario = scenario_of(deliver_by_robots(3))
+    network, objective = translate(scenario), scenario_objective(scenario)
+    won = solution(network, objective, Rules())
+    whole = solution(network, objective, Rules(), SolveOptions(whole=True))
+    assert len(won.strategy.stages) == 2 and whole.strategy.stages == ()
+    assert 2 * len(won.strategy.blocks) <= len(whole.strategy.blocks)
+    slow, quick = guaranteed(won).worst, guaranteed(whole).worst
+    assert slow is not None and quick is not None and slow <= Fraction(11, 10) * quick
 
 
 def test_what_cannot_be_won_is_not() -> None:
