@@ -167,7 +167,9 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
     if strategy.stages[-1] != (objective.goal,):
         return "the last stage does not end at the goal"
     if None in strategy.parts:
-        return "a block leads to no milestone"
+        state = strategy.blocks[strategy.parts.index(None)].state
+        where = ", ".join(map(".".join, state.locations))
+        return f"the block for {where} leads to no milestone"
     names_in_use = (*network.clocks, *network.channels, *(automaton.name for automaton in network.automata))
     if any(name.startswith(BEGIN) for name in names_in_use):
         return f"a name begins with {BEGIN}"

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.proof.checker import LIMIT, pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import LIMIT, Report, pruned, pruned_ranks, verify
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -43,8 +43,7 @@ def prove(
         hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
         raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)
     if not report.ok:
-        play = "".join(f"\n      {step}" for step in report.play)
-        hint = "this is a fault of the strategy, not of the scenario; the play that shows it:" + play
+        hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
         raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
     kept = pruned(strategy, report)
     if not simpler or report.states > _LITTLE or kept.stages:
@@ -58,3 +57,8 @@ def prove(
             raise
         return kept  # what is proven stays so when there is no time left to simplify it
     return pruned(fewer, again) if again.ok else kept
+
+
+def play_that_shows(report: Report) -> str:
+    """The play that breaks a strategy, as more lines of a hint; "" where no play was needed to refuse it."""
+    return "; the play that shows it:" + "".join(f"\n      {step}" for step in report.play) if report.play else ""

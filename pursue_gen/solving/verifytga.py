@@ -23,7 +23,8 @@ from pathlib import Path
 from typing import Callable, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
-from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.proof.checker import pruned, verify
+from pursue_gen.solving.proving import play_that_shows
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import Stats, Verdict
@@ -294,12 +295,7 @@ def _proven(
         hint = f"{TOOL} knows no reaction: --reaction 0 takes its strategy as it is; {_OURS}, which knows it"
     else:
         message, hint = f"the strategy of {TOOL} does not win: {report.reason}", _OURS
-    raise ToolError([error("SYN035", message, hint=hint + _play(report))], _NOT_MET, run)
-
-
-def _play(report: Report) -> str:
-    """The play that breaks a strategy, as more lines of a hint."""
-    return "; the play that shows it:" + "".join(f"\n      {step}" for step in report.play)
+    raise ToolError([error("SYN035", message, hint=hint + play_that_shows(report))], _NOT_MET, run)
 
 
 def _particulars(run: Run) -> str:

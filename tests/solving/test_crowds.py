@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Callable, Set
@@ -20,6 +21,7 @@ from pursue_gen.simulation.mission import Settings, simulate_mission
 from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.crowds import won_by_some
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, guaranteed, solution
@@ -135,6 +137,14 @@ def test_a_milestone_that_the_network_does_not_have_is_an_error_with_its_line() 
     with pytest.raises(PursueError, match="milestone 'rule2.nowhere'") as problem:
         read_plan(plan, won.network, "plan.txt")
     assert problem.value.diagnostics[0].span is not None and problem.value.diagnostics[0].span.line == 4
+
+
+def test_a_plan_without_one_of_its_stages_is_refused_with_the_block_that_nobody_needs() -> None:
+    won = won_so(hand_to_visitors(2))
+    lacking = replace(won.strategy, stages=won.strategy.stages[1:])
+    with pytest.raises(PursueError, match=r"the block for .*visitor1\.\w+.* leads to no milestone") as problem:
+        prove(won.network, won.objective, lacking, DELAY)
+    assert "play" not in problem.value.diagnostics[0].hint, "none is shown"
 
 
 @pytest.mark.parametrize("controllers", ["distributed", "centralized"])
