@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.proof import reasons
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
 from pursue_gen.proof.left_out import proven_part
 from pursue_gen.proof.moves import Arena
@@ -89,6 +90,8 @@ def verify(
     part, matters = proven_part(network, objective, strategy)
     if matters:
         return Report(False, f"left out: the strategy does not speak of what matters: {matters}", (), frozenset(), 0)
+    if not _names_all(part, strategy):
+        return Report(False, reasons.OTHER_NAMES, (), frozenset(), 0)
     loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
     searches = searches_of(loop)
     start = loop.arena.situation(loop.arena.initial).invariant
@@ -107,6 +110,17 @@ def verify(
     except MemoryError:
         raise monitor.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
+
+
+def _names_all(part: Network, strategy: Strategy) -> bool:
+    """True if each block names the automata and variables of the part, in its order: one that names others would hold
+    where nobody has looked."""
+    automata = tuple(automaton.name for automaton in part.automata)
+    variables = tuple(name for name, _ in part.variables)
+    states = [block.state for block in strategy.blocks]
+    return all(tuple(name for name, _ in state.locations) == automata for state in states) and all(
+        tuple(name for name, _ in state.values) == variables for state in states
+    )
 
 
 def _in_stages(

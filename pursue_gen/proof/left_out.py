@@ -171,6 +171,8 @@ def _why_it_may_stop_time(
         entering = [edge for edge in automaton.edges if edge.target == name != edge.source]
         if any(not clocks.issubset(edge.resets) for edge in entering):
             return f"may come to {name} without time to stay"
+        if any(bound.op == "<" for bound in stays[name].invariant):
+            return f"has no last instant in {name}"
         if any(bound.bound < 1 for bound in stays[name].invariant):
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]

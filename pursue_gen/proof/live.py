@@ -25,7 +25,7 @@ Values = Mapping[str, AbstractSet[int]]
 
 def commanded(blocks: Iterable[Block]) -> Commanded:
     """The edges that the commands of these blocks take."""
-    moves = (command.moves[0] for block in blocks for command in block.commands)
+    moves = (command.moves[0] for block in blocks for command in block.commands if command.moves)
     return {(move.automaton, move.edge) for move in moves}
 
 

@@ -1,6 +1,7 @@
 """Why a strategy fails, in words: the kind of failure first."""
 
 BAD = "bad: the location that must be avoided is reached"
+OTHER_NAMES = "other names: not all blocks name what the strategy speaks of, in the network's order"
 NO_BLOCK = "no block: the strategy does not know this discrete state"
 NOT_COVERED = "not covered: the strategy does not say what to do here"
 BLOCKED = "time is blocked: an invariant ends, no command comes and its owner cannot move"

@@ -21,7 +21,7 @@ from pursue_gen.proof.live import Extent, commanded, live
 from pursue_gen.proof.moves import Arena, Situation
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
-from pursue_gen.tga.ending import ending_at, is_value, owner_of
+from pursue_gen.tga.ending import REACHED, ending_at, is_value, owner_of
 from pursue_gen.tga.network import Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
@@ -170,9 +170,11 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
         state = strategy.blocks[strategy.parts.index(None)].state
         where = ", ".join(map(".".join, state.locations))
         return f"the block for {where} leads to no milestone"
-    names_in_use = (*network.clocks, *network.channels, *(automaton.name for automaton in network.automata))
-    if any(name.startswith(BEGIN) for name in names_in_use):
-        return f"a name begins with {BEGIN}"
+    names_in_use = [*network.clocks, *network.channels, *(automaton.name for automaton in network.automata)]
+    names_in_use += [location.name for automaton in network.automata for location in automaton.locations]
+    for reserved in (BEGIN, REACHED):
+        if any(name.startswith(reserved) for name in names_in_use):
+            return f"a name begins with {reserved}"
     known = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
     return next((f"there is no {'.'.join(m)}" for m in milestones if m not in known and not is_value(network, m)), "")
 

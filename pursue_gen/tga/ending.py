@@ -39,7 +39,7 @@ def ending_at(network: Network, milestone: Milestone) -> Ending:
         raise ValueError(f"{name} is not set by one automaton alone")
     automaton = network.automaton(owner)
     changed: Dict[Edge, Edge] = {
-        edge: replace(edge, target=REACHED) for edge in automaton.edges if (name, int(value)) in edge.assign
+        edge: replace(edge, target=REACHED) for edge in automaton.edges if dict(edge.assign).get(name) == int(value)
     }
     edges = tuple(changed.get(edge, edge) for edge in automaton.edges)
     ended = replace(automaton, locations=(*automaton.locations, Location(REACHED)), edges=edges)
@@ -54,8 +54,16 @@ def owner_of(network: Network, variable: str) -> Optional[str]:
 
 
 def is_value(network: Network, milestone: Milestone) -> bool:
-    """True for a value that edges of one automaton alone give a variable."""
+    """True for a value that edges of one automaton alone give a variable, whatever the clocks are that they leave.
+
+    Where they lead, no invariant may forbid them: in the location that stands for the value there is none.
+    """
     name, value = milestone
-    if owner_of(network, name) is None or any(automaton.name == name for automaton in network.automata):
+    owner = owner_of(network, name)
+    if owner is None or any(automaton.name == name for automaton in network.automata):
         return False
-    return any((name, value) == (n, str(v)) for a in network.automata for edge in a.edges for n, v in edge.assign)
+    stays = {location.name: location.invariant for location in network.automaton(owner).locations}
+    giving = [edge for edge in network.automaton(owner).edges if value == str(dict(edge.assign).get(name))]
+    return bool(giving) and all(
+        bound.op == "<=" and bound.clock in edge.resets for edge in giving for bound in stays[edge.target]
+    )

@@ -1,0 +1,64 @@
+"""Random strategies in stages: whatever the checker takes stage by stage wins the game as a whole."""
+
+from __future__ import annotations
+
+from typing import Optional
+from unittest import mock
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.native import tables
+from pursue_gen.synthesis.strategy import Strategy
+from tests.proof.staged_games import Game, damaged, games, staged
+from tests.proof.test_stages import of_the_whole
+
+RANDOM = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def twin() -> None:
+    """Each test uses both checkers."""
+
+
+def judged(game: Game, strategy: Strategy) -> Optional[Report]:
+    """What both checkers say; None where the strategy speaks of clocks that its stage does not have."""
+    network, objective = game
+    try:
+        found = verify(network, objective, strategy)
+    except PursueError:
+        return None
+    with mock.patch.object(tables, "_proof", None):
+        assert verify(network, objective, strategy) == found
+    return found
+
+
+def wins_as_a_whole_if_it_passes(game: Game, strategy: Strategy) -> None:
+    found = judged(game, strategy)
+    event("refused" if found is None else found.reason.split(":")[0] or "proven")
+    if found is not None and found.ok:
+        network, objective = game
+        report = verify(network, objective, of_the_whole(network, strategy))
+        assert report.ok, (report.reason, report.play)
+
+
+@RANDOM
+@given(data=st.data(), game=games())
+def test_what_passes_stage_by_stage_wins_as_a_whole(data: st.DataObject, game: Game) -> None:
+    strategy = data.draw(staged(game))
+    if strategy is not None:
+        wins_as_a_whole_if_it_passes(game, strategy)
+
+
+@RANDOM
+@given(data=st.data(), game=games())
+def test_what_is_damaged_and_passes_still_wins_as_a_whole(data: st.DataObject, game: Game) -> None:
+    strategy = data.draw(staged(game))
+    if strategy is None:
+        return
+    for _ in range(data.draw(st.integers(1, 2))):
+        strategy = data.draw(damaged(strategy))
+    wins_as_a_whole_if_it_passes(game, strategy)
