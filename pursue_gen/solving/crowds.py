@@ -26,7 +26,7 @@ from pursue_gen.synthesis.strategy import Block, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, beginning_in
 from pursue_gen.tga.ending import ending_at
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
 from pursue_gen.tga.part import part_of
 
 _FIRST = 60_000_000
@@ -78,6 +78,17 @@ def works_in_parallel(network: Network, goal: Place) -> bool:
     return any(len(stage) > 1 for stage in _grouped(subgoals(network, goal)))
 
 
+@dataclass(frozen=True)
+class _Part:
+    """A part of a stage: where it ends, who can bring it there, what was reached before, and who has something to end
+    that no other part ends."""
+
+    goal: Optional[Place]
+    doers: FrozenSet[str]
+    milestones: Tuple[Place, ...] = ()
+    ending: FrozenSet[str] = frozenset()
+
+
 class _Search:
     def __init__(
         self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, budget: Budget
@@ -102,12 +113,12 @@ class _Search:
         """The first strategy that is found; raises PursueError at a limit."""
         goal = self._objective.goal
         if goal is None:
-            return self._proven((), self._part(None, self._robots, (), at_start(self._network)))
+            return self._proven((), self._part(_Part(None, frozenset(self._robots)), at_start(self._network)))
         goals = subgoals(self._network, goal)
         first = protections(self._network, self._objective.bad) if self._objective.bad else ()
         self._subgoals = [*first, *goals]
         if len(goals) == 1:
-            blocks = self._part(goal, goals[0].agents, (), at_start(self._network))
+            blocks = self._part(_Part(goal, goals[0].agents), at_start(self._network))
             if blocks is not None:
                 return self._proven((), blocks)
         for stages in self._orders(first, goals):
@@ -118,10 +129,13 @@ class _Search:
 
     def _orders(self, first: Sequence[Subgoal], goals: Sequence[Subgoal]) -> Iterator[List[List[Subgoal]]]:
         """The orders in which subgoals may be met; what makes impossible what is to be avoided comes first."""
+        before = [[goal] for goal in first]
         one_by_one = [[goal] for goal in goals]
         together = _grouped(goals)
         if first:
-            yield [*([goal] for goal in first), *together]
+            yield before + together
+        if first and together != one_by_one:
+            yield before + one_by_one
         if self._objective.kind is Kind.REACH and together != one_by_one:
             yield together
         if len(goals) > 1:
@@ -134,11 +148,13 @@ class _Search:
         blocks: List[Block] = []
         for stage in stages:
             own: Dict[Place, List[Block]] = {}
+            ending = self._under_way(known).difference(*(goal.agents for goal in stage))
             for goal in stage:
-                found = self._part(goal.place, goal.agents, milestones, known)
+                found = self._part(_Part(goal.place, goal.agents, tuple(milestones), ending), known)
                 if found is None:
                     return None
                 own[goal.place] = found
+                ending = frozenset()
                 blocks += found
             following = after_stage(self._network, known, own)
             if following is None:
@@ -156,53 +172,57 @@ class _Search:
         report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
         return strategy if report.ok else None
 
-    def _part(
-        self, goal: Optional[Place], doers: Collection[str], milestones: Sequence[Place], known: Known
-    ) -> Optional[List[Block]]:
+    def _under_way(self, known: Known) -> FrozenSet[str]:
+        """The robots that may be under way where only the controller can end it."""
+        return frozenset(
+            automaton.name
+            for automaton in self._network.automata
+            if automaton.name in self._robots
+            for edge in automaton.edges
+            if edge.source in known.extent.places[automaton.name] and is_end(edge) and is_controllers(edge, self._taken)
+        )
+
+    def _part(self, part: _Part, known: Known) -> Optional[List[Block]]:
         """The blocks of a part of a stage; None where no team wins it with little work."""
-        for team in self._teams(goal, doers, milestones, known):
-            found = self._with_team(goal, team, milestones, known)
+        for team in self._teams(part, known):
+            found = self._with_team(part, team, known)
             if found is not None:
                 return found
         return None
 
-    def _teams(
-        self, goal: Optional[Place], doers: Collection[str], milestones: Sequence[Place], known: Known
-    ) -> Iterator[FrozenSet[str]]:
+    def _teams(self, part: _Part, known: Known) -> Iterator[FrozenSet[str]]:
         """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
         guards: FrozenSet[str] = frozenset()
-        alive, extent = self._alive(goal, self._robots, milestones, known)
-        if goal is not None and stage_objective(self._objective, goal, extent).kind is Kind.REACH_WHILE_SAFE:
+        alive, extent = self._alive(part, self._robots, known)
+        if part.goal is not None and stage_objective(self._objective, part.goal, extent).kind is Kind.REACH_WHILE_SAFE:
             safe = replace(self._objective, kind=Kind.SAFETY, goal=None)
             matter = {automaton.name for automaton in cone_of_influence(alive, safe).automata}
             guards = frozenset(matter.intersection(self._robots))
-        some = [name for name in self._robots if name in doers]
+        some = [name for name in self._robots if name in part.doers]
         sizes = [size for size in range(1, _MOST + 1) if size < len(some)]
         for size in sizes or [len(some)]:
             yield guards.union(some[:size])
         if sizes and len(some) <= _MOST + 1:
             yield guards.union(some)
 
-    def _with_team(
-        self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place], known: Known
-    ) -> Optional[List[Block]]:
+    def _with_team(self, part: _Part, team: Collection[str], known: Known) -> Optional[List[Block]]:
         """The same with this team; None where it does not win."""
-        alive, extent = self._alive(goal, team, milestones, known)
+        alive, extent = self._alive(part, team, known)
         wanted = self._objective
-        if goal is not None:
-            wanted = stage_objective(wanted, ending_at(alive, goal).goal, extent)
+        if part.goal is not None:
+            wanted = stage_objective(wanted, ending_at(alive, part.goal).goal, extent)
         cone = cone_of_influence(alive, wanted)
-        reached = {name for name, _ in milestones}
-        names = {a.name for a in cone.automata} | reached.intersection(known.owned)
+        reached = {name for name, _ in part.milestones}
+        names = {a.name for a in cone.automata} | reached.intersection(known.owned) | part.ending
         variables = {name for name, _ in cone.variables} | reached.difference(known.owned)
-        part = part_of(alive, names, variables.union(v for name in names for v in known.owned[name]))
-        starts = known.states(part)
+        game = part_of(alive, names, variables.union(v for name in names for v in known.owned[name]))
+        starts = known.states(game)
         if starts is None:
             return None
         changed: Mapping[Edge, Edge] = {}
-        if goal is not None:
-            part, _, changed = ending_at(part, goal)
-        game = beginning_in(part, starts) if milestones else part
+        if part.goal is not None:
+            game, _, changed = ending_at(game, part.goal)
+        game = beginning_in(game, starts) if part.milestones else game
         try:
             verdict = self._budget.verdict(game, wanted, self._reaction, min(1.0, _GAME / max(1, self._budget.work)))
             self._verdicts.append(verdict.stats)
@@ -218,13 +238,11 @@ class _Search:
             return blocks
         return list(with_edges(blocks, wanted.goal[0], {there: here for here, there in changed.items()}))
 
-    def _alive(
-        self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place], known: Known
-    ) -> Tuple[Network, Extent]:
+    def _alive(self, part: _Part, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
         """What can happen in a stage in which only this team gets commands."""
-        return live(self._network, self._allowed(goal, team, milestones), known.extent)
+        return live(self._network, self._allowed(part, team), known.extent)
 
-    def _allowed(self, goal: Optional[Place], team: Collection[str], milestones: Sequence[Place]) -> Commanded:
+    def _allowed(self, part: _Part, team: Collection[str]) -> Commanded:
         """What may be commanded in a stage: what the team does, but for what undoes a milestone or is for another one.
 
         The commands of objectives come last.
@@ -234,16 +252,18 @@ class _Search:
         for name, place in (subgoal.place for subgoal in self._subgoals):
             if name in self._variables:
                 fixed[name] = int(place)
-            elif (name, place) != goal:
+            elif (name, place) != part.goal:
                 undoing |= _received(self._network.automaton(name))
-        if goal is not None and goal[0] not in self._variables:
-            undoing -= _received(self._network.automaton(goal[0]), goal[1])
-        is_last = goal == self._objective.goal
+        if part.goal is not None and part.goal[0] not in self._variables:
+            undoing -= _received(self._network.automaton(part.goal[0]), part.goal[1])
+        is_last = part.goal == self._objective.goal
         return {
             (automaton.name, edge)
             for automaton in self._network.automata
-            if automaton.name in team or (is_last and not is_agent(automaton))
             for edge in automaton.edges
+            if automaton.name in team
+            or (automaton.name in part.ending and is_end(edge))
+            or (is_last and not is_agent(automaton))
             if is_controllers(edge, self._taken)
             and (edge.sync is None or edge.sync.channel not in undoing)
             and all(fixed.get(name, value) == value for name, value in edge.assign)

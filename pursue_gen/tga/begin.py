@@ -1,14 +1,15 @@
 """A network that may begin in any of several discrete states, with any values of its clocks.
 
 One more automaton takes it there: at first no time can pass, and the environment makes one of its moves, which leads
-all automata to one of the states. Where an invariant there does not hold of the clocks, that move is not possible.
+all automata to one of the states. Where an invariant there does not hold of the clocks, that move is not possible; what
+no state allows is not possible at first either.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import List, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Location, Network, Sync
 
@@ -40,7 +41,25 @@ def beginning_in(network: Network, states: Sequence[State]) -> Network:
         places = (*automaton.locations, Location(BEGIN))
         home = automaton.home or automaton.initial
         automata.append(replace(automaton, locations=places, initial=BEGIN, edges=(*automaton.edges, *led), home=home))
-    start = (Constraint(BEGIN, None, Fraction(0), False),)
+    start = (Constraint(BEGIN, None, Fraction(0), False), *_latest(network, states))
     return Network(
         (*network.clocks, BEGIN), network.variables, (*network.channels, *channels), (*automata, first), start
     )
+
+
+def _latest(network: Network, states: Sequence[State]) -> List[Constraint]:
+    """How much the clocks may be that an invariant bounds in every state."""
+    invariants = [{place.name: place.invariant for place in automaton.locations} for automaton in network.automata]
+    found: Dict[str, List[Tuple[int, bool]]] = {clock: [] for clock in network.clocks}
+    for locations, _ in states:
+        bounds: Dict[str, List[Tuple[int, bool]]] = {}
+        for here, name in zip(invariants, locations):
+            for bound in here[name]:
+                bounds.setdefault(bound.clock, []).append((bound.bound, bound.op == "<="))
+        for clock, some in bounds.items():
+            found[clock].append(min(some))
+    return [
+        Constraint(clock, None, Fraction(max(some)[0]), not max(some)[1])
+        for clock, some in found.items()
+        if some and len(some) == len(states)
+    ]

@@ -23,7 +23,7 @@ from pursue_gen.solving.crowds import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.subgoals import subgoals
 from pursue_gen.synthesis.plan import read_plan, write_plan
@@ -82,6 +82,17 @@ def test_what_makes_a_threat_impossible_comes_first() -> None:
     first, *others = won_so(MUSEUM).strategy.stages
     assert first == (("Slocked", "1"),)
     assert others == [(("visit", "visit0"), ("floor", "floor0")), (("reachObj", "win"),)]
+
+
+def test_in_the_ideal_game_a_later_stage_ends_what_robots_were_doing() -> None:
+    """The watchman may still be at work when the vault is locked; nobody but the controller ends that."""
+    scenario = scenario_of(MUSEUM)
+    network, objective = played(translate(scenario), IDEAL), scenario_objective(scenario)
+    found = won_by_some(network, objective, Fraction(0), SolveOptions())
+    assert found is not None and verify(network, objective, found.strategy).ok
+    assert found.strategy.stages[0] == (("Slocked", "1"),)
+    later = [block for part, block in zip(found.strategy.parts, found.strategy.blocks) if part and part[0] > 0]
+    assert any(("watchman", "doing_lock_in_vault") in block.state.locations for block in later)
 
 
 def test_a_game_that_takes_little_work_is_solved_in_one_piece() -> None:
