@@ -63,7 +63,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
         resting = {**extent.places, **{name: following.extent.places[name] for name in busy}}
         for place in milestones:
             part = part_of(alive, *_names(blocks[place][0]))
-            ending = ending_at(part, place)
+            ending = ending_at(part, place, owner_of(network, place[0]))
             wanted = stage_objective(objective, ending.goal, extent)
             starts = known.states(part)
             assert starts is not None

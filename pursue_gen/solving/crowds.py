@@ -24,7 +24,7 @@ from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Block, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, beginning_in
-from pursue_gen.tga.ending import ending_at
+from pursue_gen.tga.ending import ending_at, owner_of
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
 from pursue_gen.tga.part import part_of
@@ -209,8 +209,9 @@ class _Search:
         """The same with this team; None where it does not win."""
         alive, extent = self._alive(part, team, known)
         wanted = self._objective
+        owner = None if part.goal is None else owner_of(self._network, part.goal[0])
         if part.goal is not None:
-            wanted = stage_objective(wanted, ending_at(alive, part.goal).goal, extent)
+            wanted = stage_objective(wanted, ending_at(alive, part.goal, owner).goal, extent)
         cone = cone_of_influence(alive, wanted)
         reached = {name for name, _ in part.milestones}
         names = {a.name for a in cone.automata} | reached.intersection(known.owned) | part.ending
@@ -221,7 +222,7 @@ class _Search:
             return None
         changed: Mapping[Edge, Edge] = {}
         if part.goal is not None:
-            game, _, changed = ending_at(game, part.goal)
+            game, _, changed = ending_at(game, part.goal, owner)
         game = beginning_in(game, starts) if part.milestones else game
         try:
             verdict = self._budget.verdict(game, wanted, self._reaction, min(1.0, _GAME / max(1, self._budget.work)))

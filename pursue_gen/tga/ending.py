@@ -26,15 +26,16 @@ class Ending(NamedTuple):
     changed: Mapping[Edge, Edge]
 
 
-def ending_at(network: Network, milestone: Milestone) -> Ending:
+def ending_at(network: Network, milestone: Milestone, owner: Optional[str] = None) -> Ending:
     """The network that ends at the milestone; the network itself where that is a location.
 
+    `owner`: the one automaton that sets the variable (see `owner_of`), where the edges that do so may be left out.
     Raises ValueError for a variable that not exactly one automaton sets.
     """
     name, value = milestone
     if name not in dict(network.variables):
         return Ending(network, milestone, {})
-    owner = owner_of(network, name)
+    owner = owner or owner_of(network, name)
     if owner is None:
         raise ValueError(f"{name} is not set by one automaton alone")
     automaton = network.automaton(owner)

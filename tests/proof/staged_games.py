@@ -257,10 +257,10 @@ def _without_begin(strategy: Strategy) -> List[Block]:
 
 
 @st.composite
-def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
+def damaged(draw: st.DrawFn, network: Network, strategy: Strategy) -> Strategy:
     """The strategy with something changed in its blocks, in whom they name, or in its stages."""
-    how = draw(st.sampled_from((_fewer, _elsewhere, _opened, _unnamed, _swapped, _restaged, _milestone)))
-    return how(draw, strategy)
+    how = draw(st.sampled_from((_fewer, _elsewhere, _opened, _unnamed, _swapped, _restaged, None)))
+    return _milestone(draw, network, strategy) if how is None else how(draw, strategy)
 
 
 def _number(draw: st.DrawFn, strategy: Strategy) -> int:
@@ -331,10 +331,11 @@ def _restaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     return replace(strategy, stages=tuple(stages))
 
 
-def _milestone(draw: st.DrawFn, strategy: Strategy) -> Strategy:
+def _milestone(draw: st.DrawFn, network: Network, strategy: Strategy) -> Strategy:
     """A stage ends elsewhere."""
     number = draw(st.integers(0, len(strategy.stages) - 1))
-    places = (("M0", "m0"), ("t1", "1"), ("E", "e1"), ("R0", "l1"), ("p1", "1"), ("s", "1"), (GOAL, "g1"))
+    places = [(automaton.name, location.name) for automaton in network.automata for location in automaton.locations]
+    places += [(n, str(v)) for automaton in network.automata for edge in automaton.edges for n, v in edge.assign]
     place = draw(st.sampled_from(places))
     stages = list(strategy.stages)
     stages[number] = (place, *stages[number][1:])

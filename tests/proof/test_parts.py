@@ -155,6 +155,13 @@ def test_a_stage_ends_with_a_value_that_the_variable_keeps() -> None:
     assert not verify(undone, REACH, until_it_is_on(undone)).ok
 
 
+def test_a_stage_whose_milestone_nobody_can_reach_is_lost() -> None:
+    strategy = until_it_is_on(switched(1))
+    idle = replace(strategy.blocks[0], wait=(ALWAYS,), commands=())
+    report = verify(switched(1), REACH, replace(strategy, blocks=(idle, *strategy.blocks[1:])))
+    assert report.reason.startswith("waits for ever")
+
+
 def test_no_edge_gives_a_value_that_it_takes_back_at_once() -> None:
     network = switched(1)
     turn = replace(network.automata[0].edges[0], controllable=False)

@@ -16,7 +16,7 @@ from pursue_gen.synthesis.strategy import Strategy
 from tests.proof.staged_games import Game, damaged, games, staged
 from tests.proof.test_stages import of_the_whole
 
-RANDOM = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -60,5 +60,5 @@ def test_what_is_damaged_and_passes_still_wins_as_a_whole(data: st.DataObject, g
     if strategy is None:
         return
     for _ in range(data.draw(st.integers(1, 2))):
-        strategy = data.draw(damaged(strategy))
+        strategy = data.draw(damaged(game[0], strategy))
     wins_as_a_whole_if_it_passes(game, strategy)
