@@ -80,7 +80,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
                 game = beginning_in(ending.network, starts)
                 yield Part(stage, game, wanted, _begun(ending.network, own), (-1, *numbers[place]))
         known = following
-        lost = [place for place in milestones if not _is_kept(known, place)]
+        lost = [place for place in milestones if not is_sure(known, place)]
         fault = f"{'.'.join(lost[0])} may be lost before the stage ends" if lost else ""
 
 
@@ -92,7 +92,8 @@ def stage_objective(objective: Objective, goal: Place, extent: Extent) -> Object
     return replace(objective, goal=goal)
 
 
-def _is_kept(known: Known, milestone: Place) -> bool:
+def is_sure(known: Known, milestone: Place) -> bool:
+    """True if the milestone is reached wherever the network may be."""
     name, value = milestone
     if name in known.extent.places:
         return known.extent.places[name] == {value}

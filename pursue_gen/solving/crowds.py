@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.known import Known, at_start
 from pursue_gen.proof.live import Commanded, Extent, is_controllers, live, taken_over
-from pursue_gen.proof.stages import after_stage, stage_objective
+from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.subgoals import Subgoal, commanded_agents, protections, subgoals
@@ -142,26 +142,28 @@ class _Search:
             yield one_by_one
 
     def _in_stages(self, stages: Sequence[Sequence[Subgoal]]) -> Optional[Strategy]:
-        """A strategy that meets the subgoals of each stage at the same time."""
+        """A strategy that meets the subgoals of each stage at the same time, but for those that are met on the way."""
         known = at_start(self._network)
         milestones: List[Place] = []
         blocks: List[Block] = []
+        met: List[Tuple[Place, ...]] = []
         for stage in stages:
             own: Dict[Place, List[Block]] = {}
             ending = self._under_way(known).difference(*(goal.agents for goal in stage))
-            for goal in stage:
+            for goal in (goal for goal in stage if not is_sure(known, goal.place)):
                 found = self._part(_Part(goal.place, goal.agents, tuple(milestones), ending), known)
-                if found is None:
+                if not found:
                     return None
                 own[goal.place] = found
                 ending = frozenset()
                 blocks += found
-            following = after_stage(self._network, known, own)
+            following = after_stage(self._network, known, own) if own else known
             if following is None:
                 return None
             known = following
             milestones += own
-        return self._proven([[goal.place for goal in stage] for stage in stages], blocks)
+            met += [tuple(own)] if own else []
+        return self._proven(met, blocks)
 
     def _proven(self, stages: Sequence[Sequence[Place]], blocks: Optional[Sequence[Block]]) -> Optional[Strategy]:
         """The strategy of these blocks, if it wins the game."""

@@ -30,7 +30,7 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
             events.append(f'event "{deed}"{_where(draw, places)}{_long(draw)}')
         body = deeds[0] if len(deeds) == 1 else f"({deeds[0]} {draw(st.sampled_from(('before', 'before', 'or')))} b{k})"
         if draw(st.integers(0, 4)):
-            rules.append(f"{body} before report")
+            rules += [f"{body} before report"] * draw(st.sampled_from((1, 1, 1, 2)))
         meets = [f"meet{n}" for n in range(met) if n % robots == k]
         other = [f"a{(k + 1) % robots}"] if robots > 1 and draw(st.integers(0, 5)) == 0 else []
         tells = ["report"] if k == 0 or draw(st.integers(0, 3)) == 0 else []

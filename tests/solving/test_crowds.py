@@ -126,6 +126,30 @@ def test_what_cannot_be_won_is_not() -> None:
     assert found is None or verify(network, objective, found.strategy, DELAY).ok
 
 
+CARRIED = """
+poi "p0"
+poi "p1"
+connect p0 and p1 distance 2
+event "load" location p1
+event "greet"
+event "report"
+rule "papers": load before report
+rule "goods": (load or greet) before report
+agent "bot" controllable mobile 1 location p0 can_do load, greet, report
+{}reach_objective: do report
+"""
+
+
+def test_a_subgoal_that_is_met_with_an_earlier_one_has_no_stage() -> None:
+    assert won_so(CARRIED.format("")).strategy.stages == ((("papers", "papers0"),), (("reachObj", "win"),))
+
+
+def test_a_threat_that_no_value_can_make_impossible_is_no_fault() -> None:
+    scenario = scenario_of(CARRIED.format("objective: avoid load\n"))
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    assert won_by_some(network, objective, DELAY, SolveOptions()) is None
+
+
 def test_subgoals_come_before_what_needs_them() -> None:
     scenario = scenario_of(deliver_by_robots(2))
     goals = subgoals(translate(scenario), ("reachObj", "win"))
