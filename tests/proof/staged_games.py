@@ -7,6 +7,7 @@ may begin. Who is named is drawn as well: so often something is missing that mat
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import chain
 from typing import AbstractSet, Dict, List, Optional, Sequence, Set, Tuple
 
@@ -156,7 +157,7 @@ def _free(draw: st.DrawFn, automaton: Automaton, variables: Sequence[str]) -> Ed
 
 
 @st.composite
-def staged(draw: st.DrawFn, game: Game) -> Optional[Strategy]:
+def staged(draw: st.DrawFn, game: Game, reaction: Fraction = Fraction(0)) -> Optional[Strategy]:
     """A strategy in stages that may win; None where a stage is not won in the game of those whom it names."""
     network, objective = game
     assert objective.goal is not None
@@ -173,7 +174,7 @@ def staged(draw: st.DrawFn, game: Game) -> Optional[Strategy]:
             team = {"R1" if place in MILESTONES[1] else "R0"}
             team |= set() if len(places) > 1 else draw(st.sets(st.sampled_from(ROBOTS), max_size=1))
             assert known is not None
-            blocks = _won(draw, game, place, team, reached, known)
+            blocks = _won(draw, game, reaction, place, team, reached, known)
             if not blocks:
                 return None
             own[place] = blocks
@@ -187,7 +188,13 @@ def staged(draw: st.DrawFn, game: Game) -> Optional[Strategy]:
 
 
 def _won(
-    draw: st.DrawFn, game: Game, place: Place, team: AbstractSet[str], reached: Sequence[str], known: Known
+    draw: st.DrawFn,
+    game: Game,
+    reaction: Fraction,
+    place: Place,
+    team: AbstractSet[str],
+    reached: Sequence[str],
+    known: Known,
 ) -> List[Block]:
     """The blocks of a part of a stage, for the team; none where it is not won so."""
     network, objective = game
@@ -216,7 +223,7 @@ def _won(
     try:
         ending = ending_at(part, place)
         played = beginning_in(ending.network, starts) if reached else ending.network
-        verdict = solve(played, wanted, limits=LITTLE, whole=True)
+        verdict = solve(played, wanted, reaction, limits=LITTLE, whole=True)
     except (PursueError, ValueError):
         return []
     if verdict.strategy is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Optional
 from unittest import mock
 
@@ -14,8 +15,10 @@ from pursue_gen.proof.checker import Report, verify
 from pursue_gen.proof.native import tables
 from pursue_gen.synthesis.strategy import Strategy
 from tests.proof.staged_games import Game, damaged, games, staged
+from tests.proof.staged_play import StagedPlay
 from tests.proof.test_stages import of_the_whole
 
+HALF = Fraction(1, 2)
 RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 
 
@@ -24,15 +27,15 @@ def twin() -> None:
     """Each test uses both checkers."""
 
 
-def judged(game: Game, strategy: Strategy) -> Optional[Report]:
+def judged(game: Game, strategy: Strategy, reaction: Fraction = Fraction(0)) -> Optional[Report]:
     """What both checkers say; None where the strategy speaks of clocks that its stage does not have."""
     network, objective = game
     try:
-        found = verify(network, objective, strategy)
+        found = verify(network, objective, strategy, reaction)
     except PursueError:
         return None
     with mock.patch.object(tables, "_proof", None):
-        assert verify(network, objective, strategy) == found
+        assert verify(network, objective, strategy, reaction) == found
     return found
 
 
@@ -51,6 +54,21 @@ def test_what_passes_stage_by_stage_wins_as_a_whole(data: st.DataObject, game: G
     strategy = data.draw(staged(game))
     if strategy is not None:
         wins_as_a_whole_if_it_passes(game, strategy)
+
+
+@settings(RANDOM, max_examples=100)
+@given(data=st.data(), game=games(), seed=st.integers(0, 1000), damages=st.sampled_from((0, 0, 1)))
+def test_what_passes_comes_to_the_goal_however_late_commands_are(
+    data: st.DataObject, game: Game, seed: int, damages: int
+) -> None:
+    strategy = data.draw(staged(game, HALF))
+    for _ in range(damages if strategy else 0):
+        strategy = data.draw(damaged(game[0], strategy))
+    found = None if strategy is None else judged(game, strategy, HALF)
+    if strategy is not None and found is not None and found.ok:
+        event("played")
+        play = StagedPlay(*game, strategy, HALF)
+        assert [play.broken(5 * seed + n) for n in range(5)] == [None] * 5
 
 
 @RANDOM
