@@ -103,9 +103,10 @@ class Controller:
         windows = [(move, window(self._game, here, move)) for move in moves]
         state = _named(self._game, here.state)
         for book in self._books:
-            found = book.find(state)
-            if found is not None and self._knows(found[1], here):
-                return self._advised(found[1], here, windows)
+            blocks = [block for _, block in book.find_all(state)]
+            if blocks and all(self._knows(block, here) for block in blocks):
+                choices = (self._advised(block, here, windows) for block in blocks)
+                return min((choice for choice in choices if choice), key=lambda choice: choice[1], default=None)
         return self._planned(here, windows)
 
     def _knows(self, block: Block, here: Position) -> bool:

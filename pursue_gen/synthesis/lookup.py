@@ -1,8 +1,8 @@
-"""The block of a strategy that holds in a discrete state."""
+"""The blocks of a strategy that hold in a discrete state."""
 
 from __future__ import annotations
 
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Tuple
 
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
 
@@ -19,13 +19,9 @@ class Blocks:
         for number, block in enumerate(strategy.blocks, start=1):
             self._tables.setdefault(_names(block.state), {})[block.state] = number, block
 
-    def find(self, state: DiscreteState) -> Optional[Tuple[int, Block]]:
-        """The number of the block (from 1) and the block, the first one if there are several; None where the strategy
-        has none."""
-        return next(iter(self.find_all(state)), None)
-
     def find_all(self, state: DiscreteState) -> List[Tuple[int, Block]]:
-        """All of them: parts of a strategy that are played at the same time have a block each."""
+        """The number (from 1) and the block, of each that holds there: of parts that are played at the same time, one
+        each."""
         places, values = dict(state.locations), dict(state.values)
         found: List[Tuple[int, Block]] = []
         for (automata, variables), table in self._tables.items():
