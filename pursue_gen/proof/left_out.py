@@ -42,9 +42,15 @@ def proven_part(network: Network, objective: Objective, strategy: Strategy) -> T
 
 
 def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
-    """The part with the clocks that the strategy compares, though only dead edges of the part's automata may."""
+    """The part with the clocks that the strategy compares, though only dead edges of the part's automata may.
+
+    Where the network says how its clocks start, all clocks of these automata stay: it may say so by differences.
+    """
     zones = (zone for block in strategy.blocks for zone in (*block.wait, *(z for c in block.commands for z in c.zones)))
     compared = {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
+    if network.start:
+        names = {automaton.name for automaton in part.automata}
+        compared.update(clock for a in network.automata if a.name in names for clock in clocks_of(a))
     clocks = tuple(clock for clock in network.clocks if clock in part.clocks or clock in compared)
     return part if clocks == part.clocks else replace(part, clocks=clocks, start=start_of(network, clocks))
 

@@ -99,6 +99,20 @@ def test_a_command_of_nobody_is_refused() -> None:
     assert verify(network, REACH, Strategy((nothing,))).reason.startswith("not a joint move")
 
 
+def test_a_clock_that_nobody_looks_at_any_more_may_say_how_others_start() -> None:
+    edges = tuple(Edge("start", "lost", Guard((ClockBound(clock, "==", 3),))) for clock in ("x", "y"))
+    bot = Automaton("A", (Location("start"), Location("lost")), "start", edges)
+    started = (
+        Constraint("x", None, Fraction(0), False),
+        Constraint("x", "y", Fraction(0), True),
+        Constraint("y", None, Fraction(2), False),
+    )
+    reader = Edge("here", "here", Guard((ClockBound("x", ">", 1),)), controllable=False)
+    network = Network(("x", "y"), (), (), (bot, Automaton("O", (Location("here"),), "here", (reader,))), started)
+    late = Strategy((block({"A": "start"}, ((Constraint(None, "y", Fraction(0), True),),)),))
+    assert verify(network, Objective(Kind.SAFETY, bad=("A", "lost")), late).ok
+
+
 # Stages ---------------------------------------------------------------------------------------------------------------
 
 
