@@ -21,6 +21,7 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
@@ -71,6 +72,9 @@ def test_what_is_won_so_is_won_and_both_checkers_say_so(story: Tuple[str, Scenar
     with mock.patch.object(tables, "_proof", None):
         assert verify(network, objective, strategy, rules.reaction) == report
     assert report.ok
+    if strategy.blocks:
+        plan = write_plan(strategy, network, objective)
+        assert read_plan(plan, network, "plan.txt") == strategy
 
 
 @RANDOM
