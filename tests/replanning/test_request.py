@@ -133,6 +133,6 @@ def test_the_command_ends_when_nobody_reads_its_answer_any_more(searching: bool)
             "values": {**GOOD["values"], **places}, "clocks": {**GOOD["clocks"], **{f"C{name}": 0.0 for name in there}},
         }).encode())
         process.stdin.close()
-        until(lambda: process.poll() is not None or cpu_seconds(process) > 5, "it searches")
+        until(lambda: process.poll() is not None or cpu_seconds(process) > 2, "it searches")
     process.stdout.close()
     assert process.wait(PATIENCE) == 141

@@ -62,6 +62,11 @@ def opened(file: Path, keys: Path) -> Bundle:
     return read_bundle(file, {fingerprint(key): key for key in public_keys(keys)[0].values()})[1]
 
 
+def bundled(*words: object) -> Outcome:
+    """Makes the bundle of a scenario that is solved in no time, with these options."""
+    return pursue("bundle", FIRST, "--computed-poses", *words)
+
+
 def workspace_data(folder: Path) -> Dict[str, bytes]:
     """The data of a workspace's nodes, looked for on the disk."""
     found = {}
@@ -121,7 +126,7 @@ def test_a_bundle_holds_no_code() -> None:
 def test_the_same_key_gives_the_same_file() -> None:
     contents = []
     for name in ("one.pursue", "sub/two.pursue"):
-        assert pursue("bundle", THIEF, "-o", name).status == 0
+        assert bundled("-o", name).status == 0
         contents.append(Path(name).read_bytes())
     assert contents[0] == contents[1]
     assert str(SCENARIOS).encode() not in contents[0]
@@ -158,13 +163,13 @@ def told(done: Outcome, status: int, *words: str) -> None:
 
 def test_the_key_is_looked_for_first(keys: Path) -> None:
     new_key("home", keys)
-    told(pursue("bundle", THIEF), 2, "TRN006", "--key home")
-    told(pursue("bundle", THIEF, "--key", "nobody"), 2, "TRN002", "home, lab")
-    assert pursue("bundle", THIEF, "--key", "home").status == 0
-    assert opened(Path("catch_the_thief.pursue"), keys).signed_by == fingerprint(load_private("home").public_key())
-    Path("catch_the_thief.pursue").unlink()
-    told(pursue("bundle", THIEF, "--keys", "empty"), 2, "TRN002", "keys new")
-    assert pursue("bundle", THIEF, "--key", keys / "lab.key", "--keys", "empty").status == 0
+    told(bundled(), 2, "TRN006", "--key home")
+    told(bundled("--key", "nobody"), 2, "TRN002", "home, lab")
+    assert bundled("--key", "home").status == 0
+    assert opened(Path("scenario_1.pursue"), keys).signed_by == fingerprint(load_private("home").public_key())
+    Path("scenario_1.pursue").unlink()
+    told(bundled("--keys", "empty"), 2, "TRN002", "keys new")
+    assert bundled("--key", keys / "lab.key", "--keys", "empty").status == 0
 
 
 def test_bad_command_lines() -> None:
@@ -186,7 +191,7 @@ def test_a_scenario_with_errors_and_one_that_is_lost() -> None:
 
 def test_a_place_that_cannot_be_written() -> None:
     Path("folder.pursue").mkdir()
-    done = pursue("bundle", THIEF, "-o", "folder.pursue")
+    done = bundled("-o", "folder.pursue")
     assert (done.status, done.out) == (2, "") and "CLI003" in done.err
 
 
@@ -194,21 +199,21 @@ def test_a_place_that_cannot_be_written() -> None:
 
 
 def test_a_bundle_is_shown_and_checked(keys: Path, tmp_path: Path) -> None:
-    _, digest = pursue("bundle", THIEF).out.splitlines()
-    shown = pursue("bundle", "--check", "catch_the_thief.pursue")
+    _, digest = bundled().out.splitlines()
+    shown = pursue("bundle", "--check", "scenario_1.pursue")
     assert shown.status == 0
     signer = f"lab ({fingerprint(load_private('lab').public_key())})"
-    controllers = "controller_polBot1, controller_polBot2, controllerObj"
-    for word in ("catch_the_thief", digest, digest[:12], controllers, signer):
+    controllers = "controller_bot1, controller_bot2, controllerObj"
+    for word in ("scenario_1", digest, digest[:12], controllers, signer):
         assert word in shown.out
     listed = [line.split()[0] for line in shown.out.splitlines() if line.endswith(" bytes")]
-    assert set(listed) == set(opened(Path("catch_the_thief.pursue"), keys).files)
+    assert set(listed) == set(opened(Path("scenario_1.pursue"), keys).files)
     friend = tmp_path / "friend"
     friend.mkdir()
-    unknown = pursue("bundle", "--check", "catch_the_thief.pursue", "--keys", friend)
+    unknown = pursue("bundle", "--check", "scenario_1.pursue", "--keys", friend)
     assert (unknown.status, unknown.out) == (2, "") and "TRN014" in unknown.err and ".pub" in unknown.err
     (friend / "them.pub").write_bytes((keys / "lab.pub").read_bytes())
-    assert "them (" in pursue("bundle", "--check", "catch_the_thief.pursue", "--keys", friend).out
+    assert "them (" in pursue("bundle", "--check", "scenario_1.pursue", "--keys", friend).out
 
 
 @pytest.mark.parametrize("content", [b"", b"junk", b"PK\5\6" + bytes(18), b"\xff" * 100])
@@ -218,14 +223,14 @@ def test_what_is_no_bundle_is_reported(content: bytes) -> None:
 
 
 def test_a_bundle_that_was_changed_is_reported() -> None:
-    pursue("bundle", THIEF)
-    with zipfile.ZipFile("catch_the_thief.pursue") as archive:
+    bundled()
+    with zipfile.ZipFile("scenario_1.pursue") as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name, content in {**files, "observer/model.yaml": b"format: 1\n"}.items():
             archive.writestr(name, content)
-    Path("catch_the_thief.pursue").unlink()
+    Path("scenario_1.pursue").unlink()
     Path("changed.dat").write_bytes(out.getvalue())
     told(pursue("bundle", "--check", "changed.dat"), 2, "observer/model.yaml is not the file that was signed")
     told(pursue("bundle", "--check", "nothing.dat"), 2, "CLI001")
