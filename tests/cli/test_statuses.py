@@ -91,7 +91,7 @@ def test_another_file_that_cannot_be_read(folder: Path, command: str, what: str)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-@pytest.mark.parametrize("text", ["poi a\n", 'poi "a"\n' * 90_000, CALLED.format(deadline="x")])
+@pytest.mark.parametrize("text", ["poi a\n", 'poi "a"\n' * 130_000, CALLED.format(deadline="x")])
 def test_a_scenario_with_errors(folder: Path, command: str, text: str) -> None:
     (folder / "x.pur").write_text(text)
     assert status(COMMANDS[command], folder / "x.pur") == 3

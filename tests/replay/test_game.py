@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from hashlib import sha256
 from typing import Any, Dict
 
@@ -21,6 +22,7 @@ from tests.workspace.worlds import SCENARIOS
 THEFT = load(SCENARIOS / "thesis" / "catch_the_thief.pur")
 
 
+@functools.lru_cache(maxsize=None)
 def digest(**asked: Any) -> str:
     """Of the plan that the solver finds if it is asked that."""
     won = solved(translate(THEFT), scenario_objective(THEFT), Rules(), SolveOptions(**asked))

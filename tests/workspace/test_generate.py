@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import functools
 import json
 import math
 import re
@@ -11,7 +12,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
-from typing import Dict, List, Set
+from typing import Dict, FrozenSet, List, Set, Tuple
 
 import pytest
 import yaml
@@ -97,32 +98,34 @@ def test_what_a_node_imports_is_in_its_manifest_or_that_of_the_run_time(generate
 def reached(text: str, generated: Dict[str, bytes]) -> Set[str]:
     """What a script imports, directly or by way of modules of the run time that are imported at once."""
     found: Set[str] = set()
-    waiting, seen = [ast.parse(text)], set()
+    seen: Set[str] = set()
+    waiting = [text]
     while waiting:
-        tree = waiting.pop()
-        for node in (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module):
-            names = [node.module, *(f"{node.module}.{name.name}" for name in node.names)]
-            for module in set(names) - seen:
-                seen.add(module)
-                path = f"src/{RUNTIME}/src/{module.replace('.', '/')}.py"
-                if path in generated:
-                    waiting.append(ast.parse(generated[path].decode()))
-        found |= imported(tree)
+        names, modules = imports(waiting.pop())
+        found |= names
+        for module in modules - seen:
+            seen.add(module)
+            path = f"src/{RUNTIME}/src/{module.replace('.', '/')}.py"
+            if path in generated:
+                waiting.append(generated[path].decode())
     return found
 
 
-def imports(text: str) -> Set[str]:
-    return imported(ast.parse(text))
+@functools.lru_cache(maxsize=None)
+def imports(text: str) -> Tuple[FrozenSet[str], FrozenSet[str]]:
+    """Of what is imported anywhere in it: the top-level names, and what may be a module behind `from`.
 
-
-def imported(tree: ast.AST) -> Set[str]:
-    """The top-level names of what is imported anywhere in it."""
-    found = set()
-    for node in ast.walk(tree):
-        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
-        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-        found |= {name.split(".")[0] for name in names}
-    return found
+    The run time is in every workspace, so it is read once.
+    """
+    top, modules = set(), set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            top |= {name.name.split(".")[0] for name in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            top.add((node.module or "").split(".")[0])
+            if node.module:
+                modules |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}
+    return frozenset(top), frozenset(modules)
 
 
 def test_the_run_time_is_there_once_and_byte_for_byte_what_is_imported_here(generated: Dict[str, bytes]) -> None:
