@@ -60,6 +60,9 @@ def _environment(home: Path) -> Dict[str, str]:
         # Nodes start in half the time with the system's Python; what it lacks, a virtual environment made by it has.
         path.insert(len(path) if _has_modules("/usr/bin/python3") else 0, str(Path(sys.prefix) / "bin"))
     found = {"PATH": ":".join(path), "HOME": str(home), "LANG": "C.UTF-8"}
+    if sys.version_info < (3, 12):
+        # roslaunch imports distutils, of which setuptools has one that takes long to import.
+        found["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
     return {**found, "ROS_LOG_DIR": str(home / "log"), "ROS_IP": "127.0.0.1"}
 
 
