@@ -8,6 +8,7 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.similar import closest
+from pursue_gen.language.usable import proposal
 
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
@@ -35,6 +36,9 @@ KEYWORDS: Dict[str, str] = {
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
 }  # fmt: skip
 """The words of the language, by token."""
+
+RESERVED = frozenset(KEYWORDS.values()) - {"human"}
+"""Those of them that cannot be names."""
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
@@ -125,9 +129,11 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "STRAY":
         return _stray(chunk, index)
     if token.type == "WORD" and "NAME" in expected:
-        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{shown(text)}"'
+        name = shown(name_meant(chunk, index)[0])
+        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{name}"'
     if token.type == "NAME" and "WORD" in expected:
-        return f"quotes stand only where a name is declared: write {shown(text.strip(chr(34)))} without them"
+        name = proposal(text.strip('"'), RESERVED)
+        return f"quotes stand only where a name is declared: write {shown(name)} without them"
     if statement == "OBJECTIVE" and token.type == "DO":
         return "to have something done write reach_objective: do …"
     if token.type in KEYWORDS and "WORD" in expected:
@@ -143,6 +149,17 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
     return _meant(chunk, index, expected)
+
+
+def name_meant(chunk: List[Token], index: int) -> Tuple[str, Token]:
+    """A usable name for the words at `index`, where a name in quotes is expected, and the last of these words.
+
+    It is one word; for a POI, whose name ends its statement, it is all words on the line.
+    """
+    words = [chunk[index]]
+    if chunk[0].type == "POI":
+        words += [word for word in chunk[index + 1 :] if word.type == "WORD" and word.line == words[0].line]
+    return proposal(" ".join(words), RESERVED), words[-1]
 
 
 def _stray(chunk: List[Token], index: int) -> str:

@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-import keyword
-import re
-from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple
+from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
-from pursue_gen.language.messages import KEYWORDS, shown
+from pursue_gen.language.messages import RESERVED, shown
 from pursue_gen.language.scenario import Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
+from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
 KINDS = ("POI", "event", "rule", "state", "agent")
-GENERATED = frozenset("observer UI controllerObj controller simulator reachObj obj states".split())
-_UPPAAL = frozenset(
-    "chan clock bool int commit const urgent broadcast init process state guard sync assign system trans deadlock "
-    "imply forall exists typedef struct rate before_update after_update meta priority progress scalar select void "
-    "default switch case enum string double hybrid dynamic spawn exit branchpoint".split()
-)
-_FORM = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _SOME = 12  # known names that a message lists
 _COMPARED = 200  # names in broken statements among which a similar one is looked for
-_LONGEST = 60  # with what is added to it a name becomes a file name and a topic
 
 
 def declared(scenario: Scenario, kind: str) -> Dict[str, Span]:
@@ -45,8 +36,9 @@ def check_names(scenario: Scenario) -> Iterator[Diagnostic]:
     yield from _file_name(scenario)
     seen: Dict[str, Tuple[str, Span]] = {}
     sound = True
+    taken = _taken(scenario)
     for kind, name, span in _declarations(scenario):
-        finding = _unfit(name, kind, span)
+        finding = _unfit(name, span, taken)
         if finding is None and name in seen:
             finding = _again(name, kind, span, *seen[name])
         seen.setdefault(name, (kind, span))
@@ -65,7 +57,8 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
     """
     known = {kind: declared(scenario, kind) for kind in KINDS}
     similar = {kind: Similar(known[kind]) for kind in KINDS}
-    meant = {_fitting(name) for kind in KINDS for name in known[kind] if not _FORM.fullmatch(name)}
+    taken = _taken(scenario)
+    meant = {proposal(name, RESERVED, taken) for kind in KINDS for name in known[kind] if not well_formed(name)}
     for kind, name, span in _uses(scenario):
         if name in known[kind] or name in lost or name in meant:
             continue
@@ -74,7 +67,7 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
             message = f"{name} is {_a(elsewhere)}, but {_a(kind)} is needed here"
         else:
             message = f"there is no {kind} {shown(name, 60)}"
-        yield error("PML110", message, span, _instead(kind, name, elsewhere, known, similar[kind], lost))
+        yield error("PML110", message, span, _instead(kind, name, elsewhere, known, similar[kind], lost, taken))
 
 
 def _instead(
@@ -84,6 +77,7 @@ def _instead(
     known: Mapping[str, Mapping[str, Span]],
     similar: Similar,
     lost: FrozenSet[str],
+    taken: Container[str],
 ) -> str:
     """What to write in place of a name that is not known as this kind of thing."""
     declared = known[kind]
@@ -95,12 +89,25 @@ def _instead(
     close = similar.to(name) or closest(name, tuple(sorted(lost)[:_COMPARED]))
     if close:
         capitals = " (capitals matter)" if close.lower() == name.lower() else ""
-        return f"did you mean {close}?{capitals}"
-    some = ", ".join(list(declared)[:_SOME]) + (", …" if len(declared) > _SOME else "")
+        return f"did you mean {_usable(close, taken)}?{capitals}"
+    some = ", ".join(_usable(known, taken) for known in list(declared)[:_SOME])
+    some += ", …" if len(declared) > _SOME else ""
     if elsewhere:
         another = f'declare {_a(kind)} with another name: {_keyword(kind)} "…"'
         return f"write the name of {_a(kind)}: {some}" if some else another
-    return f'declare it: {_keyword(kind)} "{shown(name, 60)}", or use one of: ' + (some or "(none yet)")
+    better = proposal(name, RESERVED, taken)
+    declare = "declare it" if better == name else "declare it with another name"
+    return f'{declare}: {_keyword(kind)} "{better}", or use one of: ' + (some or "(none yet)")
+
+
+def _usable(name: str, taken: Container[str]) -> str:
+    """A declared name, or what is proposed for it if it is malformed."""
+    return name if well_formed(name) else proposal(name, RESERVED, taken)
+
+
+def _taken(scenario: Scenario) -> FrozenSet[str]:
+    """The declared names."""
+    return frozenset(name for kind in KINDS for name in declared(scenario, kind))
 
 
 def refs_of(body: RuleBody) -> List[Ref]:
@@ -148,42 +155,25 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:
-    if not _FORM.fullmatch(scenario.name):
+    if not well_formed(scenario.name):
         package = shown(scenario.name, 60) + "_bringup"
         message = f"the file's name gives the package {package}, which is no name for a ROS package"
-        hint = f"rename the file to {_fitting(scenario.name)}.pur: letters, digits and _, a letter first"
+        hint = f"rename the file to {fitting(scenario.name)}.pur: letters, digits and _, a letter first"
         yield error("PML106", message, None, hint)
 
 
-def _fitting(name: str) -> str:
-    fitting = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    return fitting if _FORM.fullmatch(fitting) else ("n_" + fitting).rstrip("_")
-
-
-def _unfit(name: str, kind: str, span: Span) -> Optional[Diagnostic]:
+def _unfit(name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
-    if not _FORM.fullmatch(name):
-        example = _fitting(name[:_LONGEST])
-        hint = f"use letters, digits and _, a letter first, for example {example}" if name else "give it a name"
+    if not well_formed(name):
+        hint = "use letters, digits and _, a letter first, for example " + proposal(name, RESERVED, taken)
         message = f'"{shown(name, 60)}" cannot become the name of a ROS topic or a Python name'
-        return error("PML101", message, span, hint)
-    if len(name) > _LONGEST:
-        return error("PML101", f"this name is longer than {_LONGEST} letters", span, "choose a shorter name")
-    another = f"choose another name, for example {name}1"
-    if name in GENERATED:
-        return error("PML102", f"{name} is the name of a generated part of every mission", span, another)
-    if name in KEYWORDS.values() and name != "human":
-        return error("PML102", f"{name} is a word of the language and cannot be a name", span, another)
-    if keyword.iskeyword(name):
-        return error("PML102", f"{name} is a word of Python and cannot be a name", span, another)
-    if name in _UPPAAL:
-        return error("PML102", f"{name} is a word of UPPAAL's models and cannot be a name", span, another)
-    if name.endswith("DONE"):
-        return error("PML102", f"{name} ends in DONE, as the words for the ends of actions do", span, another)
-    if name.startswith(("going_", "doing_")):
-        message = f"{name} begins as the words for movements (going_…) and actions (doing_…) do"
-        return error("PML102", message, span, "choose another name")
-    return None
+        return error("PML101", message, span, hint if name else "give it a name")
+    if len(name) > LONGEST:
+        return error("PML101", f"this name is longer than {LONGEST} letters", span, "choose a shorter name")
+    why = reserved(name, RESERVED)
+    if not why:
+        return None
+    return error("PML102", why, span, f"choose another name, for example {proposal(name, RESERVED, taken)}")
 
 
 def _again(name: str, kind: str, span: Span, first_kind: str, first: Span) -> Diagnostic:

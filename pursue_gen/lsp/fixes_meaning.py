@@ -10,7 +10,9 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import component
+from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.poses import robots_in
+from pursue_gen.language.usable import proposal, well_formed
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.navigation import rename
 from pursue_gen.lsp.statements import deleted, inserted, ordered
@@ -53,13 +55,14 @@ def unknown_name(document: Document, finding: Diagnostic, part: Optional[Stateme
         known = document.declared[occurrence.kind]
         if occurrence.name in known or not start <= occurrence.start <= end:
             continue
-        for close in difflib.get_close_matches(occurrence.name, list(known), n=_MOST):
+        for close in difflib.get_close_matches(occurrence.name, filter(well_formed, known), n=_MOST):
             yield f"Write {close}", (Edit(occurrence.start, occurrence.end, close),)
         elsewhere = any(occurrence.name in names for names in document.declared.values())
         places = list(document.declared["POI"])
         if not elsewhere and occurrence.kind != "rule" and (places or occurrence.kind != "agent"):
             statement = _DECLARATIONS[occurrence.kind].format(occurrence.name, *places[:1])
-            yield f"Declare it: {statement}", inserted(document, statement)
+            if proposal(occurrence.name, RESERVED) == occurrence.name:
+                yield f"Declare it: {statement}", inserted(document, statement)
 
 
 def add_agent(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:

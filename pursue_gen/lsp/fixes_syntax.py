@@ -8,7 +8,8 @@ from typing import Iterator, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.messages import KEYWORDS, QUOTES
+from pursue_gen.language.messages import KEYWORDS, QUOTES, RESERVED, name_meant
+from pursue_gen.language.usable import proposal
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, end_of
 
@@ -40,11 +41,12 @@ def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement
     token = part.tokens[wrong]
     expected = accepts(part.tokens[:wrong])
     if "NAME" in expected and token.type == "WORD":
-        yield f'Put {token} in quotes: "{token}"', (Edit(at, end_of(token), f'"{token}"'),)
+        name, last = name_meant(list(part.tokens), wrong)
+        yield f'Put the name in quotes: "{name}"', (Edit(at, end_of(last), f'"{name}"'),)
     elif "NAME" in expected and token.type == "STRAY":
         yield from _straight_quotes(document, at)
     elif "WORD" in expected and token.type == "NAME":
-        bare = str(token)[1:-1].strip()
+        bare = proposal(str(token)[1:-1], RESERVED)
         yield f"Write {bare} without quotes", (Edit(at, end_of(token), bare),)
     elif "COLON" in expected:
         yield "Add the missing :", (_behind(part.tokens[wrong - 1], ":"),)

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.collisions import check_collisions
-from pursue_gen.language.names import GENERATED
+from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.usable import GENERATED, proposal
 
 from .texts import STATEMENTS, findings, text
 
@@ -34,6 +35,55 @@ def test_malformed_names(kind: str, name: str) -> None:
 def test_a_malformed_name_gets_a_proposal() -> None:
     (finding,) = findings(text(rule=RULE.replace("order", "my order")))
     assert "my_order" in finding.hint
+
+
+UNUSABLE = [
+    "security door",
+    "class!",
+    "going to bed",
+    "the DONE",
+    "büro",
+    "2nd",
+    "if?",
+    "observer.",
+    "doing_going_",
+    "x" * 59 + " y",
+]
+
+
+@pytest.mark.parametrize("name", UNUSABLE)
+def test_the_proposed_name_is_accepted(name: str) -> None:
+    (finding,) = findings(text(rule=RULE.replace("order", name)))
+    proposed = finding.hint.split("for example ")[1]
+    assert findings(text(rule=RULE.replace("order", proposed))) == []
+
+
+@given(st.text(min_size=1, max_size=70).filter(lambda name: not set('"\n\r') & set(name)))
+def test_whatever_the_name_its_proposal_is_accepted(name: str) -> None:
+    proposed = proposal(name, RESERVED, ("a", "b", "work", "hand", "rest", "tired", "bot", "man"))
+    assert findings(text(rule=RULE.replace("order", proposed))) == []
+    assert proposal(proposed, RESERVED) == proposed
+
+
+def test_a_proposal_is_no_name_that_stands_for_something_else() -> None:
+    (finding,) = findings(text(rule=RULE.replace("order", "the order") + '\nrule "the_order": work before rest'))
+    assert finding.hint.endswith("for example the_order1")
+
+
+@pytest.mark.parametrize(
+    ("statement", "hint"),
+    [
+        ("connect a and securitydoor distance 3", "did you mean security_door?"),
+        ("poi front door", 'poi "front_door"'),
+        ("poi case", 'poi "case1"'),
+        ('event "knock" location "security door"', "write security_door without them"),
+        ("connect a and going_home distance 3", 'declare it with another name: poi "home"'),
+        ("connect a and lake distance 3", 'declare it: poi "lake", or use one of: a, b, security_door'),
+    ],
+)
+def test_every_hint_proposes_a_usable_name(statement: str, hint: str) -> None:
+    found = findings(text(poi_b='poi "b"\npoi "security door"', more=statement))
+    assert [hint in finding.hint for finding in found if finding.code in ("PML010", "PML110")] == [True]
 
 
 TAKEN = [*sorted(GENERATED), "workDONE", "going_home", "doing_well", "clock", "before", "poi", *keyword.kwlist]

@@ -32,6 +32,8 @@ POSE = "[0, 0, 0, 0, 0, 0, 1]"
 PLACED_B = 'poi "b" //[3, 0, 0, 0, 0, 0, 1]'
 MISTAKES = {
     "PML010 quotes": changed('event "rest"', "event rest"),
+    "PML010 a name of two words": changed('poi "b"', 'poi "b"\npoi front door\nconnect b and front_door distance 1'),
+    "PML010 quotes and a blank": changed("location b can_do rest", 'location "b!" can_do rest'),
     "PML010 curly quotes": changed('event "rest"', "event “rest”"),
     "PML010 no quotes": changed("location b can_do rest", 'location "b" can_do rest'),
     "PML010 colon": changed('rule "order": work', 'rule "order" work'),
