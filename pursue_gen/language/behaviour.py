@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
-from pursue_gen.language.names import refs_of
+from pursue_gen.language.names import events_used, refs_of
 from pursue_gen.language.scenario import Agent, Choice, Dependency, Event, Ref, Rule, RuleBody, Scenario
 
 _SOME = 5  # events that a message lists
@@ -55,11 +55,17 @@ _Part = Tuple[Agent, Ref]
 
 
 def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Events that nobody can do, that lack a partner, or that are out of an agent's reach."""
+    """Events that nothing uses, that nobody can do, that lack a partner, or that are out of an agent's reach."""
     connected = components(scenario)
     where = {agent.name: reachable(agent, connected) for agent in scenario.agents}
     able, reacting = _parts(scenario, "can_do"), _parts(scenario, "reacts_to")
+    used = events_used(scenario)
     for event in scenario.events:
+        if event.name not in used:
+            hint = f"let an agent do it: can_do {event.name}, or delete the event"
+            message = f"nothing uses {event.name}: no agent, rule, state or objective names it"
+            yield warning("PML157", message, event.span, hint)
+            continue
         doers, partners = able.get(event.name, []), reacting.get(event.name, [])
         if not doers:
             hint = f"give it to an agent: can_do {event.name}, or delete the event"

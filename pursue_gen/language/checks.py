@@ -9,7 +9,7 @@ from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, U
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.messages import shown
-from pursue_gen.language.names import check_names, check_references
+from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
 from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
@@ -79,7 +79,7 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
     places = [name for way in scenario.connections for name in (way.a, way.b)]
     places += [agent.location.name for agent in scenario.agents]
     places += [event.location.name for event in scenario.events if event.location is not None]
-    codes: Set[str] = set()
+    codes: Set[str] = set() if events_used(scenario) <= events else {"PML157"}
     if not all(ref.name in events for agent in scenario.agents for ref in agent.can_do):
         codes |= {"PML150", "PML154"}
     if not all(ref.name in events for agent in scenario.agents for ref in agent.reacts_to):

@@ -115,6 +115,11 @@ def refs_of(body: RuleBody) -> List[Ref]:
     return [body] if isinstance(body, Ref) else refs_of(body.first) + refs_of(body.second)
 
 
+def events_used(scenario: Scenario) -> FrozenSet[str]:
+    """The events that a rule, a state, a stateDependency, an agent or an objective names."""
+    return frozenset(name for kind, name, _ in _uses(scenario) if kind == "event")
+
+
 def _declarations(scenario: Scenario) -> List[Tuple[str, str, Span]]:
     """(kind, name, place) of each declaration, in file order, so that the later one of two is the one at fault."""
     parts: List[Tuple[str, str, Span]] = [("POI", poi.name, poi.span) for poi in scenario.pois]

@@ -45,6 +45,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML153": meaning.get_there,
     "PML155": meaning.not_own_partner,
     "PML156": meaning.delete_listed,
+    "PML157": meaning.use_event,
     "PML170": meaning.delete_statement,
     "PML171": meaning.add_objective,
     "PML180": meaning.human_ally,

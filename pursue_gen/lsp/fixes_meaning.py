@@ -128,6 +128,12 @@ def give_event(document: Document, finding: Diagnostic, part: Optional[Statement
         yield f"Let {_bare(agent.name)} do {event}", (_listed(agent, "CAN_DO", event),)
 
 
+def use_event(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+    """Lets an agent do the event, or deletes it."""
+    yield from give_event(document, finding, part, at)
+    yield from delete_statement(document, finding, part, at)
+
+
 def find_partner(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
     """Lets another agent react to the event, or makes it one that needs no partner."""
     if part is None or part.name is None:

@@ -275,6 +275,21 @@ def test_warnings_do_not_stop_other_commands_but_are_reported(tmp_path: Path) ->
     assert "warning PML147" in told.err
 
 
+def test_an_event_that_nothing_uses_changes_no_plan(tmp_path: Path) -> None:
+    file = tmp_path / "more.pur"
+    file.write_text(
+        Path(FIRST).read_text(encoding="utf-8").replace("rule ", 'event "wave" collaborative duration 3\n\nrule ', 1),
+        encoding="utf-8",
+    )
+    assert pursue("check", file).status == 0
+    for scenario, plan in ((FIRST, "plan.txt"), (file, "more.txt")):
+        assert pursue("solve", scenario, "-o", tmp_path / plan).status == 0
+    assert tree(tmp_path)["more.txt"] == tree(tmp_path)["plan.txt"]
+    assert pursue("sim", file, "--runs", "3").status == 0
+    assert pursue("ws", file, "-o", tmp_path / "ws").status == 0
+    assert "warning PML157" in pursue("verify", file, tmp_path / "plan.txt").err
+
+
 # tga -----------------------------------------------------------------------------------------------------------------
 
 

@@ -248,7 +248,6 @@ reach_objective: do knock
 objective: avoid knok
 """, [
         ("PML141", 3, "write duration 1 or more, or delete duration: then it takes no"),
-        ("PML150", 4, "give it to an agent: can_do ring, or delete the event"),
         ("PML131", 5, "write controllable behind the name of each robot"),
         ("PML153", 5, "connect them, or take knock away from bot"),
         ("PML110", 7, "did you mean knock?"),

@@ -45,7 +45,15 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"connect": "connect a and b distance 3\nconnect b and a distance 4"}, [("PML146", 4, "line 3", "delete")]),
     ({"poi_b": 'poi "b" poi "c" poi "d" connect c and d distance 1'}, [("PML147", 2, "from a to c", "connect c and")]),
     # events
-    ({"more": 'event "fly"'}, [("PML190", 14, "only before", ""), ("PML150", 14, "nobody can do fly", "can_do fly")]),
+    ({"event_rest": 'event "rest" event "fly"'}, [("PML157", 6, "nothing uses fly", "can_do fly")]),
+    ({"event_rest": 'event "rest" event "fly" collaborative'}, [("PML157", 6, "nothing uses fly", "delete the event")]),
+    ({"event_rest": 'event "rest" event "fly"', "rule": 'rule "order": wrk before hand'}, [("PML110", 7, "wrk", "")]),
+    ({"event_rest": 'event "rest" event "fly"', "agent_man": MAN + ", fly"}, [
+        ("PML150", 6, "nobody can do fly", "can_do fly"), ("PML152", 11, "fly is not collaborative", ""),
+    ]),
+    ({"event_rest": 'event "rest" event "fly"', "reach": "reach_objective: do fly"}, [
+        ("PML150", 6, "nobody can do fly", "can_do fly"),
+    ]),
     ({"agent_man": 'agent "man" location b can_do rest'}, [("PML151", 5, "nobody reacts to it", "reacts_to hand")]),
     (
         {"agent_bot": BOT + " reacts_to hand", "agent_man": 'agent "man" location b can_do rest'},
@@ -109,7 +117,7 @@ def test_a_fault_is_reported_with_its_place_and_a_way_out(
         assert finding.hint and hint in finding.hint
 
 
-WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML180", "PML190"}
+WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML180", "PML190"}
 
 
 def test_only_what_can_be_meant_is_a_warning() -> None:
@@ -170,5 +178,5 @@ reach_objective: do work
 
 def test_a_name_that_is_declared_nowhere_hides_no_other_mistake() -> None:
     found = {(finding.code, finding.span.line) for finding in check(parse(WITH_UNKNOWN_PLACE, "x.pur")) if finding.span}
-    assert {("PML110", 7), ("PML151", 3), ("PML150", 4)} <= found
+    assert {("PML110", 7), ("PML151", 3), ("PML157", 4)} <= found
     assert not any(code == "PML153" for code, _ in found), "where agents can get is not known"

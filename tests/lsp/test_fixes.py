@@ -81,6 +81,7 @@ MISTAKES = {
     "PML155": changed("can_do work, hand", "can_do work, hand reacts_to hand"),
     "PML156": changed("can_do work, hand", "can_do work, hand, work"),
     "PML156 in front": changed("can_do work, hand", "can_do hand, hand, work"),
+    "PML157": changed('event "rest"', 'event "ring" duration 2\nevent "rest"'),
     "PML170": SMALL + "reach_objective: do work\n",
     "PML171": re.sub("(reach_)?objective.*\n", "", SMALL),
     "PML180": changed('agent "man"', 'agent "man" human'),
