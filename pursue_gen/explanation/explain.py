@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import textwrap
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Dict, List, Optional, Tuple
+from fractions import Fraction
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.changes import Change, findings
@@ -167,6 +168,16 @@ def _listed(title: str, entries: Tuple[str, ...], width: int) -> List[str]:
 
 def _change_json(change: Change) -> Dict[str, Any]:
     values = {key: value for key, value in asdict(change).items() if key != "span"}
+    values.update({key: _value(values[key]) for key in ("before", "after", "next_lost")})
     if change.span is not None:
         values.update(file=change.span.file, line=change.span.line, column=change.span.column)
     return values
+
+
+def _value(text: str) -> Union[float, str, None]:
+    """A value of a change: a number if it is one, None for none, else its text."""
+    try:
+        number = Fraction(text)
+    except ValueError:
+        return text or None
+    return number.numerator if number.denominator == 1 else float(number)

@@ -140,8 +140,8 @@ def decides_ends(strategy: Strategy) -> bool:
 
 
 def as_json(margin: Margin) -> Dict[str, Any]:
-    """The margin as a JSON object: exact fractions as text, null where no failing delay is known."""
-    return {"wins": str(margin.wins), "fails": None if margin.fails is None else str(margin.fails)}
+    """The margin as a JSON object: numbers of time units, null where no failing delay is known."""
+    return {"wins": float(margin.wins), "fails": None if margin.fails is None else float(margin.fails)}
 
 
 def _decimal(value: Fraction) -> str:

@@ -69,11 +69,11 @@ class Guarantee:
         return f"Time to the goal: {here}; nothing below {decimal(self.least)} can be promised."
 
     def as_json(self) -> Dict[str, Any]:
-        """For machines; numbers are exact, as fractions in texts."""
+        """For programs: numbers of time units; null where it was not found out."""
         return {
-            "worst": None if self.worst is None else str(self.worst),
-            "least": str(self.least),
-            "most": None if self.most is None else str(self.most),
+            "worst": None if self.worst is None else float(self.worst),
+            "least": float(self.least),
+            "most": None if self.most is None else float(self.most),
             "optimal": self.exact,
         }
 

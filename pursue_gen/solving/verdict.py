@@ -57,7 +57,7 @@ def verdict_json(
     result: Dict[str, Any] = {
         "won": True if won else None if any(f.code in (UNDECIDED, "SYN035") for f in findings) else False,
         "ends": rules.ends,
-        "reaction": str(rules.reaction),
+        "reaction": float(rules.reaction),
         "slack": dict(rules.slack),
     }
     if won and won.stats:
@@ -73,7 +73,7 @@ def verdict_json(
     if won and won.guarantee:
         result["time"] = won.guarantee.as_json()
     if won and won.within is not None:
-        result["within"] = str(won.within)
+        result["within"] = float(won.within)
     if game_margin:
         result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]

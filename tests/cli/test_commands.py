@@ -7,6 +7,7 @@ import functools
 import io
 import json
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -14,7 +15,7 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Type
+from typing import Dict, Iterator, List, Type
 from unittest import mock
 
 import pytest
@@ -355,8 +356,36 @@ def test_solve_in_json(tmp_path: Path) -> None:
     assert told.status == 0
     assert verdict["won"] is True
     assert verdict["slack"] == {"bot1": 3, "bot2": 2}
-    assert verdict["reaction"] == "1/20"
+    assert verdict["reaction"] == 0.05
     assert verdict["states"] > 0 and verdict["commands"] > 0 and verdict["seconds"] >= 0
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Every text in a JSON value."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for part in value:
+            yield from _texts(part)
+    elif isinstance(value, str):
+        yield value
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["solve", FIRST, "--reaction", "1/20", "--margin"],
+        ["solve", FIRST, "--within", "47/2"],
+        ["solve", "LOST"],
+        ["report", FIRST],
+        ["sim", FIRST, "--runs", "2"],
+    ],
+    ids=lambda words: " ".join(str(word) for word in words if word != FIRST),
+)
+def test_numbers_in_json_are_numbers(tmp_path: Path, words: List[str]) -> None:
+    done = pursue(*(called(tmp_path, 3) if word == "LOST" else word for word in words), "--json")
+    numbers = [text for text in _texts(json.loads(done.out)) if re.fullmatch(r"-?[\d./]*\d", text)]
+    assert numbers == []
 
 
 def test_solve_takes_uppaals_files(tmp_path: Path) -> None:
@@ -643,7 +672,7 @@ def test_the_least_time_is_reported_and_kept(tmp_path: Path) -> None:
     outcome = pursue("solve", FIRST, "--optimize", "time", "--json", "-o", plan)
     found = json.loads(outcome.out)["time"]
     assert found["optimal"] is True
-    assert (found["least"], found["most"]) == ("233/10", "233/10")
+    assert (found["least"], found["most"]) == (23.3, 23.3)
     assert "nothing below 23.3 can be promised" in outcome.err
     assert pursue("verify", FIRST, plan).status == 0
 
@@ -659,7 +688,7 @@ def test_a_strategy_that_is_not_the_fastest_is_not_called_so() -> None:
     outcome = pursue("solve", FIRST, "--ends", "controllable", "--reaction", "0", "--json")
     found = json.loads(outcome.out)["time"]
     assert found["optimal"] is False
-    assert found["least"] == "20"
+    assert found["least"] == 20
     assert "nothing below 20 can be promised" in outcome.err
 
 

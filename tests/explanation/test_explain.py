@@ -269,7 +269,7 @@ def test_json_holds_the_explanation(tmp_path: Path) -> None:
     verdict = json.loads(pursue("solve", file, "--json").out)
     assert verdict["won"] is False
     change = verdict["explanation"]["changes"][0]
-    assert (change["what"], change["before"], change["after"], change["next_lost"]) == ("deadline", "3", "5", "4")
+    assert (change["what"], change["before"], change["after"], change["next_lost"]) == ("deadline", 3, 5, 4)
     assert (change["file"], change["line"]) == (str(file), 8)
     assert verdict["explanation"]["play"][0] == {"at": 1.1, "who": "visitor", "text": "callBot (fetch is due by 4.1)"}
     assert "explanation" not in json.loads(pursue("solve", file, "--json", "--no-explain").out)

@@ -99,7 +99,7 @@ def test_the_thief_is_caught_with_commands_that_are_late_but_not_by_the_ideal_st
 def test_margins_in_words_and_as_json() -> None:
     some, most = Margin(Fraction(7, 20), Fraction(2, 5)), Margin(CAP, None)
     assert in_words(some) == "0.35, not 0.4" and in_words(most) == "at least 10"
-    assert as_json(some) == {"wins": "7/20", "fails": "2/5"} and as_json(most) == {"wins": "10", "fails": None}
+    assert as_json(some) == {"wins": 0.35, "fails": 0.4} and as_json(most) == {"wins": 10, "fails": None}
     late = "Margin: it still wins when commands take effect 0.35 time units late, not 0.4."
     assert describe(some, plan("", "")) == late
 
@@ -108,7 +108,7 @@ def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
     file = thesis_scenario("1")
     told_ = pursue("solve", file, "--json", "--margin")
     found = json.loads(told_.out)
-    assert found["margin"] == found["game_margin"] == {"wins": "10", "fails": None} and found["playable"] is True
+    assert found["margin"] == found["game_margin"] == {"wins": 10, "fails": None} and found["playable"] is True
     assert "10 time units late" in told_.err and "Margin of the game" in told_.err
     ideal = pursue("solve", file, "--json", "--ends", "controllable", "--reaction", "0")
     found = json.loads(ideal.out)
@@ -119,6 +119,6 @@ def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
 def test_report_and_workspaces_tell_the_margin(tmp_path: Path) -> None:
     file = thesis_scenario("1")
     assert "ideal game: Margin 0: it loses when a command takes effect 0.05" in pursue("report", file).out
-    assert json.loads(pursue("report", file, "--json").out)["margins"]["ideal"] == {"wins": "0", "fails": "1/20"}
+    assert json.loads(pursue("report", file, "--json").out)["margins"]["ideal"] == {"wins": 0, "fails": 0.05}
     pursue("ws", file, "-o", tmp_path / "ws")
     assert "it still wins when commands take effect 10 time units late" in (tmp_path / "ws" / "README.md").read_text()
