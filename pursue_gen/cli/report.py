@@ -27,11 +27,14 @@ _MARK = 'name="generator" content="pursue-gen'
 
 
 @guarded
-@with_request("optimize", "limit", "memory")
+@with_request("optimize", "within", "limit", "memory")
 def report(
     scenario: Path = SCENARIO,
     file: Optional[Path] = typer.Argument(
         None, metavar="[FILE]", help="With --html: where the page goes; <scenario>_report.html by default."
+    ),
+    output: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="FILE", help="Write the page to FILE, or into this folder; --html is implied."
     ),
     html: bool = typer.Option(False, "--html", help="Write one HTML page with everything, for any browser."),
     pictures: Optional[Path] = typer.Option(None, metavar="DIR", help="Write every picture there, as SVG and as PNG."),
@@ -60,14 +63,16 @@ def report(
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots
 
+    html = html or output is not None
     seen = html or pictures is not None
-    _check_options(seen, html, file, floor, as_json_)
+    _check_options(seen, html, file, output, floor, as_json_)
+    solving = replace(request.options, within=request.deadline)
     if not seen:
         read = scenario_from(scenario)
         with naming_costs(read, request, as_json_):
-            _print_tables(read, reach_obj, request.options, as_json_)
+            _print_tables(read, reach_obj, solving, as_json_)
         return
-    target = file or Path(f"{scenario.stem}_report.html")
+    target = _target(scenario, file or output)
     if html and not force:
         _check_target(target)
     under = None if floor is None else read_floor(floor)
@@ -75,20 +80,32 @@ def report(
     read = scenario_from(scenario)
     if under is not None:
         show(check_spots(read, under, DEFAULT_DISTANCE))
-    made = _made(read, options, request.options)
+    made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)
     if html:
         _write_page(made, target)
 
 
-def _check_options(seen: bool, html: bool, file: Optional[Path], floor: Optional[Path], as_json_: bool) -> None:
+def _check_options(
+    seen: bool, html: bool, file: Optional[Path], output: Optional[Path], floor: Optional[Path], as_json_: bool
+) -> None:
     if file is not None and not html:
-        raise usage_error(f"{file} has no meaning here", f"to write a page: pursue-gen report SCENARIO --html {file}")
+        raise usage_error(f"{file} has no meaning here", f"to write a page: pursue-gen report SCENARIO -o {file}")
+    if file is not None and output is not None:
+        raise usage_error(f"two places for one page: {file} and {output}", "name it behind -o only")
     if floor is not None and not seen:
         raise usage_error("--map is for pages and pictures", "add --html or --pictures DIR")
     if as_json_ and seen:
-        raise usage_error("--json is for the tables alone", "leave it out, or leave --html and --pictures out")
+        raise usage_error("--json is for the tables alone", "leave it out, or leave --html, -o and --pictures out")
+
+
+def _target(scenario: Path, given: Optional[Path]) -> Path:
+    """Where the page goes."""
+    name = f"{scenario.stem}_report.html"
+    if given is None:
+        return Path(name)
+    return given / name if given.is_dir() else given
 
 
 def _check_target(target: Path) -> None:
@@ -130,16 +147,21 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.report.make import lost_report, solved_both, won_report
+    from pursue_gen.solving.least_time import decimal
+    from pursue_gen.solving.solution import is_lost
+    from pursue_gen.synthesis.limits import is_undecided
 
     try:
         with progress_line() as progress:
             both = solved_both(scenario, replace(solving, progress=progress))
     except PursueError as problem:
-        if problem.exit_status not in (4, 5):
+        too_slow = solving.within is not None and not (is_lost(problem) or is_undecided(problem))
+        if problem.exit_status not in (4, 5) or too_slow:
             raise
         show(problem.diagnostics)
+        option = "" if solving.within is None else f"--within {decimal(solving.within)}"
         with progress_line() as progress:
-            return lost_report(scenario, problem, solving.limits, progress, options.floor)
+            return lost_report(scenario, problem, solving.limits, progress, options.floor, option)
     with counting(2 * options.runs) as count:
         return won_report(scenario, both, options, solving.limits, count)
 

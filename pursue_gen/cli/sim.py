@@ -35,7 +35,7 @@ OPPONENT = typer.Option(
 )
 
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan instead of solving.")
-OPTIONS = ("controllers", "reach_obj", "ends", "reaction", "slack", "plan", "optimize", "limit", "memory")
+OPTIONS = ("controllers", "reach_obj", "ends", "reaction", "slack", "plan", "optimize", "within", "limit", "memory")
 
 
 @guarded

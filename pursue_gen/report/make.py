@@ -68,13 +68,14 @@ def lost_report(
     limits: Limits,
     progress: Optional[Listener] = None,
     floor: Optional[Floor] = None,
+    option: str = "",
 ) -> Report:
     """The report on a scenario that is not won, as `problem` says: why, and what would change that; or that it is not
-    decided, and what makes it so large.
+    decided, and what makes it so large (`option` as for `costs`).
     """
     rules = Rules()
     if is_lost(problem):
         lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress))
     else:
-        lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress))
+        lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress, option))
     return Report(scenario, played(translate(scenario), rules), rules, lost=lost, floor=floor)

@@ -13,6 +13,7 @@ from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, speed_words, units
 from pursue_gen.report.html import Section, table
+from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
 
@@ -44,9 +45,10 @@ def section(
 
 
 def _won(won: Solution, margin: str) -> List[str]:
+    kept = "" if won.within is None else f" within {decimal(won.within)} time units"
     parts = [
-        "<p class='verdict'><strong>It can be met, whatever the others do.</strong> The strategy that does it was "
-        "proven by a second, independent program.</p>"
+        f"<p class='verdict'><strong>It can be met{kept}, whatever the others do.</strong> The strategy that does it "
+        "was proven by a second, independent program.</p>"
     ]
     if won.guarantee:
         parts.append(f"<p>{safe(won.guarantee.in_words())}</p>")

@@ -45,6 +45,11 @@ class SolveRequest:
         return replace(self, options=replace(self.options, limits=NO_LIMITS)) == SolveRequest()
 
     @property
+    def deadline(self) -> Optional[Fraction]:
+        """The time units within which the goal has to be reached; None: some time. Raises PursueError (status 2)."""
+        return None if self.within is None else _time("within", self.within, 1_000_000)
+
+    @property
     def decides_ends(self) -> bool:
         """A general controller decides the ends itself, unless something else is asked for."""
         return self.ends is None and self.controllers == _GENERAL
@@ -72,13 +77,12 @@ def solution_of(
 
     Raises what `take_plan` and `solved` do; with exit status 2 for options that contradict each other.
     """
-    deadline = None if request.within is None else _time("within", request.within, 1_000_000)
-    options = replace(request.options, progress=progress, within=deadline)
+    options = replace(request.options, progress=progress, within=request.deadline)
     if request.plan is None:
         return solved(network, objective, request.rules(network), options)
     if options.solver is not None or options.verifytga is not None:
         raise usage_error("there is a plan, and a solver to make one", "use --plan or --solver, not both")
-    if deadline is not None:
+    if options.within is not None:
         raise usage_error("there is a plan, and a time for one to be made", "use --plan or --within, not both")
     return take_plan(request.plan, network, objective, request.games(network), options)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -51,6 +52,31 @@ def test_the_page_goes_to_the_file_or_beside_and_is_named_on_stdout(tmp_path: Pa
     assert (tmp_path / "scenario_1_report.html").read_text().startswith("<!DOCTYPE html>")
     assert pursue("report", FIRST, "--html", "there/page.html", "--runs", 0).status == 0
     assert (tmp_path / "there" / "page.html").read_bytes() == (tmp_path / "scenario_1_report.html").read_bytes()
+
+
+def test_the_page_goes_where_the_option_says_as_with_other_commands(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    for target, written in (("there/page.html", "there/page.html"), ("folder", "folder/scenario_1_report.html")):
+        result = pursue("report", FIRST, "-o", target, "--runs", 0)
+        assert (result.status, result.out.split()[0]) == (0, written)
+        assert (tmp_path / written).read_text().startswith("<!DOCTYPE html>")
+    assert pursue("report", FIRST, "--html", "--output", "both.html", "--runs", 0).status == 0
+    assert (tmp_path / "both.html").read_bytes() == (tmp_path / "there" / "page.html").read_bytes()
+
+
+def test_a_page_with_a_deadline_is_made_of_a_strategy_that_keeps_it(tmp_path: Path) -> None:
+    assert pursue("report", FIRST, "-o", "page.html", "--runs", 0, "--within", "23.4").status == 0
+    assert "It can be met within 23.4 time units" in (tmp_path / "page.html").read_text()
+    assert json.loads(pursue("report", FIRST, "--json", "--within", "23.4").out)["times"]["default"]["worst"] <= 23.4
+
+
+@pytest.mark.parametrize("words", [("-o", "page.html"), ()])
+def test_a_deadline_that_cannot_be_kept_is_reported_as_by_other_commands(
+    tmp_path: Path, words: Tuple[str, ...]
+) -> None:
+    result = pursue("report", FIRST, "--within", "20", *words)
+    assert result.status == 4 and "SYN023" in result.err
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_page_replaces_a_page_and_nothing_else(tmp_path: Path) -> None:
@@ -120,7 +146,10 @@ def test_places_that_are_not_on_the_floor_plan_are_reported(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("page.html",), "--html page.html"),
+        (("page.html",), "-o page.html"),
+        (("--html", "page.html", "-o", "other.html"), "two places for one page"),
+        (("-o", "page.html", "--json"), "--json is for the tables alone"),
+        (("--within", "soon"), "the within is 'soon'"),
         (("--map", "map.yaml"), "--html or --pictures"),
         (("--html", "--json"), "--json is for the tables alone"),
         (("--html", "--map", "none.yaml"), "none.yaml"),

@@ -49,6 +49,16 @@ def test_a_table_and_what_is_guaranteed() -> None:
     assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
 
 
+def test_a_deadline_is_kept_in_every_mission() -> None:
+    done = called(FIRST, "--runs", 30, "--within", "23.4", "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["outcomes"]["goal"]["missions"] == 30
+    assert found["outcomes"]["goal"]["worst"] <= found["bound"] <= 23.4
+    late = called(FIRST, "--runs", 3, "--within", "20")
+    assert late.returncode == 4 and "SYN023" in late.stderr
+
+
 def test_neither_the_number_of_processes_nor_the_hash_seed_changes_what_comes_out() -> None:
     words = (FIRST, "--runs", 45, "--faults", "delay,loss,deaths", "--json")
     alone, both = (hashed(jobs, *words, "--jobs", jobs) for jobs in (1, 2))
