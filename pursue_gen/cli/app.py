@@ -12,6 +12,7 @@ from pursue_gen.cli.check import check
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain
 from pursue_gen.cli.fmt import fmt
+from pursue_gen.cli.groups import Commands
 from pursue_gen.cli.keys import keys
 from pursue_gen.cli.lsp import lsp
 from pursue_gen.cli.new import new
@@ -28,6 +29,7 @@ from pursue_gen.cli.ws import ws
 
 app = typer.Typer(
     name="pursue-gen",
+    cls=Commands,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     no_args_is_help=True,

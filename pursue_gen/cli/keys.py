@@ -8,9 +8,11 @@ from typing import Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.groups import Commands
 from pursue_gen.files import shell_quoted
 
 keys = typer.Typer(
+    cls=Commands,
     no_args_is_help=True,
     rich_markup_mode=None,
     help="Keys that missions are signed with: robots take missions from those whose public key they have.",

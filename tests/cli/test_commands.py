@@ -140,6 +140,25 @@ def test_a_wrong_command_line_is_reported_on_stderr(words: List[str]) -> None:
     assert "Error" in told.err
 
 
+@pytest.mark.parametrize(
+    ("words", "proposal"),
+    [
+        (["slove", FIRST], "No such command 'slove'. Did you mean 'solve'?"),
+        (["simulate", FIRST], "Did you mean 'sim'?"),
+        (["Check", FIRST], "Did you mean 'check'?"),
+        (["exam"], "Did you mean 'examples'?"),
+        (["keys", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["frobnicate"], "No such command 'frobnicate'. 'pursue-gen -h' lists them."),
+        (["keys", "frobnicate"], "'pursue-gen keys -h' lists them."),
+        (["solve", FIRST, "--withn", "3"], "--within"),
+    ],
+)
+def test_a_misspelt_command_or_option_gets_a_proposal(words: List[str], proposal: str) -> None:
+    done = pursue(*words)
+    assert (done.status, done.out) == (2, "")
+    assert proposal in " ".join(done.err.split())
+
+
 def test_a_fault_of_ours_is_one_sentence() -> None:
     with mock.patch("pursue_gen.language.load", side_effect=ZeroDivisionError("oops")):
         told = pursue("solve", FIRST)
