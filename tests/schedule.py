@@ -11,17 +11,21 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 LONGEST = (
-    "ros/test_missions", "ros/test_missions_among_others", "ros/test_robots", "ros/test_faults", "ros/test_links",
-    "ros/test_witness", "ros/test_nodes", "ros/test_fleet", "ros/test_missions_with_blocked_ways",
-    "ros/test_run_mission", "ros/test_web", "ros/test_disturbed_missions", "ros/test_real_robots_launch",
-    "ros/test_newcomer", "ros/test_benchmarks", "ros/test_missions_with_spots", "ros/test_received_missions",
-    "ros/test_recording", "ros/test_ui_node", "ros/test_install_space",
-    "scenarios/test_scenarios", "proof/test_checker", "synthesis/test_engines", "simulation/test_simulated_command",
-    "language/test_hostile", "synthesis/test_cone", "synthesis/test_start", "runtime/manager/test_hostile_requests",
-    "simulation/test_simulated_missions", "synthesis/test_plan", "runtime/test_hostile_texts", "lsp/test_packaging",
-    "workspace/test_generate", "cli/test_progress", "synthesis/test_limits", "cli/test_commands", "cli/test_statuses",
-    "replay/test_command", "synthesis/test_verdicts", "solving/test_least_time", "proof/test_invariant",
-    "synthesis/test_native", "solving/test_verifytga", "test_tutorial", "transport/test_bundles",
+    "ros/test_robots", "ros/test_missions", "ros/test_links", "ros/test_missions_among_others", "ros/test_faults",
+    "ros/test_witness", "ros/test_install_space", "ros/test_fleet", "ros/test_newcomer", "ros/test_nodes",
+    "ros/test_missions_with_blocked_ways", "ros/test_run_mission", "ros/test_benchmarks", "ros/test_web",
+    "ros/test_ui_node", "ros/test_disturbed_missions", "ros/test_real_robots_launch", "ros/test_recording",
+    "ros/test_received_missions", "ros/test_missions_with_spots",
+    "scenarios/test_scenarios", "explanation/test_explain", "test_tutorial", "synthesis/test_cone",
+    "synthesis/test_engines", "proof/test_checker", "lsp/test_hostile", "authoring/test_new", "lsp/test_server",
+    "synthesis/test_verdicts", "language/test_formatter", "proof/test_invariant", "cli/test_progress",
+    "partition/test_split", "language/test_hostile", "proof/test_simplify", "replanning/test_request",
+    "explanation/test_position", "synthesis/test_start", "solving/test_verifytga", "proof/test_twins",
+    "solving/test_least_time", "transport/test_bundles", "partition/test_strategy_file", "replay/test_game",
+    "proof/test_stages", "workspace/test_writer_kills", "simulation/test_simulated_command",
+    "runtime/test_hostile_texts", "benchmarks/test_stories", "solving/test_quick",
+    "simulation/test_simulated_missions", "runtime/manager/test_hostile_requests", "workspace/test_generate",
+    "report/test_report_command", "cli/test_commands", "play/test_session", "zones/test_dbm", "lsp/test_packaging",
 )
 """Files that take more than some ten seconds, the longest first; all others are short, in any order."""
 
