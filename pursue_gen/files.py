@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_runtime.bounded import BadText, yaml_tree
 
 
 def read_text(file: Path, what: str) -> str:
@@ -72,6 +71,8 @@ def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
 
     Raises PursueError with this code and hint where the text is not YAML, or is refused (exit status 2).
     """
+    from pursue_runtime.bounded import BadText, yaml_tree  # most commands read no YAML, and PyYAML takes long to import
+
     try:
         return yaml_tree(text)
     except BadText as problem:

@@ -10,7 +10,6 @@ import threading
 
 from pursue_gen.cli.console import BROKEN_PIPE, guarded
 from pursue_gen.diagnostics import usage_error
-from pursue_runtime.bounded import DATA, BadText, read_json
 
 
 @guarded
@@ -22,6 +21,7 @@ def replan() -> None:
     reads the answer any more.
     """
     from pursue_gen.replanning import replan as answer
+    from pursue_runtime.bounded import DATA, BadText, read_json
 
     threading.Thread(target=_end_with_reader, daemon=True).start()
     try:
