@@ -128,3 +128,15 @@ def test_what_no_play_reaches_may_go(network: Network, kind: Kind, reaction: Fra
     less = pruned(strategy, report)
     assert verify(network, objective, less, reaction).ok
     assert len(_all_keys(less)) == len(report.used)
+
+
+def test_a_command_on_its_way_stands_whatever_those_do_who_are_left_out() -> None:
+    again = Edge("l0", "l0", Guard((ClockBound("x", ">", 0),)), resets=("x",))
+    passing = Edge("l0", "l0", Guard((ClockBound("y", ">", 0),)), resets=("y",), controllable=False)
+    soon = (Location("l0", (ClockBound("x", "<=", 1),)), Location("l2"))
+    both = Automaton("A0", soon, "l0", (again,)), Automaton("A1", (Location("l0"), Location("l2")), "l0", (passing,))
+    network, objective = Network(CLOCKS, (), (), both), _objective(Kind.SAFETY)
+    strategy = solve(network, objective, Fraction(1, 2)).strategy
+    assert strategy is not None and [name for name, _ in strategy.blocks[0].state.locations] == ["A0"]
+    assert verify(network, objective, strategy, Fraction(1, 2)).ok
+    assert PlayByPlay(network, objective, strategy, Fraction(1, 2)).broken() is None

@@ -12,6 +12,7 @@ from typing import Callable, Dict, Iterator, List, Mapping, Optional, Tuple, Uni
 
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
+from pursue_gen.tga.part import clocks_of
 
 UNIT, STEP, HALFWAY = 8, 2, 1
 """A time unit, a step and half of one, in eighths of a unit, in which all times are counted.
@@ -58,6 +59,7 @@ class PlayByPlay:
         first = strategy.blocks[0].state if strategy.blocks else None
         self.named = {name for name, _ in first.locations} if first else {a.name for a in network.automata}
         values = {name for name, _ in first.values} if first else {name for name, _ in network.variables}
+        self._clocks_named = {c for a in network.automata if a.name in self.named for c in clocks_of(a)}
         self._places = [k for k, automaton in enumerate(network.automata) if automaton.name in self.named]
         self._values = [k for k, (name, _) in enumerate(network.variables) if name in values]
         self.blocks: Dict[Tuple[Tuple[str, ...], Tuple[int, ...]], Block] = {
@@ -153,7 +155,7 @@ class PlayByPlay:
             if not self._changes(then, after, moves[0]):
                 raise Broken("changes nothing")
             yield after
-            yield from self.environment(then)
+            yield from self.environment(then, in_flight=True)
 
     def _changes(self, now: Entry, after: Entry, move: Move) -> bool:
         """True if a command does something to what the strategy names."""
@@ -161,13 +163,20 @@ class PlayByPlay:
         values = any(now[1][k] != after[1][k] for k in self._values)
         return places or values or any(edge.resets for name, edge in move if name in self.named)
 
-    def environment(self, now: Entry) -> Iterator[Entry]:
-        """What the environment may make of this point."""
+    def environment(self, now: Entry, in_flight: bool = False) -> Iterator[Entry]:
+        """What the environment may make of this point; of a command `in_flight` what makes it stale."""
         for move in self.moves(now):
             if not all(edge.controllable for _, edge in move):
+                if in_flight and not self._is_seen(now, move):
+                    continue
                 after = self.after(now, move)
                 if after[:2] != now[:2] or any(edge.resets for _, edge in move):  # else nothing has happened
                     yield after
+
+    def _is_seen(self, now: Entry, move: Move) -> bool:
+        """True if the move changes something of what the strategy names: else a command on its way stands."""
+        resets = {clock for _, edge in move for clock in edge.resets}
+        return self._changes(now, self.after(now, move), ()) or not resets.isdisjoint(self._clocks_named)
 
     def moves(self, now: Entry) -> Tuple[Move, ...]:
         """The joint moves that are enabled at a point."""
