@@ -47,6 +47,7 @@ from pursue_runtime.ui.mission_view import (
     menu,
     possible_words,
     read_line,
+    report_text,
     reporters,
     tasks,
 )
@@ -274,7 +275,7 @@ class UI:
         state = self.mission.state
         if state is not None:
             self.given = tasks(self.model, state, self.reporting)
-            reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent) for task in self.given]
+            reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent, report_text(task)) for task in self.given]
             self.offers = [*possible_words(self.model, state, state.clocks_at(rospy.get_time())), *reports]
 
     def conclude(self, outcome: str, sentence: str) -> None:

@@ -13,6 +13,7 @@ from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import ACTING, report_word
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
+from pursue_runtime.ui.phrases import phrase, sentence, where
 from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
@@ -20,12 +21,15 @@ MARGIN = 0.05  # time units: how far inside an open bound something counts as po
 
 
 class PossibleWord(NamedTuple):
-    """`word` can be published from `opens` to `closes`, time units from now, unless another event comes first."""
+    """`word` can be published from `opens` to `closes`, time units from now, unless another event comes first; `text`
+    says what happens then.
+    """
 
     word: str
     opens: float
     closes: float
     agent: str = ""
+    text: str = ""
 
 
 class Task(NamedTuple):
@@ -56,7 +60,8 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
                 continue
             closes = min([bound.bound - clocks[bound.left] for bound in zone if bound.left], default=float("inf"))
             word = report_word(model, automaton.name, edge.word)
-            found.setdefault(word, PossibleWord(word, opens, closes, automaton.name))
+            text = f"{automaton.name} {phrase(automaton, edge).does}"
+            found.setdefault(word, PossibleWord(word, opens, closes, automaton.name, text))
     return list(found.values())
 
 
@@ -148,7 +153,8 @@ class MissionView:
 
     def on_state(self, state: SystemState, now: float) -> List[str]:
         """A state came; the lines to print."""
-        if self.state is not None and (older(state, self.state) or rewinds(state, self.state)):
+        last = self.state
+        if last is not None and (older(state, last) or rewinds(state, last)):
             return []
         news = self.state is None or self.state.seq != state.seq or self.state.status != state.status
         orders = self._orders.strategy_for(state) if self._orders is not None and news else None
@@ -163,7 +169,7 @@ class MissionView:
             return []
         if state.status in LIVE:
             self._environment.on_state(state, self.start, now)
-        return self._lines(state)
+        return self._lines(state, last)
 
     def due(self, now: float, real: float) -> List[str]:
         """The words to publish at this moment."""
@@ -209,7 +215,7 @@ class MissionView:
         if self.state is None:
             return "waiting for the first state"
         places = [
-            f"{automaton.name} {self.state.locations.get(automaton.name, '?')}"
+            f"{automaton.name} {where(automaton, self.state.locations.get(automaton.name, '?'))}"
             for automaton in self._model.of_kind("robot", "human", "agent")
         ]
         return f"{self.elapsed(now):8.1f}  " + "  ".join(places)
@@ -230,11 +236,10 @@ class MissionView:
             return None
         return order[0], Word(order[1].agent, order[1].event, self.state.seq)
 
-    def _lines(self, state: SystemState) -> List[str]:
+    def _lines(self, state: SystemState, last: Optional[SystemState]) -> List[str]:
         lines = []
         if state.event:
-            who = f"  ({state.agent})" if state.agent and not state.event.startswith(state.agent) else ""
-            lines.append(f"{self.elapsed(state.stamp):8.1f}  {state.event}{who}")
+            lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
             lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {state.reason}")
         if state.agent in self._people and state.status == RUNNING:
@@ -271,12 +276,18 @@ def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
     return next(edge.target for edge in edges if edge.source == departure.target != edge.target)
 
 
+def report_text(task: Task) -> str:
+    """What the report of the end of a task says."""
+    return f"{task.agent} is done: {task.text}" if task.label == "Done" else f"{task.agent}: {task.label.lower()}"
+
+
 def menu(offers: Sequence[PossibleWord]) -> List[str]:
     """Return the menu of the words that can be published now."""
     lines = []
-    for number, (word, opens, closes, _) in enumerate(offers, start=1):
+    for number, (word, opens, closes, _, text) in enumerate(offers, start=1):
         until = f", for {closes - opens:.1f} time units" if closes != float("inf") else ""
-        lines.append(f"  {number:2}  {word}" + (f"  (in {opens:.1f} time units{until})" if opens > MARGIN else ""))
+        later = f"  (in {opens:.1f} time units{until})" if opens > MARGIN else ""
+        lines.append(f"  {number:2}  {f'{text}: ' if text else ''}{word}{later}")
     lines.append("  a number, a word for pursue/events, done, ping or stop; Enter shows this again")
     return lines
 

@@ -9,12 +9,13 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.data import DataError
-from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
-from pursue_runtime.model import Automaton, Edge, Model
+from pursue_runtime.locations import is_action, is_end, is_movement
+from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission_view import possible_words, tasks
+from pursue_runtime.ui.phrases import begin_of, phrase, sentence
 from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
@@ -136,7 +137,7 @@ class Page:
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
             fresh.append(self.note(at, "the mission starts"))
         if state.seq and state.event not in ("", START) and (last is None or last.seq != state.seq):
-            fresh.append(self.note(at, self._sentence(state, last), self._kind(state.agent), state.event))
+            fresh.append(self.note(at, sentence(self._model, state, last), self._kind(state.agent), state.event))
         for name in state.lost if last is None else sorted(set(state.lost) - set(last.lost)):
             fresh.append(self.note(at, f"{name} counts as lost", BAD))
         if last is not None:
@@ -166,7 +167,7 @@ class Page:
         window = end_window(automaton, location)
         agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to, "doing": f"at {place or location}",
                                  "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
-        begin = _begin(automaton, location)
+        begin = begin_of(automaton, location)
         if to:
             agent["doing"] = f"from {place} to {to}"
         elif begin is not None and is_action(location):
@@ -181,7 +182,7 @@ class Page:
         if location in self._plan.places:
             return location, ""
         end = next((edge.target for edge in automaton.edges_from(location) if is_end(location, edge.target)), "")
-        begin = _begin(automaton, location)
+        begin = begin_of(automaton, location)
         if is_movement(location) and begin is not None and end:
             return begin.source, end
         # An action ends where it began; it may be on a way.
@@ -228,21 +229,7 @@ class Page:
         event = word.rpartition(":")[2]
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
-        return _phrase(automaton, edge).label if edge is not None else event
-
-    def _sentence(self, state: SystemState, last: Optional[SystemState]) -> str:
-        """What has happened."""
-        automaton = next((automaton for automaton in self._model.automata if automaton.name == state.agent), None)
-        if automaton is None:
-            return state.event
-        here = state.locations.get(state.agent, "")
-        if automaton not in self._acting:
-            return f"{state.agent}: {here}"
-        before = last.locations.get(state.agent, "") if last is not None else ""
-        edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
-        edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
-        past = _phrase(automaton, edge).past if edge is not None and edge.source != edge.target else ""
-        return f"{state.agent} {past or 'does ' + state.event}"
+        return phrase(automaton, edge).label if edge is not None else event
 
     def _kind(self, agent: str) -> str:
         return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)
@@ -251,36 +238,6 @@ class Page:
         """Before the first state."""
         start = self._model.initial()
         return SystemState(0, 0.0, start.locations, start.values, start.clocks, status=WAITING)
-
-
-class _Phrase(NamedTuple):
-    """An edge in words: on a button, and after it was taken."""
-
-    label: str
-    past: str
-
-
-def _phrase(automaton: Automaton, edge: Edge) -> _Phrase:
-    begin = _begin(automaton, edge.source)
-    if is_end(edge.source, edge.target):
-        if is_movement(edge.source):
-            return _Phrase(f"arrive at {edge.target}", f"arrives at {edge.target}")
-        word = begin.word if begin is not None else edge.word
-        return _Phrase(f"{word} is done", f"has done {word}")
-    if is_movement(edge.target):
-        ends = (end.target for end in automaton.edges_from(edge.target) if is_end(end.source, end.target))
-        to = next(ends, "?")
-        return _Phrase(f"{edge.source} → {to}", f"sets out from {edge.source} to {to}")
-    if is_action(edge.target):
-        return _Phrase(edge.word, f"begins {edge.word}")
-    return _Phrase(edge.word, f"does {edge.word}")
-
-
-def _begin(automaton: Automaton, location: str) -> Optional[Edge]:
-    """The edge that led into a movement or an action."""
-    if not is_under_way(location):
-        return None
-    return next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
 
 
 def _round(number: float) -> float:

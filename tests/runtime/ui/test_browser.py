@@ -165,7 +165,7 @@ def test_the_page_says_that_the_connection_is_lost_and_comes_back(page: Browser,
     node.serve(port)
     says(page, "#link", "connected")
     node.show(2, 3.0, event="thief_a2b", agent="thief", thief="going_a_to_b")
-    says(page, "#log", "thief sets out from a to b")
+    says(page, "#log", "thief sets off from a to b")
     assert page.text("#log").count("the mission starts") == 1, "nothing twice"
     page.wait("document.getElementById('stop').getAttribute('aria-disabled') === 'false'")
 

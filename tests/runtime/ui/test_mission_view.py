@@ -17,6 +17,7 @@ from pursue_runtime.ui.mission_view import (
     menu,
     possible_words,
     read_line,
+    report_text,
     reporters,
     tasks,
 )
@@ -180,16 +181,16 @@ def test_people_are_reported_in_words_once_it_is_taken() -> None:
     told = MissionView(walker, IdleEnvironment())
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
     lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
-    assert [line.strip() for line in lines] == ["4.0  nurse_a2b", "nurse: go from a to b now"]
+    assert [line.strip() for line in lines] == ["4.0  nurse sets off from a to b", "nurse: go from a to b now"]
     lines = told.on_state(state(walker, 3, 113.5, {}, event="nurse_going_a_to_b2b", agent="nurse", nurse="b"), 113.5)
-    assert [line.strip() for line in lines] == ["13.5  nurse_going_a_to_b2b"]
+    assert [line.strip() for line in lines] == ["13.5  nurse arrives at b"]
 
 
 def test_people_get_instructions_where() -> None:
     told = mission()
     told.on_state(at(1, 100.0, event="_start_"), 100.0)
     lines = told.on_state(at(2, 103.0, event="screw", agent="nurse", nurse="doing_screw_in_s"), 103.0)
-    assert [line.strip() for line in lines] == ["3.0  screw  (nurse)", "nurse: do screw now, at s"]
+    assert [line.strip() for line in lines] == ["3.0  nurse begins screw", "nurse: do screw now, at s"]
 
 
 # What happens
@@ -241,6 +242,25 @@ def test_progress_says_where_everybody_is() -> None:
     told.on_state(at(1, 100.0, event="_start_", thief="b"), 100.0)
     assert told.progress(102.5).split("  ")[-4:] == ["bot a", "thief b", "nurse s", "boy s"]
     assert "2.5" in told.progress(102.5)
+    told.on_state(at(2, 103.0, event="screw", agent="boy", thief="going_a_to_b", boy="doing_screw_in_s"), 103.0)
+    assert told.progress(103.0).split("  ")[-4:] == ["bot a", "thief a → b", "nurse s", "boy screw at s"]
+
+
+def test_what_happens_is_printed_in_words() -> None:
+    told = mission()
+    steps = [
+        ("_start_", "", {}),
+        ("thief_a2b", "thief", {"thief": "going_a_to_b"}),
+        ("screw", "boy", {"thief": "going_a_to_b", "boy": "doing_screw_in_s"}),
+        ("thief_going_a_to_b2b", "thief", {"thief": "b", "boy": "doing_screw_in_s"}),
+        ("screwDONE", "boy", {"thief": "b", "boy": "s"}),
+    ]
+    lines = []
+    for seq, (event, agent, places) in enumerate(steps, start=1):
+        lines += told.on_state(at(seq, 100.0 + seq, event=event, agent=agent, **places), 100.0 + seq)
+    assert [line.split("  ")[-1] for line in lines] == [
+        "the mission starts", "thief sets off from a to b", "boy begins screw", "thief arrives at b", "boy ends screw"
+    ]
 
 
 # Who is ready
@@ -281,6 +301,17 @@ def test_the_menu_lists_by_number() -> None:
     assert lines[0].split() == ["1", "thief_a2b"]
     assert lines[1].split()[:2] == ["2", "boy:screw"] and "in 2.5 time units, for 1.5" in lines[1]
     assert "stop" in lines[-1]
+
+
+def test_the_menu_says_what_a_word_means() -> None:
+    now = at(2, 106.0, clocks={"Cthief": 0.0}, thief="going_a_to_b", boy="doing_screw_in_s")
+    begins, ends = offers(at(1, 105.0), 105.0), offers(now, 122.5, kinds=("agent",), ends=True)
+    assert [line.strip() for line in menu(begins)[:2]] == [
+        "1  thief sets off from a to b: thief_a2b", "2  boy begins screw: boy:screw"
+    ]
+    assert menu(ends)[0].strip().startswith("1  thief arrives at b: thief_going_a_to_b2b")
+    reported = [report_text(task) for task in tasks(MODEL, now, ["thief", "boy"])]
+    assert reported == ["thief: arrived", "boy is done: screw, at s"]
 
 
 # What people report

@@ -150,8 +150,8 @@ def test_the_log_tells_events_in_words_each_once() -> None:
     told += shown.on_state(at(4, 123.0, event="screw", agent="boy", thief="b", boy="doing_screw_in_s"), 23.0)
     told += shown.on_state(at(5, 127.0, event="screwDONE", agent="boy", thief="b"), 27.0)
     assert [(entry["at"], entry["text"]) for entry in told] == [
-        (0.0, "the mission starts"), (1.5, "thief sets out from a to b"), (22.0, "thief arrives at b"),
-        (23.0, "boy begins screw"), (27.0, "boy has done screw"),
+        (0.0, "the mission starts"), (1.5, "thief sets off from a to b"), (22.0, "thief arrives at b"),
+        (23.0, "boy begins screw"), (27.0, "boy ends screw"),
     ]
     assert told == shown.log
     assert [entry["n"] for entry in told] == [1, 2, 3, 4, 5]

@@ -1,0 +1,72 @@
+"""What agents do, in words for people: on the page and on the terminal."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Optional
+
+from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
+from pursue_runtime.model import Automaton, Edge, Model
+from pursue_runtime.simulator.simulator import ACTING
+from pursue_runtime.state import SystemState
+from pursue_runtime.words import START
+
+
+class Phrase(NamedTuple):
+    """An edge in words: on a button, and behind the name of the agent that takes it."""
+
+    label: str
+    does: str
+
+
+def phrase(automaton: Automaton, edge: Edge) -> Phrase:
+    """An edge of an agent in words."""
+    if is_end(edge.source, edge.target):
+        if is_movement(edge.source):
+            return Phrase(f"arrive at {edge.target}", f"arrives at {edge.target}")
+        begin = begin_of(automaton, edge.source)
+        word = begin.word if begin is not None else edge.word
+        return Phrase(f"{word} is done", f"ends {word}")
+    if is_movement(edge.target):
+        to = destination(automaton, edge.target)
+        return Phrase(f"{edge.source} → {to}", f"sets off from {edge.source} to {to}")
+    if is_action(edge.target):
+        return Phrase(edge.word, f"begins {edge.word}")
+    return Phrase(edge.word, f"does {edge.word}")
+
+
+def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> str:
+    """What has happened in a state; `last`: the state before it, if that is known."""
+    automaton = next((automaton for automaton in model.automata if automaton.name == state.agent), None)
+    if automaton is None:
+        return "the mission starts" if state.event == START else state.event
+    here = state.locations.get(state.agent, "")
+    if automaton.kind not in ACTING:
+        counts = model.goal is not None and state.agent == model.goal[0] and here != model.goal[1]
+        return "the goal counts from now on" if counts else f"{state.agent}: {here}"
+    before = last.locations.get(state.agent, "") if last is not None else ""
+    edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
+    edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
+    known = edge is not None and edge.source != edge.target
+    return f"{state.agent} {phrase(automaton, edge).does if edge and known else 'does ' + state.event}"
+
+
+def where(automaton: Automaton, location: str) -> str:
+    """Where an agent is, in few words: a POI, the way between two, or an action and its POI."""
+    begin = begin_of(automaton, location)
+    if begin is None:
+        return location
+    if is_movement(location):
+        return f"{begin.source} → {destination(automaton, location)}"
+    return f"{begin.word} at {begin.source}"
+
+
+def begin_of(automaton: Automaton, location: str) -> Optional[Edge]:
+    """The edge that leads into a movement or an action; None for other locations."""
+    if not is_under_way(location):
+        return None
+    return next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
+
+
+def destination(automaton: Automaton, location: str) -> str:
+    """Where a movement leads to."""
+    return next((end.target for end in automaton.edges_from(location) if is_end(end.source, end.target)), "?")
