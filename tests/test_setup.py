@@ -195,6 +195,24 @@ def test_run_does_not_know_other_words() -> None:
     assert "There is no ./run away" in told.stdout
 
 
+def test_the_events_of_a_mission_are_counted(tmp_path: Path) -> None:
+    lines = [
+        "my_floor: waiting for observer, simulator",
+        "     0.0  the mission starts",
+        "     0.0  the mission runs",
+        "     1.0  bot1 sets off from c to b",
+        "    11.6  bot1 arrives at b",
+        "    12.0  the mission holds: bot2 is late",
+        "          nurse: go from a to b now",
+        "   120.4  bot1 does handOver",
+        "The goal is reached, after 120.4 time units.",
+    ]
+    (tmp_path / "UI-1-stdout.log").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    words = ["bash", "-c", 'source "$1"; account "$2" 0 "$2/UI-1-stdout.log"', "bash", str(ROOT / "run"), str(tmp_path)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
+    assert "The mission went well: 3 events." in done.stdout + done.stderr
+
+
 def test_without_apt_there_is_a_list_of_what_to_install(machine: Path) -> None:
     told = run(machine, "setup")
     assert told.returncode == 6
