@@ -43,7 +43,7 @@ def _head(given: Requirements, file: str) -> List[str]:
         f"// A first scenario: {KINDS[given.kind]}.",
         "// Change whatever you like, then ask again:",
         f"//   pursue-gen check {file}   is anything wrong with it?",
-        f"//   pursue-gen solve {file}   can it be done, and how?",
+        f"//   pursue-gen solve {file}   can it be done, and how fast?",
     ]
 
 

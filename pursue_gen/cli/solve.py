@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional
+from typing import TYPE_CHECKING, List, Optional, Tuple
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, suggest
 from pursue_gen.cli.inputs import game_from
 from pursue_gen.cli.options import EXPLAIN, GAME, MARGIN, REQUEST, with_request
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
@@ -26,19 +26,20 @@ OPTIONS = ("ends", "reaction", "slack", "limit", "memory", "optimize", "within",
 def solve(
     files: List[Path] = typer.Argument(..., metavar=GAME, help="A scenario, or UPPAAL's files for a timed game."),
     output: Optional[Path] = typer.Option(
-        None, "-o", "--output", metavar="FILE", help="Where the plan goes, instead of stdout."
+        None, "-o", "--output", metavar="FILE", help="Write the plan to FILE; -: print it on stdout."
     ),
+    plan_: Optional[str] = typer.Option(None, "--plan", metavar="-", help="Print the plan on stdout."),
     request: SolveRequest = REQUEST,
     explain: bool = EXPLAIN,
     margin: bool = MARGIN,
     as_json_: bool = typer.Option(
-        False, "--json", help="Print the verdict as JSON on stdout (the plan goes to -o only)."
+        False, "--json", help="Print the verdict as JSON on stdout."
     ),
 ) -> None:
-    """Find out whether the objective can be met whatever the others do, and print the plan that meets it.
+    """Find out whether the objective can be met whatever the others do, and make the plan that meets it.
 
-    The plan (in the format of UPPAAL-TIGA's) has been proven by a second, independent program. The exit status is 4
-    where the objective cannot be met.
+    A summary is printed on stderr, the plan only with -o FILE or --plan -. It has the format of UPPAAL-TIGA's, and has
+    been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.cli.solution import explained
@@ -50,6 +51,7 @@ def solve(
     from pursue_gen.solving.verdict import margin_text, margins, verdict_json, verdict_text
     from pursue_gen.synthesis.plan import write_plan
 
+    printed, output = _plan_to(plan_, output, as_json_)
     network, objective = game_from(files)
     rules, limits = request.rules(network), request.options.limits
     try:
@@ -66,15 +68,26 @@ def solve(
         if why:  # its findings are printed
             raise typer.Exit(problem.exit_status) from None
         raise
-    plan = write_plan(won.strategy, won.network, objective)
+    plan = write_plan(won.strategy, won.network, objective) if printed or output is not None else ""
     if output is not None:
         write_texts({output: plan})
     found = margins(won, margin, limits)
     if as_json_:
         print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
-    elif output is None:
+    elif printed:
         print(plan, end="")
     info(verdict_text(won))
     info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")
+
+
+def _plan_to(plan: Optional[str], output: Optional[Path], as_json_: bool) -> Tuple[bool, Optional[Path]]:
+    """Whether the plan is printed, and the file that it is written to. Raises PursueError (exit status 2)."""
+    if plan not in (None, "-"):
+        raise usage_error(f"solve makes a plan and takes none: --plan {plan}", "to write the plan: -o FILE")
+    on_stdout = output == Path("-")
+    printed = plan is not None or on_stdout
+    if printed and as_json_:
+        raise usage_error("stdout cannot have both the plan and JSON", "write the plan to a file: -o FILE")
+    return printed, None if on_stdout else output

@@ -15,7 +15,7 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Iterator, List, Type
+from typing import Dict, Iterator, List, Tuple, Type
 from unittest import mock
 
 import pytest
@@ -176,7 +176,7 @@ def test_colour_is_for_terminals_that_want_it(tmp_path: Path) -> None:
 
 
 def test_nobody_reads_what_it_prints() -> None:
-    words = [sys.executable, "-m", "pursue_gen", "solve", str(THESIS / "catch_the_thief.pur")]
+    words = [sys.executable, "-m", "pursue_gen", "solve", str(THESIS / "catch_the_thief.pur"), "--plan", "-"]
     ours, its = os.pipe()
     os.close(ours)  # before it starts: it may be quick, and we slow
     try:
@@ -343,12 +343,39 @@ def test_tga_does_not_write_into_a_file(tmp_path: Path) -> None:
 # solve ---------------------------------------------------------------------------------------------------------------
 
 
-def test_solve_prints_a_plan_and_talks_beside_it() -> None:
+def test_solve_prints_a_summary() -> None:
     told = pursue("solve", FIRST)
+    assert (told.status, told.out) == (0, "")
+    assert told.err.startswith("won: ends reported, reaction 0.1")
+    assert "Time to the goal: at most 23.302 time units" in told.err and "Margin: it still wins" in told.err
+    assert f"next: pursue-gen ws {shlex.quote(FIRST)}" in told.err
+
+
+@pytest.mark.parametrize("words", [("--plan", "-"), ("--plan=-",), ("-o", "-")])
+def test_solve_prints_the_plan_when_it_is_asked_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: Tuple[str, ...]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    told = pursue("solve", FIRST, *words)
     assert told.status == 0
     assert read_plan(told.out, played(translate(load(FIRST)), Rules()), "plan").blocks
     assert "won: ends reported, reaction 0.1" in told.err
-    assert f"next: pursue-gen ws {shlex.quote(FIRST)}" in told.err
+    assert pursue("solve", FIRST, "-o", "plan.txt").status == 0
+    assert tree(tmp_path) == {"plan.txt": told.out.encode("utf-8")}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--plan", "plan.txt"), "to write the plan: -o FILE"),
+        (("--plan", "-", "--json"), "stdout cannot have both"),
+        (("-o", "-", "--json"), "stdout cannot have both"),
+    ],
+)
+def test_solve_refuses_what_would_mix_its_output(words: Tuple[str, ...], message: str) -> None:
+    told = pursue("solve", FIRST, *words)
+    assert (told.status, told.out) == (2, "")
+    assert message in told.err
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])
@@ -409,7 +436,7 @@ def test_numbers_in_json_are_numbers(tmp_path: Path, words: List[str]) -> None:
 
 def test_solve_takes_uppaals_files(tmp_path: Path) -> None:
     files = pursue("tga", FIRST, "-o", tmp_path).out.splitlines()
-    assert pursue("solve", *files).out == pursue("solve", FIRST).out
+    assert pursue("solve", *files, "--plan", "-").out == pursue("solve", FIRST, "--plan", "-").out != ""
 
 
 def test_an_objective_that_cannot_be_met_has_its_own_status(tmp_path: Path) -> None:
@@ -470,8 +497,8 @@ def test_a_limit_ends_every_command_that_may_take_long(command: str, option: Lis
 
 
 def test_limits_that_are_no_limits_change_nothing() -> None:
-    free = pursue("solve", FIRST, "--limit", "0", "--memory", "0")
-    assert (free.status, free.out) == (0, pursue("solve", FIRST).out)
+    free = pursue("solve", FIRST, "--limit", "0", "--memory", "0", "--plan", "-")
+    assert (free.status, free.out) == (0, pursue("solve", FIRST, "--plan", "-").out)
     for option in ("--limit=-1", "--memory=-1", "--memory=much"):
         assert pursue("solve", FIRST, option).status == 2
 
@@ -519,7 +546,7 @@ def test_a_network_without_its_query_is_reported(tmp_path: Path) -> None:
 
 
 def test_a_plan_that_is_not_whole_does_not_win(tmp_path: Path) -> None:
-    plan = pursue("solve", FIRST).out
+    plan = pursue("solve", FIRST, "--plan", "-").out
     blocks = plan.split("\nState: ")
     (tmp_path / "plan.txt").write_text("\nState: ".join(blocks[:4]), encoding="utf-8")
     told = pursue("verify", FIRST, tmp_path / "plan.txt")
@@ -644,7 +671,7 @@ def test_ws_takes_a_plan_of_tigas(tmp_path: Path, reference_dir: Path) -> None:
 
 
 def test_ws_refuses_a_plan_that_does_not_win(tmp_path: Path) -> None:
-    blocks = pursue("solve", FIRST).out.split("\nState: ")
+    blocks = pursue("solve", FIRST, "--plan", "-").out.split("\nState: ")
     (tmp_path / "plan.txt").write_text("\nState: ".join(blocks[:4]), encoding="utf-8")
     told = pursue("ws", FIRST, "-o", tmp_path / "ws", "--plan", tmp_path / "plan.txt")
     assert told.status == 4
@@ -669,7 +696,8 @@ def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
     assert pursue("check", file).err.startswith("1 file: 0 errors, 0 warnings")
     assert pursue("solve", file).status == 0
     file.write_text(text.replace("mobile 3", "mobile 1"), encoding="utf-8")
-    assert pursue("solve", file).status == 4
+    lost = pursue("solve", file)
+    assert lost.status == 4 and "a slower visitor, mobile 2 instead of 1" in lost.err
 
 
 # The engines find different strategies; the figures are those of the native one.

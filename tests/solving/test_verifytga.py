@@ -476,7 +476,7 @@ IDEAL = ("--ends", "controllable", "--reaction", "0")
 
 def test_solve_prints_the_tools_proven_plan(game: Game, strategy: Strategy, tool: Tool, called: Path) -> None:
     program = tool(replaying(winning(game, strategy)))
-    done = pursue("solve", called, *IDEAL, "--solver", "verifytga", "--verifytga", program)
+    done = pursue("solve", called, "--plan", "-", *IDEAL, "--solver", "verifytga", "--verifytga", program)
     assert done.returncode == 0, done.stderr
     assert read_plan(done.stdout, game[0], "plan").blocks
     assert "verifytga engine" in done.stderr and "proven" in done.stderr
