@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import List, Tuple
 
 import pytest
+import yaml
 
+from pursue_gen.language import load
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.workspace.model_file import render
+from pursue_runtime.model import Model, Position
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.phrases import sentence
 from tests.conftest import ROOT
 
 PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
@@ -32,6 +40,11 @@ def write_scenario(folder: Path) -> Path:
     (scenario,) = blocks("pursue")
     (folder / "night_shift.pur").write_text(scenario.replace("fetsh", "fetch"), encoding="utf-8")
     return folder
+
+
+def worst_time() -> float:
+    """The time to the goal that the page shows; a test compares it with what `solve` finds."""
+    return float(re.findall(r"at most (\S+) time units", blocks("text")[1])[0])
 
 
 @pytest.fixture
@@ -62,6 +75,8 @@ def test_it_can_be_done_in_the_time_that_the_page_names(solved: Tuple[Path, int,
     assert status == 0
     for line in blocks("text")[1].splitlines():
         assert line in text
+    (latest,) = re.findall(r"handed over after (\S+)\s+time\s+units at the latest", PAGE)
+    assert float(latest) == worst_time()
 
 
 def test_a_faster_nurse_gets_away_and_the_page_says_what_would_help(ward: Path) -> None:
@@ -79,7 +94,42 @@ def test_simulated_nights_end_well(solved: Tuple[Path, int, str]) -> None:
     status, text = said(ward, "sim", "night_shift.pur", "--runs", "20", "--timeline", "x.svg")
     assert status == 2 and "--runs 1" in text
     status, text = said(ward, "sim", "night_shift.pur", "--runs", "20", "--plan", "plan.txt")
-    assert status == 0 and re.search(r"goal reached +20 +100\.0", text)
+    found = next(line for line in text.splitlines() if line.startswith("goal reached"))
+    assert status == 0 and found.split()[:4] == ["goal", "reached", "20", "100.0"]
+    (runs,) = re.findall(r"sim night_shift.pur --runs (\d+)\n", PAGE)
+    assert blocks("text")[3].split() == ["goal", "reached", f"{int(runs):,}", "100.0"]
+
+
+def test_the_mission_that_the_page_shows_is_one_of_the_model(ward: Path) -> None:
+    """Its lines are those that the terminal prints, and in this order they lead to the goal, in time."""
+    scenario = load(ward / "night_shift.pur")
+    rules, objective = Rules(), scenario_objective(scenario)
+    text = render(played(translate(scenario), rules), objective, scenario, rules.reaction, "test")
+    model = Model(yaml.safe_load(text))
+    first, *lines, end = blocks("text")[4].splitlines()
+    assert first == "     0.0  the mission runs"
+    position, last = model.initial(), 0.0
+    for line in lines:
+        at, what = float(line[:8]), line[10:]
+        assert at >= last
+        position, last = following(model, position, what), at
+    assert model.goal is not None and position.locations[model.goal[0]] == model.goal[1]
+    assert end == f"The goal is reached, after {last:.1f} time units."
+    assert last <= worst_time()
+
+
+def following(model: Model, position: Position, what: str) -> Position:
+    """The position after the event for which the terminal prints these words."""
+    found = []
+    for word in model.possible(position, timed=False):
+        for agent in (automaton.name for automaton in model.automata):
+            moves = model.joint_move(position, word, agent, timed=False)
+            if moves is not None:
+                after = model.after(moves, position)
+                state = SystemState(1, 0.0, after.locations, after.values, after.clocks, word, agent)
+                found += [after] if sentence(model, state, None) == what else []
+    assert len(found) == 1, what
+    return found[0]
 
 
 def test_its_pictures_are_there() -> None:
