@@ -44,10 +44,9 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
         counts = model.goal is not None and state.agent == model.goal[0] and here != model.goal[1]
         return "the goal counts from now on" if counts else f"{state.agent}: {here}"
     before = last.locations.get(state.agent, "") if last is not None else ""
-    edges = [edge for edge in automaton.edges if edge.word == state.event and edge.target == here]
-    edge = next((edge for edge in edges if edge.source == before), edges[0] if edges else None)
-    known = edge is not None and edge.source != edge.target
-    return f"{state.agent} {phrase(automaton, edge).does if edge and known else 'does ' + state.event}"
+    edges = [edge for edge in automaton.edges if edge.word == state.event and edge.source != edge.target]
+    likely = sorted(edges, key=lambda edge: (edge.target != here, edge.source != before))
+    return f"{state.agent} {phrase(automaton, likely[0]).does if likely else 'does ' + state.event}"
 
 
 def where(automaton: Automaton, location: str) -> str:

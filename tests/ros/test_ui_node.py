@@ -163,4 +163,4 @@ def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
     assert done.returncode == code, done.stderr
     lines = [line.strip() for line in done.stdout.splitlines()]
     assert lines[0] == "example: waiting for observer, controller_bot"
-    assert lines[-2:] == ["3.0  thief_a2b", says]
+    assert lines[-2:] == ["3.0  thief sets off from a to b", says]
