@@ -2,7 +2,7 @@
 
 Set /use_sim_time before any other node starts. Parameters: ~speed (simulated seconds per real one, default 5), ~hold
 (real seconds of standstill after each message of the mission, default 0.1), ~time_unit (seconds, default 1.0), ~step
-(simulated seconds; default 0.05 time units). Killed and started again it goes on where it was: it keeps its time in a
+(simulated seconds; default 0.02 time units). Killed and started again it goes on where it was: it keeps its time in a
 file under ROS_HOME, one for each roscore.
 """
 

@@ -28,7 +28,7 @@ class Pace:
     """
 
     speed: float = 5.0
-    step: float = 0.05
+    step: float = 0.02
     hold: float = 0.1
 
     @property
@@ -38,12 +38,8 @@ class Pace:
 
 
 def read_pace(given: Mapping[str, Any]) -> Pace:
-    """The pace that these parameters of the node give. Raises ParameterError.
-
-    A step is 0.05 time units by default, so an alarm in simulated time is late by half of the default reaction delay at
-    most. Smaller steps are more messages to every node.
-    """
-    step = 0.05 * number(given, "time_unit", 1.0, above=True)
+    """The pace that these parameters of the node give; a step is 0.02 time units by default. Raises ParameterError."""
+    step = 0.02 * number(given, "time_unit", 1.0, above=True)
     speed, hold = number(given, "speed", Pace.speed, above=True), number(given, "hold", Pace.hold)
     return Pace(speed, number(given, "step", step, above=True), hold)
 

@@ -69,7 +69,7 @@ def test_the_tick_makes_the_speed() -> None:
 
 def test_a_step_is_a_share_of_the_time_unit() -> None:
     assert read_pace({}) == Pace()
-    assert read_pace({"time_unit": 0.5, "speed": 10}) == Pace(speed=10.0, step=0.025)
+    assert read_pace({"time_unit": 0.5, "speed": 10}) == Pace(speed=10.0, step=0.01)
     assert read_pace({"time_unit": 0.5, "step": 2, "hold": 0}) == Pace(step=2.0, hold=0.0)
 
 
