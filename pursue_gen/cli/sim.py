@@ -90,7 +90,7 @@ def sim(
     show(won.warnings)
     case, knows = make_case(read, won, request, opponent.value, kinds, until)
     if not knows:
-        info("the game is too large to compute the longest plays: the worst opponent acts at random")
+        info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")
     with counting(runs, as_json_) as count:
         seeds = range(seed, seed + runs)
         played = None if scheduler is None else outcomes_on(cluster(scheduler), case, seeds)

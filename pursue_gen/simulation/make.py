@@ -35,7 +35,7 @@ def make_case(
     """The case to simulate, and whether its worst opponent knows how long plays can be.
 
     `opponent` and `faults` as for `Settings`; `until`: when a mission is over, in time units; None for the default. It
-    does not know where the game is too large: then it does anything.
+    does not know where the game is too large or the strategy has stages: then it does anything.
     """
     goal = won.objective.kind is not Kind.SAFETY
     settings = Settings(opponent, faults, until or (_LONG if goal else _SHORT))
