@@ -170,17 +170,17 @@ def pass_bystanders(bystanders: int) -> str:
 FAMILIES: Tuple[Family, ...] = tuple(
     Family(name, grows, " ".join((text.__doc__ or "").split()), text, sizes, quick)
     for name, grows, text, sizes, quick in (
-        ("delivery", "robots", deliver_by_robots, (1, 2, 3, 4, 5, 6), (1, 2)),
-        ("chase", "robots", catch_by_robots, (1, 2, 3, 4, 5, 6), (1, 2)),
-        ("cleaning", "robots", clean_by_robots, (1, 2, 3, 4, 5, 6), (1,)),
-        ("hotel", "POIs", deliver_by_places, (4, 8, 12, 16, 24, 32, 40), (4, 8)),
-        ("ring", "POIs", catch_by_places, (4, 8, 12, 16, 24, 32, 40), (4, 8)),
+        ("delivery", "robots", deliver_by_robots, (1, 2, 3, 4, 6, 10, 20), (1, 2)),
+        ("chase", "robots", catch_by_robots, (1, 2, 3, 4, 6, 10, 20), (1, 2)),
+        ("cleaning", "robots", clean_by_robots, (1, 2, 3, 4, 6, 10, 20), (1,)),
+        ("hotel", "POIs", deliver_by_places, (4, 8, 16, 32, 64, 100, 150), (4, 8)),
+        ("ring", "POIs", catch_by_places, (4, 8, 16, 32, 64, 100, 150), (4, 8)),
         ("all ways", "distance", catch_by_distance, (1, 2, 5, 10, 20, 50, 100), (1, 10)),
         ("one way", "distance", catch_by_one_distance, (1, 2, 5, 10, 20, 50, 100), (1, 20)),
         ("building site", "distance", deliver_by_distance, (1, 2, 5, 10, 20, 50, 100), (1, 100)),
-        ("round in order", "actions", inspect_in_order, (1, 2, 4, 6, 8, 10, 12), (1, 2)),
-        ("round in any order", "actions", inspect_in_any_order, (1, 2, 4, 6, 8, 10, 12), (1, 2)),
-        ("visitors", "uncontrollable agents", hand_to_visitors, (1, 2, 3, 4), (1, 2)),
+        ("round in order", "actions", inspect_in_order, (1, 2, 4, 8, 12, 20, 30), (1, 2)),
+        ("round in any order", "actions", inspect_in_any_order, (1, 2, 4, 8, 12, 20, 30), (1, 2)),
+        ("visitors", "uncontrollable agents", hand_to_visitors, (1, 2, 3, 4, 5, 6), (1, 2)),
         ("bystanders", "uncontrollable agents", pass_bystanders, (0, 1, 2, 5, 10, 20, 50), (0, 1)),
     )
 )

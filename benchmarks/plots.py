@@ -9,7 +9,7 @@ from benchmarks.families import FAMILIES, Family
 
 Row = Dict[str, Any]
 
-FIGURES = (("states", "states"), ("seconds", "seconds to decide"), ("commands", "commands"))
+FIGURES = (("states", "states"), ("seconds", "seconds to solve and prove"), ("commands", "commands"))
 MARKERS = ("o", "s", "^")
 GAMES = {"ideal": ("-", "white"), "default": ("--", "black")}  # how the line looks, and what fills its marks
 
@@ -47,10 +47,14 @@ def _picture(grows: str, families: Sequence[Family], rows: Sequence[Row]) -> str
                 xs, ys = [x for x, _ in points], [y for _, y in points]
                 ax.plot(xs, ys, color="black", linewidth=1, label=f"{family.name}, {game}", **look)
         ax.set_yscale("log")
-        if grows in ("distance", "POIs"):  # here growth is a power: a straight line
-            ax.set_xscale("log")
         sizes = sorted({size for family in families for size in family.sizes})
-        ax.set_xticks(sizes, [str(size) for size in sizes])
+        if sizes[0] > 0:  # growth with a power is a straight line
+            ax.set_xscale("log")
+        else:
+            ax.set_xscale("symlog", linthresh=1, linscale=0.3)
+            ax.set_xlim(-0.5)
+        shown = _apart(sizes)
+        ax.set_xticks(shown, [str(size) for size in shown])
         for axis in (ax.xaxis, ax.yaxis):
             axis.set_minor_locator(NullLocator())
             axis.set_minor_formatter(NullFormatter())
@@ -62,6 +66,18 @@ def _picture(grows: str, families: Sequence[Family], rows: Sequence[Row]) -> str
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return "\n".join(line.strip() for line in stream.getvalue().splitlines()) + "\n"
+
+
+def _apart(sizes: Sequence[int]) -> List[int]:
+    """The sizes, but for those that would stand too close to the one before on a logarithmic axis."""
+    shown: List[int] = []
+    for size in sizes:
+        if not shown or shown[-1] == 0 or size / shown[-1] > _APART:
+            shown.append(size)
+    return shown
+
+
+_APART = 1.26
 
 
 def _points(rows: Sequence[Row], family: Family, game: str, key: str) -> List[Tuple[int, float]]:

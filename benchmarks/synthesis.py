@@ -1,8 +1,9 @@
 """Measures what synthesis costs: `python -m benchmarks.synthesis --help` lists the choices.
 
 Each game is decided and proven in a process of its own, with limits on time and memory, so that a slow one does not
-stop the table. The published scenarios (and TIGA's figures) are read where they are at hand: beside the project in
-shared/reference, or where PURSUE_REFERENCE says. docs/benchmarks.md says what the columns mean.
+stop the table; so is each whole command, and each exploration by TChecker where its program is given. The published
+scenarios (and TIGA's figures) are read where they are at hand: beside the project in shared/reference, or where
+PURSUE_REFERENCE says. docs/benchmarks.md says what the columns mean.
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ import sys
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
-from benchmarks import tables
+from benchmarks import command, random_page, tables
 from benchmarks.families import FAMILIES
-from benchmarks.measure import GAMES, Bounds, Case, Row, measured
+from benchmarks.measure import GAMES, Bounds, Case, Row, game_of, measured
 from benchmarks.page import filled
+from benchmarks.tchecker import TCheckerError, explored
 from benchmarks.tiga import NOTHING, Figures, figures
+from pursue_gen.diagnostics import PursueError
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -68,8 +71,11 @@ def tiga_figures(case: Case) -> Figures:
     return NOTHING
 
 
-def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
-    """A row per case. In a family, what comes after one that was not decided is not tried."""
+def measurements(cases: Iterable[Case], bounds: Bounds, binary: Optional[Path] = None) -> Iterator[Row]:
+    """A row per case, with the figures of TChecker's program `binary` if there is one.
+
+    In a family, what comes after one that was not decided (not explored) is not tried.
+    """
     given_up: Set[Tuple[str, str]] = set()
     for case in cases:
         series = (case.name, case.game)
@@ -82,13 +88,30 @@ def measurements(cases: Iterable[Case], bounds: Bounds) -> Iterator[Row]:
                 given_up.add(series)
         if case.group == "reference":
             row.update({f"tiga_{what}": value for what, value in tiga_figures(case).as_json().items()})
+        # Who decides what, and how late commands come, makes no difference to an exploration.
+        if binary is not None and case.game == "ideal" and (case.name, "TChecker") not in given_up:
+            row.update(tchecker_figures(case, binary, bounds))
+            if case.group == "family" and row.get("tchecker_outcome"):
+                given_up.add((case.name, "TChecker"))
         yield row
+
+
+def tchecker_figures(case: Case, binary: Path, bounds: Bounds) -> Row:
+    """What TChecker takes to explore the same network, or why that is not known."""
+    from benchmarks.tchecker_file import written
+
+    try:
+        network, objective = game_of(case)
+        found = explored(binary, written(network, objective), bounds.seconds, bounds.memory)
+    except (TCheckerError, ValueError, PursueError) as problem:
+        return {"tchecker_outcome": str(problem).splitlines()[0]}
+    return {"tchecker_states": found.states, "tchecker_seconds": found.seconds}
 
 
 def version() -> str:
     """Return the commit that is played; "" outside a repository."""
-    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
-    found = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    command_line = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
+    found = subprocess.run(command_line, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
     return found.stdout.strip()
 
 
@@ -114,7 +137,10 @@ def merged(old: Sequence[Row], new: Sequence[Row]) -> List[Row]:
         return Case(row["group"], row["name"], row["game"], size=row.get("size")).key
 
     rows = {**{key(row): row for row in old}, **{key(row): row for row in new}}
-    order = {case.key: place for place, case in enumerate([*scenario_cases(), *family_cases(quick=False)])}
+    cases = [case.key for case in [*scenario_cases(), *family_cases(quick=False)]]
+    cases += [("command", goal.title, -1 if goal.size is None else goal.size, goal.game) for goal in command.GOALS]
+    cases += [("random", kind, -1, game) for kind in random_page.KINDS for game in GAMES]
+    order = {case: place for place, case in enumerate(cases)}
     return [row for _, row in sorted(rows.items(), key=lambda item: (order.get(item[0], len(order)), item[0]))]
 
 
@@ -139,14 +165,17 @@ def options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description="Measures what synthesis costs, each game in a process of its own.")
     parser.add_argument("files", nargs="*", metavar="FILE", help="a SCENARIO.pur, or a TGA.xml beside its TCTL.q")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--all", action="store_true", help="scenarios and families (otherwise the scenarios alone)")
+    what.add_argument("--all", action="store_true", help="everything (otherwise the scenarios alone)")
     what.add_argument("--families", action="store_true", help="the families alone")
-    what.add_argument("--quick", action="store_true", help="a few scenarios and the smallest of each family")
+    what.add_argument("--commands", action="store_true", help="the whole command solve alone")
+    what.add_argument("--random", action="store_true", help="random small games alone")
+    what.add_argument("--quick", action="store_true", help="a few scenarios, commands, games, and small families")
     what.add_argument("--render", action="store_true", help="measure nothing, write again what --out holds")
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="of these, the scenarios and families named so")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="of these, those named so (as in the tables)")
     parser.add_argument("--games", nargs="+", choices=list(GAMES), default=list(GAMES))
-    parser.add_argument("--seconds", type=float, default=120.0, help="to decide a game, and again to prove it (120)")
+    parser.add_argument("--seconds", type=float, default=20.0, help="to decide a game, and again to prove it (20)")
     parser.add_argument("--memory", type=int, default=4096, metavar="MIB", help="of each process (4096)")
+    parser.add_argument("--tchecker", type=Path, metavar="PATH", help="TChecker's tck-reach, to explore the same games")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write benchmarks.md, benchmarks/*.json, .csv, .svg")
     parser.add_argument("--no-plots", action="store_true", help="without pictures (matplotlib is not needed then)")
     parser.add_argument("--machine", default=machine(), help="how the results name the machine")
@@ -155,11 +184,13 @@ def options() -> argparse.ArgumentParser:
 
 
 def chosen(given: argparse.Namespace) -> List[Case]:
-    """What the command line asks for."""
+    """The games that the command line asks for."""
     if given.files:
         cases = [Case("file", file, game, file=str(Path(file).resolve())) for file in given.files for game in GAMES]
     elif given.quick:
         cases = [case for case in scenario_cases() if case.name in QUICK] + list(family_cases(quick=True))
+    elif given.commands or given.random:
+        cases = []
     else:
         cases = [] if given.families else list(scenario_cases())
         cases += family_cases(quick=False) if given.all or given.families or given.only else []
@@ -167,34 +198,86 @@ def chosen(given: argparse.Namespace) -> List[Case]:
     return [case for case in cases if case.name in names and case.game in given.games]
 
 
+def chosen_commands(given: argparse.Namespace) -> List[command.Goal]:
+    """The commands that it asks for."""
+    if given.files or not (given.all or given.commands or given.quick):
+        return []
+    goals = [goal for goal in command.GOALS if goal.game in given.games]
+    goals = [goal for goal in goals if goal.name in command.QUICK] if given.quick else goals
+    return [goal for goal in goals if not given.only or goal.title in given.only]
+
+
+def chosen_random(given: argparse.Namespace) -> int:
+    """How many random games of each kind it asks for."""
+    if given.only or given.files:
+        return 0
+    if given.quick:
+        return random_page.GAMES_QUICK
+    return random_page.GAMES_EACH if given.all or given.random else 0
+
+
+def rows_of(given: argparse.Namespace) -> Iterator[Row]:
+    """All rows, one at a time."""
+    bounds = Bounds(given.seconds, given.memory)
+    yield from measurements(chosen(given), bounds, given.tchecker)
+    yield from command.commands_measured(chosen_commands(given), reference_folder(), bounds)
+    count = chosen_random(given)
+    if count:
+        yield from random_page.random_measured(count, bounds)
+
+
+def line(row: Row) -> str:
+    """The row for the terminal."""
+    show = {"command": command.terminal, "random": random_page.terminal}.get(row["group"], tables.terminal)
+    return show(row)
+
+
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     """Prints the table a row at a time, and writes the results where that is asked for."""
     parser = options()
     given = parser.parse_args(arguments)
-    if given.render and not given.out:
-        parser.error("--render needs --out")
-    cases = [] if given.render else chosen(given)
-    unknown = set(given.only or ()) - {case.name for case in cases}
-    if unknown and not given.render:
-        parser.error(f"nothing here is called {', '.join(sorted(unknown))}")
+    check(parser, given)
+    load = os.getloadavg()[0]
     new: List[Row] = []
-    if cases:
-        print(tables.HEADLINE)
     try:
-        for row in measurements(cases, Bounds(given.seconds, given.memory)):
-            new.append(row)
-            print(tables.terminal(row), flush=True)
+        if not given.render:
+            print(tables.HEADLINE)
+            for row in rows_of(given):
+                new.append(row)
+                print(line(row), flush=True)
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
     if given.out:
         file = given.out / "benchmarks" / "results.json"
-        old: Dict[str, Any] = json.loads(file.read_text()) if file.is_file() and (given.only or given.render) else {}
+        old: Dict[str, Any] = json.loads(file.read_text()) if file.is_file() and not is_complete(given) else {}
         results = {"machine": given.machine, "date": given.date, "seconds": given.seconds, "memory": given.memory}
+        results["load"] = round(load, 1)
         if given.render:
-            results.update({key: old[key] for key in results})
+            results = {key: old[key] for key in results}
         write(given.out, {**results, "rows": merged(old.get("rows", []), new)}, not given.no_plots)
     return 0
+
+
+def is_complete(given: argparse.Namespace) -> bool:
+    """True if all is measured, so that no older row stays."""
+    return bool(given.all) and not given.only and set(given.games) == set(GAMES)
+
+
+def check(parser: argparse.ArgumentParser, given: argparse.Namespace) -> None:
+    """Ends with a message where the command line asks for what there is not."""
+    if given.render and not given.out:
+        parser.error("--render needs --out")
+    if given.render and not (given.out / "benchmarks" / "results.json").is_file():
+        parser.error(f"--render needs {given.out / 'benchmarks' / 'results.json'}, and there is none: measure first")
+    names = {case.name for case in chosen(given)} | {goal.title for goal in chosen_commands(given)}
+    unknown = set(given.only or ()) - names
+    if unknown and not given.render:
+        parser.error(f"nothing here is called {', '.join(sorted(unknown))}")
+    if given.tchecker is not None and not os.access(str(given.tchecker), os.X_OK):
+        parser.error(f"{given.tchecker} is no program that can be run; --tchecker is the path of TChecker's tck-reach")
+    if given.tchecker is not None and given.tchecker.is_dir():
+        parser.error(f"{given.tchecker} is a folder; --tchecker is the path of TChecker's tck-reach")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,8 @@ COLUMNS = (
     "group", "name", "size", "game", "verdict", "outcome", "reason", "states", "symbolic", "zones", "rate",
     "seconds", "runs", "decided", "proof", "memory", "blocks", "commands", "margin", "margin_open",
     "tiga_states", "tiga_waiting", "tiga_rate", "tiga_blocks", "tiga_commands",
+    "stages", "cpu", "goal", "worst", "least", "games", "plain", "above", "undecided", "disagreed",
+    "tchecker_states", "tchecker_seconds", "tchecker_outcome",
 )  # fmt: skip
 
 
@@ -31,7 +33,7 @@ def complete(row: Row) -> Row:
     """The row with every column, symbolic states per second among them; None for what is not known."""
     full = {column: row.get(column) for column in COLUMNS}
     counted = row.get("symbolic") or row.get("states")
-    if counted and row.get("seconds"):
+    if counted and row.get("seconds") and row.get("group") != "family":  # a family's seconds are those of proofs too
         full["rate"] = round(counted / row["seconds"])
     return full
 
@@ -170,6 +172,8 @@ def growth(points: Iterable[Tuple[float, float]]) -> Optional[Growth]:
     logs = [math.log(figure) for _, figure in usable]
     factor, off = _line([size for size, _ in usable], logs)
     if min(size for size, _ in usable) <= 0:
+        if max(logs) - min(logs) < _CONSTANT:
+            return Growth("power", 0.0, len(usable))
         return Growth("factor", math.exp(factor), len(usable))
     power, far = _line([math.log(size) for size, _ in usable], logs)
     # Where a figure hardly moves, both fit: then it is a power close to zero.
@@ -194,6 +198,9 @@ def growths(rows: Sequence[Row]) -> str:
 
 
 FIGURES = ("states", "seconds", "commands")
+
+_CONSTANT = math.log(1.1)
+"""From the size 0 on, a figure that changes by less than a tenth is constant."""
 
 
 def _line(xs: Sequence[float], ys: Sequence[float]) -> Tuple[float, float]:

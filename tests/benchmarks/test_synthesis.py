@@ -9,7 +9,7 @@ from typing import Any, Dict
 
 import pytest
 
-from benchmarks import synthesis, tables
+from benchmarks import command, random_page, synthesis, tables
 from benchmarks.families import FAMILIES
 from benchmarks.measure import Bounds, Case, measured
 from benchmarks.plots import pictures
@@ -31,15 +31,36 @@ def test_a_case_is_decided_and_proven_in_another_process() -> None:
     assert row["blocks"] >= row["commands"] > 0
 
 
-def test_a_case_beyond_its_limit_says_so_and_the_rest_of_its_family_is_not_tried() -> None:
-    cases = [family_case("visitors", size, "default") for size in (3, 4)] + [family_case("ring", 4, "ideal")]
-    for seconds in (0.2, 2.0, 20.0):  # on a busy machine the least of them may be too short for the last case
-        late, skipped, other = synthesis.measurements(cases, Bounds(seconds, 2048))
-        if other.get("verdict"):
-            break
-    assert late["outcome"] in ("time", "memory") and late.get("verdict") is None
-    assert skipped["outcome"] == "skipped"
-    assert other["verdict"] == "won"
+@pytest.mark.parametrize("group", ["story", "family"])
+def test_a_case_beyond_its_limit_says_so(group: str) -> None:
+    text = next(family for family in FAMILIES if family.name == "visitors").text(2)
+    row = measured(Case(group, "visitors", "default", text=text), Bounds(1e-6, 2048))
+    assert row["outcome"] == "time" and row.get("verdict") is None
+    assert "limit of" in row["reason"]
+
+
+def test_after_a_member_that_is_not_decided_the_rest_of_its_family_is_not_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def by_size(case: Case, _: Bounds) -> Dict[str, Any]:
+        late = case.name == "visitors" and case.size == 3
+        return {"name": case.name, "size": case.size, **({"outcome": "time"} if late else {"verdict": "won"})}
+
+    monkeypatch.setattr(synthesis, "measured", by_size)
+    cases = [family_case("visitors", size, "default") for size in (2, 3, 4)] + [family_case("ring", 4, "ideal")]
+    rows = list(synthesis.measurements(cases, ENOUGH))
+    assert [row.get("verdict") or row["outcome"] for row in rows] == ["won", "time", "skipped", "won"]
+
+
+def test_a_family_is_solved_as_the_commands_do_in_stages_too() -> None:
+    row = measured(family_case("visitors", 3, "default"), ENOUGH)
+    assert (row["verdict"], row["outcome"]) == ("won", "")
+    assert row["stages"] > 1 and row["blocks"] > row["commands"] > 0 and row["states"] > 0
+
+
+def test_a_member_that_is_lost_has_its_states() -> None:
+    row = measured(family_case("all ways", 1, "default"), ENOUGH)
+    assert (row["verdict"], row["outcome"]) == ("lost", "") and row["states"] > 0
 
 
 def test_a_case_that_cannot_be_read_gives_its_reason(tmp_path: Path) -> None:
@@ -58,6 +79,7 @@ def test_the_command_writes_page_and_data_and_adds_to_them(tmp_path: Path, capsy
     assert [row["name"] for row in results["rows"]] == ["scenario 1", "scenario 2"]
     page = (tmp_path / "benchmarks.md").read_text()
     assert "scenario 1" in page and "Measured d on m" in page
+    assert isinstance(results["load"], float)
     (tmp_path / "benchmarks.md").unlink()
     assert synthesis.main(["--render", "--out", str(tmp_path), "--no-plots"]) == 0
     assert (tmp_path / "benchmarks.md").read_text() == page
@@ -67,6 +89,38 @@ def test_names_that_do_not_exist_are_refused(capsys: pytest.CaptureFixture[str])
     with pytest.raises(SystemExit):
         synthesis.main(["--only", "no such thing"])
     assert "no such thing" in capsys.readouterr().err
+
+
+def test_commands_and_random_games_are_added_to_what_is_there(tmp_path: Path) -> None:
+    here = ["--out", str(tmp_path), "--no-plots"]
+    assert synthesis.main([*here, "--only", "scenario 1", "--games", "ideal"]) == 0
+    assert synthesis.main([*here, "--commands", "--only", "scenario 1"]) == 0
+    rows = json.loads((tmp_path / "benchmarks" / "results.json").read_text())["rows"]
+    assert [(row["group"], row["name"], row["game"]) for row in rows] == [
+        ("thesis", "scenario 1", "ideal"),
+        ("command", "scenario 1", "default"),
+    ]
+    page = (tmp_path / "benchmarks.md").read_text()
+    assert "of 1 reach the goal" in page
+
+
+def test_all_is_chosen_by_one_word() -> None:
+    given = synthesis.options().parse_args(["--all"])
+    assert len(synthesis.chosen(given)) == len([*synthesis.scenario_cases(), *synthesis.family_cases(quick=False)])
+    assert synthesis.chosen_commands(given) == list(command.GOALS)
+    assert synthesis.chosen_random(given) == random_page.GAMES_EACH
+    assert synthesis.is_complete(given)
+
+
+def test_what_is_measured_in_part_is_not_complete() -> None:
+    for words in (["--quick"], ["--families"], ["--all", "--only", "ring"], ["--all", "--games", "ideal"]):
+        assert not synthesis.is_complete(synthesis.options().parse_args(words))
+
+
+def test_without_results_there_is_nothing_to_render(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        synthesis.main(["--render", "--out", str(tmp_path)])
+    assert "measure first" in capsys.readouterr().err
 
 
 def test_tigas_figures_stand_beside_the_published_scenarios(reference_dir: Path) -> None:

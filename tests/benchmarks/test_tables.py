@@ -97,13 +97,18 @@ def test_two_points_tell_no_growth() -> None:
     assert tables.growth([(1, 3.0), (2, 9.0), (3, 0.0)]) is None
 
 
+def test_a_figure_that_hardly_changes_is_constant_from_none_on() -> None:
+    found = tables.growth([(n, 0.5 + 0.01 * (n % 3)) for n in (0, 1, 2, 5, 50)])
+    assert str(found) == "constant"
+
+
 def test_growth_counts_only_what_was_decided() -> None:
     rows = [member(n, "ideal") for n in (4, 8, 12)] + [{**member(16, "ideal"), "verdict": None, "states": None}]
     line = cells(tables.growths(rows).splitlines()[2])
     assert line == ["ring", "POIs", "ideal", "n^2.0", "n^2.0", "constant", "12"]
 
 
-RESULTS = {"machine": "a machine", "date": "a day", "seconds": 5.0, "memory": 100, "rows": [WON, LATE]}
+RESULTS = {"machine": "a machine", "date": "a day", "seconds": 5.0, "memory": 100, "load": 0.1, "rows": [WON, LATE]}
 
 
 def test_a_page_keeps_its_words_and_gets_new_figures() -> None:
@@ -112,6 +117,12 @@ def test_a_page_keeps_its_words_and_gets_new_figures() -> None:
     assert new.startswith("Words.\n") and new.endswith("More.\n")
     assert "too long" in new and "old" not in new
     assert filled(new, RESULTS) == new
+
+
+def test_other_work_on_the_machine_is_mentioned() -> None:
+    page = "<!-- measured: machine -->\n<!-- end -->\n"
+    assert "load average" not in filled(page, RESULTS)
+    assert "load average 2.4" in filled(page, {**RESULTS, "load": 2.4})
 
 
 def test_without_a_page_there_is_one_of_figures_alone() -> None:
