@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import json
 import resource
+import signal
 import statistics
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 ROOT = Path(__file__).resolve().parent.parent
 GAMES = {"ideal": ("controllable", Fraction(0)), "default": ("reported", Fraction(1, 10))}
@@ -25,6 +27,9 @@ SHORT, RUNS, FAMILY_RUNS = 0.5, 7, 3
 
 MARGIN_STATES = {"story": 5_000}
 """Limit of the search for a margin, in symbolic states of the checker; beyond it the margin is only a lower bound."""
+
+_BY_THE_CLOCK = 10
+"""On a busy machine deciding and proving may take so many times their limit by the clock."""
 
 _LIMIT_HIT = 5
 """The exit status of errors at a limit."""
@@ -54,7 +59,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Limits of a case: seconds to decide and as many to prove (twice that together), memory of the process in MiB."""
+    """Limits of a case: processor seconds to decide and as many to prove (twice that together), MiB of the process."""
 
     seconds: float
     memory: int
@@ -75,7 +80,7 @@ def measured(case: Case, bounds: Bounds) -> Row:
     late = False
     with subprocess.Popen(command, cwd=str(ROOT), universal_newlines=True, **pipes) as process:
         try:
-            out, err = process.communicate(job, timeout=3 * bounds.seconds + 10)
+            out, err = process.communicate(job, timeout=_BY_THE_CLOCK * bounds.seconds + 60)
         except subprocess.TimeoutExpired:
             late = True
             process.kill()
@@ -110,11 +115,12 @@ def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: 
     from pursue_gen.synthesis.solve import solve
 
     network = played(network, rules)
-    limits = Limits(seconds=bounds.seconds, memory=bounds.memory)
+    limits = Limits(memory=bounds.memory)
     row: Row = {}
     try:
         start = time.process_time()
-        verdict = solve(network, objective, reaction=rules.reaction, limits=limits)
+        with _at_most(bounds.seconds):
+            verdict = solve(network, objective, reaction=rules.reaction, limits=limits)
         row.update(decided=time.process_time() - start, verdict="won" if verdict.won else "lost")
         row.update(_counted(verdict.stats), seconds=verdict.stats.seconds, runs=1, memory=_peak())
         _print({**row, "outcome": "proof" if verdict.won else ""})
@@ -125,7 +131,8 @@ def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: 
             _print(row)
             return
         start = time.process_time()
-        strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, SolveOptions(limits))
+        with _at_most(bounds.seconds):
+            strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, SolveOptions(limits))
         row.update(_size(strategy), proof=time.process_time() - start, memory=_peak())
         _print(row)
     except PursueError as problem:
@@ -137,6 +144,9 @@ def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: 
         else:
             raise
         _print({**row, "outcome": failure, "reason": message, "memory": _peak()})
+        return
+    except _TooLong:
+        _print({**row, "outcome": "proof" if row else "time", "memory": _peak()})
         return
     found = strategy_margin(network, objective, strategy, rules.reaction, MARGIN_STATES.get(case.group, 50_000))
     _print({**row, "margin": float(found.wins), "margin_open": found.fails is None})
@@ -151,12 +161,13 @@ def _as_commands_do(case: Case, network: Any, objective: Any, rules: Any, bounds
     from pursue_gen.synthesis.limits import Limits
     from pursue_gen.synthesis.solve import solve
 
-    options = SolveOptions(Limits(seconds=2 * bounds.seconds, memory=bounds.memory, by_default=True))
+    options = SolveOptions(Limits(memory=bounds.memory))
     seconds: List[float] = []
     while not seconds or (seconds[0] < SHORT and len(seconds) < FAMILY_RUNS):
         start = time.process_time()
         try:
-            won = solution(network, objective, rules, options)
+            with _at_most(2 * bounds.seconds):
+                won = solution(network, objective, rules, options)
             row = {"verdict": "won", **_counted(won.stats), **_size(won.strategy), "stages": len(won.strategy.stages)}
         except PursueError as problem:
             message = problem.diagnostics[0].message.split(";")[0]
@@ -166,11 +177,33 @@ def _as_commands_do(case: Case, network: Any, objective: Any, rules: Any, bounds
                 _print({"outcome": _which_limit(message), "reason": message, "memory": _peak()})
                 return
             row = {"verdict": "lost"}
+        except _TooLong:
+            _print({"outcome": "time", "memory": _peak()})
+            return
         seconds.append(time.process_time() - start)
     row.update(seconds=statistics.median(seconds), runs=len(seconds), memory=_peak())
     if row["verdict"] == "lost":
         row.update(_counted(solve(played(network, rules), objective, rules.reaction).stats))
     _print(row)
+
+
+class _TooLong(BaseException):
+    """The limit on processor time; like Ctrl-C it ends all loops, and nothing goes on after it with a way around."""
+
+
+@contextmanager
+def _at_most(seconds: float) -> Iterator[None]:
+    """Raises _TooLong after so many processor seconds: on a busy machine as much work is done as on an idle one."""
+
+    def too_long(*_: Any) -> None:
+        raise _TooLong
+
+    signal.signal(signal.SIGPROF, too_long)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
 
 
 def _counted(stats: Any) -> Row:

@@ -45,13 +45,13 @@ def _wrapped(text: str) -> str:
 def _where(results: Results) -> str:
     load = results["load"]
     text = (
-        f"Measured {results['date']} on {results['machine']}. Limits of each game: {results['seconds']:g} s to decide "
-        f"and as many to prove, {results['memory']:,} MiB."
+        f"Measured {results['date']} on {results['machine']}. Limits of each game: {results['seconds']:g} s of "
+        f"processor time to decide and as many to prove, {results['memory']:,} MiB."
     )
     if load >= _BUSY:
         text += (
             f" Other work ran on the machine (load average {load:.1f} when the measurement began), so times by the "
-            "clock are too long, and limits were reached sooner than on an idle machine."
+            "clock, those of the solver alone, are too long."
         )
     return text + "\n"
 

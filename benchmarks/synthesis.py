@@ -173,7 +173,7 @@ def options() -> argparse.ArgumentParser:
     what.add_argument("--render", action="store_true", help="measure nothing, write again what --out holds")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="of these, those named so (as in the tables)")
     parser.add_argument("--games", nargs="+", choices=list(GAMES), default=list(GAMES))
-    parser.add_argument("--seconds", type=float, default=20.0, help="to decide a game, and again to prove it (20)")
+    parser.add_argument("--seconds", type=float, default=20.0, help="of the processor to decide, and to prove (20)")
     parser.add_argument("--memory", type=int, default=4096, metavar="MIB", help="of each process (4096)")
     parser.add_argument("--tchecker", type=Path, metavar="PATH", help="TChecker's tck-reach, to explore the same games")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write benchmarks.md, benchmarks/*.json, .csv, .svg")
