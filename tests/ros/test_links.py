@@ -256,7 +256,7 @@ def test_where_roslaunch_loses_its_own_master_ui_and_observer_say_so(ros: Ros, b
     command = f"source devel/setup.bash; exec {line}"
     launch, there = ros.start_with_master(command, workspace, log, ROS_HOME=str(tmp_path))
     try:
-        until(lambda: "bot1_c2b" in log.read_text(errors="replace"), log.read_text)
+        until(lambda: "bot1 sets off from c to b" in log.read_text(errors="replace"), log.read_text)
         os.kill(ServerProxy(there["ROS_MASTER_URI"]).getPid("/test")[2], signal.SIGKILL)  # type: ignore[index]
         launch.wait(PATIENCE)
     finally:

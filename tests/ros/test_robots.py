@@ -187,7 +187,7 @@ def test_a_robot_that_was_taken_away_returns_before_its_action(
     arguments = f"goals:=action ends:={ends} on_uncovered:=warn lost_after:=2000 robots:={tmp_path}/own.yaml"
     bot1 = {"acts": -1.0}  # bot2 waits at a until a person reports that bot1 has finished
     with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
-        wait_for(lambda: "bot2_going_c_to_a2a" in log.read_text(), log, "bot2 has not arrived")
+        wait_for(lambda: "bot2 arrives at a" in log.read_text(), log, "bot2 has not arrived")
         robots.order("bot2", "put 9.0 9.0 0.0")
         wait_for(lambda: "bot2 is " in log.read_text() and "where the state has it" in log.read_text(), log, "not seen")
         assert robots.heard("bot2") == ["goal a"], "it may stay there while nothing waits for it"
@@ -213,7 +213,7 @@ def test_a_robot_whose_position_is_not_published_any_more_may_be_elsewhere(
     arguments = "goals:=action ends:=result on_uncovered:=warn lost_after:=2000"
     bot1 = {"acts": -1.0}  # bot2 waits at a until a person reports that bot1 has finished
     with playing(ros, workspace, tmp_path, arguments, bot1=bot1) as (robots, log, mission):
-        wait_for(lambda: "bot2_going_c_to_a2a" in log.read_text(), log, "bot2 has not arrived")
+        wait_for(lambda: "bot2 arrives at a" in log.read_text(), log, "bot2 has not arrived")
         robots.order("bot2", "tf off")
         robots.order("bot2", "put 9.0 9.0 0.0")
         wait_for(lambda: "bot2 is not known to be at a: no position" in log.read_text(), log, "it is believed")
@@ -273,7 +273,7 @@ def test_a_partner_that_was_taken_away_returns_before_the_event(ros: Ros, tmp_pa
     pair = robots_workspace(ros, "thesis/scenario_2", ("bot1", "bot2", "bot3"))
     arguments = "goals:=action ends:=result on_uncovered:=warn"
     with playing(ros, pair, tmp_path, arguments, bot1={"acts": 8.0}) as (robots, log, mission):
-        wait_for(lambda: "bot3_going_c_to_a2a" in log.read_text(), log, "bot3 has not arrived")
+        wait_for(lambda: "bot3 arrives at a" in log.read_text(), log, "bot3 has not arrived")
         robots.order("bot3", "put 9.0 9.0 0.0")
         wait_for(lambda: mission.poll() is not None, log, "the mission does not end")
     assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
