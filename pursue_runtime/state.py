@@ -14,7 +14,7 @@ WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding",
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
 
-AGENT_LISTS = ("late", "lost", "held", "displaced", "returning")
+AGENT_LISTS = ("late", "lost", "held", "displaced", "returning", "finished")
 """The fields of a state that are lists of agents."""
 
 LATE = 60.0
@@ -33,7 +33,8 @@ class SystemState(NamedTuple):
     `mission` the id of the mission whose state this is, "" for the one of the workspace. `late` names the agents that
     should have finished by now, `lost` those that nothing is expected of any more, `held` those that wait for a person.
     `displaced` names the robots that are not known to be where the state has them, `returning` those of them that are
-    to go back there. `commanded` is True if the event was a command, not a report.
+    to go back there. `finished` names those that have reported the end of what they do with others who have not.
+    `commanded` is True if the event was a command, not a report.
     """
 
     seq: int
@@ -54,6 +55,7 @@ class SystemState(NamedTuple):
     displaced: Tuple[str, ...] = ()
     returning: Tuple[str, ...] = ()
     commanded: bool = False
+    finished: Tuple[str, ...] = ()
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""

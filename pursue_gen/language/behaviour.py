@@ -72,6 +72,7 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML150", f"nobody can do {event.name}", event.span, hint)
         for agent, ref in doers:
             yield from _reach(agent, ref, event, where[agent.name])
+        yield from _togetherness(event, [a.name for a, _ in doers])
         if event.collaborative:
             yield from _partners(event, [a for a, _ in doers], [a for a, _ in partners], where)
         else:
@@ -79,6 +80,26 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
                 message = f"{event.name} is not collaborative: it does not wait for {agent.name} to react to it"
                 hint = f'write event "{event.name}" collaborative …, or delete it behind reacts_to'
                 yield warning("PML152", message, ref.span, hint)
+
+
+def _togetherness(event: Event, doers: List[str]) -> Iterator[Diagnostic]:
+    """`together` where it changes nothing or cannot be meant, and a lasting event of two that ends for one alone."""
+    name = event.name
+    if event.together and not event.collaborative:
+        message = f"{name} is together, but not collaborative: nobody takes part in it but the one who does it"
+        hint = f'write event "{name}" collaborative together …, or delete together'
+        yield error("PML159", message, event.span, hint)
+    elif event.together and event.duration is None:
+        message = f"{name} is together, but has no duration: what is done at once is done together anyway"
+        yield error("PML159", message, event.span, "delete together, or write how long it takes: duration 4")
+    elif event.together and event.location is None and len(doers) > 1:
+        message = f"{name} can be done anywhere by {' and by '.join(doers[:_SOME])}: with whom its partner is, is open"
+        hint = f"write where it happens (location …), or give each of them an event of its own instead of {name}"
+        yield error("PML163", message, event.span, hint)
+    elif event.collaborative and event.duration is not None and not event.together:
+        message = f"whoever reacts to {name} may leave as soon as it has begun: only the one who does it is busy"
+        hint = f'write event "{name}" collaborative together … where both are busy until it ends'
+        yield warning("PML158", message, event.span, hint)
 
 
 def _parts(scenario: Scenario, field: str) -> Dict[str, List[_Part]]:

@@ -84,6 +84,8 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
     for event in scenario.events:
         yield event.name, f"the event {event.name}", event.span
         yield event.name + "DONE", f"the end of {event.name}", event.span
+        if event.is_shared:
+            yield "B" + event.name, f"that {event.name} goes on", event.span
     for rule in scenario.rules:
         yield rule.name, f"the rule {rule.name}", rule.span
         yield "P" + rule.name, f"the position of the rule {rule.name}", rule.span

@@ -13,7 +13,7 @@ from pursue_gen.language.usable import proposal
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
     "CONNECT": "connect a and b distance 3",
-    "EVENT": 'event "work" collaborative location a duration 6 (the last three are optional)',
+    "EVENT": 'event "work" collaborative together location a duration 6 (all but the name is optional)',
     "RULE": 'rule "order": first before second (or: first or second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
@@ -29,7 +29,7 @@ KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
     "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
     "REACH_OBJECTIVE": "reach_objective", "AND": "and", "DISTANCE": "distance", "LOCATION": "location",
-    "DURATION": "duration", "COLLABORATIVE": "collaborative", "BEFORE": "before", "OR": "or",
+    "DURATION": "duration", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
     "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
@@ -37,7 +37,10 @@ KEYWORDS: Dict[str, str] = {
 }  # fmt: skip
 """The words of the language, by token."""
 
-RESERVED = frozenset(KEYWORDS.values()) - {"human"}
+MAY_BE_NAMES: Dict[str, str] = {"HUMAN": "human", "TOGETHER": "together"}
+"""Those of them that scenarios may use as names, by token."""
+
+RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())
 """Those of them that cannot be names."""
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
@@ -208,8 +211,10 @@ def _near(word: str, words: Tuple[str, ...]) -> str:
 def _in_words(expected: FrozenSet[str]) -> str:
     """The expected tokens as a person names them, in a fixed order, the end of the statement last."""
     kinds = [kind for kind in (*_OTHERS, *_SIGNS, *KEYWORDS) if kind in expected]
+    if "COLLABORATIVE" in expected:
+        kinds.remove("TOGETHER")  # it says something behind collaborative only
     if "WORD" in expected:
-        kinds = [kind for kind in kinds if kind != "HUMAN"]
+        kinds = [kind for kind in kinds if kind not in MAY_BE_NAMES]
     words = [_OTHERS.get(kind) or _SIGNS.get(kind) or f"`{KEYWORDS[kind]}`" for kind in kinds if kind != "POSE"]
     return _list(words + (["the end of the statement"] if "$END" in expected else []))
 

@@ -179,13 +179,16 @@ class _Builder:
         first, second = self._ref(a), self._ref(b)
         return pml.Connection(first.name, second.name, self._number(distance), span, (first.span, second.span))
 
-    def _event(self, name: Token, together: Optional[Token], location: Any, duration: Any, span: Span) -> pml.Event:
+    def _event(
+        self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, span: Span
+    ) -> pml.Event:
         return pml.Event(
             _bare(name),
-            together is not None,
+            collaborative is not None,
             None if location is None else self._ref(location),
             None if duration is None else self._number(duration),
             span_of(name, self.file),
+            together is not None,
         )
 
     def _rule(self, name: Token, body: Any, span: Span) -> pml.Rule:

@@ -66,13 +66,22 @@ class Connection:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that agents do. `duration` is in time units, None: instantaneous; `location` None: anywhere."""
+    """Something that agents do. `duration` is in time units, None: instantaneous; `location` None: anywhere.
+
+    `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
+    """
 
     name: str
     collaborative: bool
     location: Optional[Ref]
     duration: Optional[int]
     span: Span
+    together: bool = False
+
+    @property
+    def is_shared(self) -> bool:
+        """True for an event that lasts for its partners as well."""
+        return self.together and self.collaborative and self.duration is not None
 
 
 @dataclass(frozen=True)

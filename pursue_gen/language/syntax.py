@@ -27,7 +27,9 @@ MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
 _OPENS = frozenset(("HUMAN", "CONTROLLABLE", "MOBILE"))
-_ENDS = frozenset("WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLABORATIVE CONTROLLABLE HUMAN".split())
+_ENDS = frozenset(
+    "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLABORATIVE TOGETHER CONTROLLABLE HUMAN".split()
+)
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
 
 

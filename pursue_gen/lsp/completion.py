@@ -8,7 +8,7 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
 from pursue_gen.language.poses import robots_in
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS, MEANINGS
@@ -116,7 +116,9 @@ def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Itera
     kind = kind_behind(place.behind)
     if "WORD" not in expected or kind is None:
         return
-    used = {str(token) for token in place.behind if token.type in ("WORD", "HUMAN")}
+    pairs = zip(place.behind, place.behind[1:])
+    words = (token for before, token in pairs if before.type not in ("NAME", "COLLABORATIVE"))
+    used = {str(token) for token in words if token.type in ("WORD", *MAY_BE_NAMES)}
     known = document.declared[kind]
     fitting = [name for name in known if name not in used]
     if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
@@ -125,7 +127,7 @@ def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Itera
     for name in fitting:
         part = document.statements[known[name].statement]
         about = " ".join(document.text[part.start : part.end].split())[:200]
-        token = "HUMAN" if name == "human" else "WORD"
+        token = next((kind for kind, word in MAY_BE_NAMES.items() if word == name), "WORD")
         yield Completion(name, name, token, "name", place.start, place.end, kind, about, of=kind)
 
 
@@ -157,8 +159,10 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
         return
     span = (place.start, place.end)
     for token, word in KEYWORDS.items():
+        if token == "TOGETHER" and "COLLABORATIVE" in expected:
+            continue  # it says something behind collaborative only
         # an agent may be called human: then its name is offered
-        if token in expected and not (token == "HUMAN" and "WORD" in expected):
+        if token in expected and not (token in MAY_BE_NAMES and "WORD" in expected):
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
         yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a whole number", snippet=True)

@@ -46,6 +46,8 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML155": meaning.not_own_partner,
     "PML156": meaning.delete_listed,
     "PML157": meaning.use_event,
+    "PML158": meaning.do_together,
+    "PML159": meaning.without_together,
     "PML170": meaning.delete_statement,
     "PML171": meaning.add_objective,
     "PML180": meaning.human_ally,

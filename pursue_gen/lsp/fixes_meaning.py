@@ -10,7 +10,7 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import component
-from pursue_gen.language.messages import RESERVED
+from pursue_gen.language.messages import MAY_BE_NAMES, RESERVED
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.usable import proposal, well_formed
 from pursue_gen.lsp.document import Document, Edit
@@ -143,9 +143,9 @@ def find_partner(document: Document, finding: Diagnostic, part: Optional[Stateme
     others = [a for a in document.statements if a.kind == "AGENT" and a.name is not None and _bare(a.name) not in doers]
     for agent in others[:_MOST]:
         yield f"Let {_bare(agent.name)} react to {event}", (_listed(agent, "REACTS_TO", event),)
-    together = next((token for token in part.tokens if token.type == "COLLABORATIVE"), None)
-    if together is not None:
-        yield f"Let {event} need no partner", (_cut(document, together, together),)
+    first = _token(part, "COLLABORATIVE")
+    if first is not None:
+        yield f"Let {event} need no partner", (_cut(document, first, _token(part, "TOGETHER") or first),)
 
 
 def make_collaborative(
@@ -159,6 +159,28 @@ def make_collaborative(
         if name is not None:
             yield f"Make {here.name} collaborative", (_behind(name, " collaborative"),)
         yield from delete_listed(document, finding, part, at)
+
+
+def do_together(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+    """Keeps the partners busy until the event ends."""
+    token = _token(part, "COLLABORATIVE")
+    if token is not None and part is not None:
+        yield f"Let both be busy until {_bare(part.name)} ends", (_behind(token, " together"),)
+
+
+def without_together(
+    document: Document, finding: Diagnostic, part: Optional[Statement], at: int
+) -> Iterator[Proposal]:
+    """Adds what `together` lacks, or deletes it."""
+    together = _token(part, "TOGETHER")
+    if part is None or part.name is None or together is None:
+        return
+    if _token(part, "COLLABORATIVE") is not None:
+        yield "Delete together", (_cut(document, together, together),)
+        yield "Add a duration", (_behind(part.tokens[-1], " duration 1"),)
+    else:
+        yield "Delete together", (_cut(document, together, together),)
+        yield f"Make {_bare(part.name)} collaborative", (_behind(part.name, " collaborative"),)
 
 
 def get_there(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
@@ -246,6 +268,11 @@ def _is(name: str, part: Statement) -> bool:
     return _bare(part.name) == name
 
 
+def _token(part: Optional[Statement], kind: str) -> Optional[Token]:
+    """The first token of that kind."""
+    return next((token for token in part.tokens if token.type == kind), None) if part is not None else None
+
+
 def _pair(part: Optional[Statement], word: str) -> Optional[Tuple[Token, Token]]:
     """The word and the number behind it."""
     tokens = part.tokens if part is not None else ()
@@ -271,7 +298,7 @@ def _listed(agent: Statement, word: str, event: str) -> Edit:
     at = next((i for i, token in enumerate(agent.tokens) if token.type == word), None)
     if at is not None:
         last = at
-        while last + 1 < len(agent.tokens) and agent.tokens[last + 1].type in ("WORD", "HUMAN", "COMMA"):
+        while last + 1 < len(agent.tokens) and agent.tokens[last + 1].type in ("WORD", "COMMA", *MAY_BE_NAMES):
             last += 1
         return _behind(agent.tokens[last], f", {event}")
     behind = agent.tokens[-1]

@@ -20,6 +20,7 @@ MEANINGS: Dict[str, str] = {
     "LOCATION": "Where it happens (events), or where it starts (agents).",
     "DURATION": "How long it takes, in the unit of time that you chose. Without it, it takes no time.",
     "COLLABORATIVE": "It takes two at one place: one who can do it, and one who reacts to it.",
+    "TOGETHER": "Whoever takes part is busy until it ends. Without it, only the one who does it is.",
     "BEFORE": "First this, then that, and then the first again.",
     "OR": "Either of the two, round after round.",
     "INITIALLY": "The value at the start, true or false.",
@@ -59,7 +60,11 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     "CONNECT": (Form("a way between two places", "connect {POI} and {POI} distance {=1}"),),
     "EVENT": (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
-        Form("something that two do together", 'event "{=handOver}" collaborative'),
+        Form("something that two do at once", 'event "{=handOver}" collaborative'),
+        Form(
+            "something that two do together for a while",
+            'event "{=ride}" collaborative together location {POI} duration {=4}',
+        ),
     ),
     "RULE": (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),

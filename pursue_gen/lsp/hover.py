@@ -117,6 +117,9 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     if event.collaborative:
         partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
         lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
+        if event.duration is not None:
+            both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
+            lines.append(f"- {both}")
     for rule in scenario.rules:
         turns = predecessors(rule)
         if event.name in turns:

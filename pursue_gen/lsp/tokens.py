@@ -8,7 +8,7 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Tup
 
 from lark import Token, UnexpectedToken
 
-from pursue_gen.language.messages import KEYWORDS, STATEMENTS
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
 
@@ -40,7 +40,7 @@ _USED: Dict[Tuple[str, str], str] = {
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 
-_WITHOUT_NAME = frozenset({"HUMAN", "TRUE", "FALSE"})  # no name stands behind these
+_WITHOUT_NAME = frozenset({*MAY_BE_NAMES, "TRUE", "FALSE"})  # no name stands behind these
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
             found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
         elif token.type in KEYWORDS and token.type not in _WITHOUT_NAME:
             kind = _USED.get((part.kind, token.type))
-        elif kind is not None and token.type in ("WORD", "HUMAN") and (index > 1 or part.kind not in DECLARED):
+        elif kind is not None and token.type in ("WORD", *MAY_BE_NAMES) and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
         elif token.type == "POSE":
             places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]

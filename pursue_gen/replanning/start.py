@@ -9,7 +9,7 @@ from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
-from pursue_gen.tga.names import agent_clock, going
+from pursue_gen.tga.names import agent_clock, agent_position, going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
 from pursue_gen.zones.scale import least_common_multiple
 
@@ -40,6 +40,9 @@ def network_from(network: Network, request: Request) -> Network:
         if automaton.name in request.turning:
             moved = _idle(moved, here, clocks)
         automata.append(_without_ways(moved, blocked) if automaton.name in agents else moved)
+    positions = (agent_position(name) for name in request.excused if _shares(network, name))
+    absent = {(position, values[position]) for position in positions}
+    automata = [_without_company(automaton, absent) for automaton in automata]
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
     grid = least_common_multiple((reaction.denominator, _FINEST))
@@ -118,8 +121,28 @@ def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Au
         if edge.source == here and is_end(edge):
             bounds = tuple(bound for bound in edge.guard.clocks if _holds(bound, clocks))
             edge = replace(with_controllability(edge, False), guard=Guard(bounds, edge.guard.integers))
-        if edge.source != here or not edge.controllable:
+        receives = edge.sync is not None and not edge.sync.sends  # others decide that
+        if edge.source != here or receives or not edge.controllable:
             edges.append(edge)
+    return replace(automaton, edges=tuple(edges))
+
+
+def _shares(network: Network, name: str) -> bool:
+    """True for an agent that is busy with what others do, until they end it."""
+    edges = network.automaton(name).edges if any(a.name == name for a in network.automata) else ()
+    return any(is_end(edge) and edge.sync is not None and not edge.sync.sends for edge in edges)
+
+
+def _without_company(automaton: Automaton, absent: AbstractSet[Tuple[str, int]]) -> Automaton:
+    """The automaton without the events for which only those are there who would not take part in them."""
+    edges: List[Edge] = []
+    for edge in automaton.edges:
+        if not edge.controllable or edge.sync is None or not edge.sync.sends:
+            edges.append(edge)
+            continue
+        clauses = [tuple(t for t in clause if (t.variable, t.value) not in absent) for clause in edge.guard.integers]
+        if all(clauses):
+            edges.append(replace(edge, guard=Guard(edge.guard.clocks, tuple(clauses))))
     return replace(automaton, edges=tuple(edges))
 
 

@@ -68,7 +68,7 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     checker = _Checker(record, game, moves, orders, tolerance)
     checker.run()
     steps = checker.steps
-    said = match_words(record, [(step.since, step.before, step.state) for step in steps])
+    said = match_words(record, [(step.since, step.before, step.state) for step in steps], moves)
     steps = [replace(step, word=said.of(step.state.seq)) for step in steps]
     text = "recorded {:.2f} s after it began: its first message is missing"
     findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]

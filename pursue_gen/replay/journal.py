@@ -14,7 +14,7 @@ from pursue_gen.tga.network import Objective
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import FINISH, PLANNED, START, STOP
+from pursue_runtime.words import FAILED, FINISH, PLANNED, START, STOP
 
 FORMATS = (1, 2)
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")
@@ -124,6 +124,7 @@ class _Walk:
         self._zeros: Dict[str, float] = {}
         self._seq, self._plan, self._status = 0, 0, WAITING
         self._event = self._agent = ""
+        self._noted: List[RecordedWord] = []  # the ends that others had not reported yet
 
     def follow(self, entry: Entry) -> None:
         """What one call did; the number of the state after it gives the number of steps to look for."""
@@ -139,6 +140,8 @@ class _Walk:
         if not self._seq <= entry.seq <= self._seq + MOST:
             self.problems.append(f"after state {self._seq} the journal goes on with state {entry.seq}")
             self._seq = entry.seq - 1
+        if word is not None and entry.seq == self._seq and self._moves.sharing(self._place, word.event, word.agent):
+            self._noted.append(word)
         self._steps(entry, word)
         status = entry.status or self._ending(entry, word)
         if status and self.states and self.states[-1].status != status:
@@ -173,6 +176,8 @@ class _Walk:
                 self._event = self._agent = ""
             else:
                 move = self._next(entry.at, word)
+                if entry.call == "tick" or (word is not None and word.event == FAILED):
+                    move = move or self._without_lost()
                 word = None if word and not word.event.startswith("_") else word
                 if move is None:
                     self._event = self._agent = ""
@@ -193,6 +198,11 @@ class _Walk:
                 return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
         return next(self._moves.internal(self._place, self._objective), None)
 
+    def _without_lost(self) -> Optional[Move]:
+        """The end of what several did together, where the last who had not reported it is lost."""
+        moves = (move for word in self._noted for move in self._moves.of(self._place, word.event, word.agent))
+        return next(moves, None)
+
     def _put_in_force(self, number: int, at: float) -> None:
         """The plan is in force, and the robots that it sends back turn round."""
         self._plan = number
@@ -204,6 +214,7 @@ class _Walk:
 
     def _take(self, move: Move, at: float) -> None:
         self._place, resets = after(move, self._place)
+        self._noted = [word for word in self._noted if self._moves.sharing(self._place, word.event, word.agent)]
         self._zeros.update(dict.fromkeys(resets, at))
         self._agent, self._event = move[0][0], self._moves.word(*move[0])
         if _at(self._place, self._objective.goal):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_gen.tga.names import is_going
+from pursue_gen.tga.names import is_doing, is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
@@ -69,14 +69,31 @@ class Moves:
         )
 
     def of(self, place: DiscreteState, word: str, agent: str = "") -> Iterator[Move]:
-        """What the word (of this agent, or of anybody) can do there, whatever the clocks."""
+        """What the word (of this agent, or of anybody) can do there, whatever the clocks.
+
+        The end of what several do together is the move of the one who does it, whoever reports it last.
+        """
+        able = self.sharing(place, word, agent) or ((agent,) if agent else self._names)
         for name in self._names:
-            if agent and name != agent:
+            if name not in able:
                 continue
             for edge in self._enabled(name, place):
                 receives = edge.sync is not None and not edge.sync.sends
                 if not receives and event_word(name, edge) == word:
                     yield from self._joint(name, edge, place)
+
+    def sharing(self, place: DiscreteState, word: str, agent: str) -> Tuple[str, ...]:
+        """Who does something together there that ends with the word, the agent among them; () where that is nobody."""
+        here = place.locations.get(agent, "")
+        if not is_doing(here):
+            return ()
+        ends = {
+            name: [edge for edge in self._edges.get((name, here), ()) if edge.sync and edge.sync.channel == word]
+            for name in self._names
+            if place.locations.get(name) == here
+        }
+        receiving = any(not edge.sync.sends for edges in ends.values() for edge in edges if edge.sync)
+        return tuple(name for name, edges in ends.items() if edges) if receiving and ends.get(agent) else ()
 
     def internal(self, place: DiscreteState, objective: Objective) -> Iterator[Move]:
         """The steps that the safety objective makes by itself."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
-from pursue_gen.replay.moves import DiscreteState, Moves
+from pursue_gen.replay.moves import DiscreteState, Moves, place_of
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
 from pursue_runtime.words import (
@@ -50,9 +50,14 @@ class WordMatches:
         return self.words.get(seq)
 
 
-def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState, SystemState]]) -> WordMatches:
+def match_words(
+    record: MissionRecord, steps: Sequence[Tuple[SystemState, SystemState, SystemState]], moves: Moves
+) -> WordMatches:
     """A command is for the number of the state before it (the second of a step), or of one before that back to the
-    first, if the plan has seen nothing new since; of several reports the one nearest to the state counts."""
+    first, if the plan has seen nothing new since; of several reports the one nearest to the state counts.
+
+    What several do together ends with the last of their reports; the others are matched as well.
+    """
     received: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
         received.setdefault((word.event, word.seq), []).append((word.at, place))
@@ -64,11 +69,15 @@ def match_words(record: MissionRecord, steps: Sequence[Tuple[SystemState, System
         numbers = (*range(before.seq, since.seq - 1, -1), None)
         for words in (received.get((state.event, number), []) for number in numbers):
             near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
-            mine = [place for _, place in near if record.words[place].agent in ("", state.agent) and place not in used]
-            if mine:
-                best = min(mine, key=lambda place: abs(record.words[place].at - state.stamp))
-                used.add(best)
-                found[state.seq] = record.words[best]
+            members = moves.sharing(place_of(before), state.event, state.agent) or (state.agent,)
+            nearest: Dict[str, int] = {}
+            for _, place in sorted(near, key=lambda entry: abs(entry[0] - state.stamp)):
+                agent = record.words[place].agent or state.agent
+                if agent in members and place not in used:
+                    nearest.setdefault(agent, place)
+            if nearest:
+                used.update(nearest.values())
+                found[state.seq] = record.words[next(iter(nearest.values()))]
                 break
     states: Dict[int, SystemState] = {}
     for state in record.states:
@@ -114,6 +123,8 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
     if not word.event:
         return now.seq, "it is no word"
     if word.seq is None:
+        if moves.sharing(place_of(now), word.event, word.agent):
+            return now.seq, "it was noted, and others had not finished yet"
         return now.seq, _impossible(now, word, moves) or "its moment had not come, or the observer did not receive it"
     number = word.seq + 1
     while number in said.standing:

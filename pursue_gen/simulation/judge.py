@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
-from pursue_gen.tga.names import is_under_way
+from pursue_gen.tga.names import is_doing, is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
@@ -39,6 +39,7 @@ class Judge:
         self.problems: List[str] = []
         self.off_model = 0
         self.steps: List[TakenStep] = []
+        self._joined: List[TakenStep] = []  # the same for those who take part in a step of another agent
         self._arena, self._bad = arena, bad
         self._names = [automaton.name for automaton in arena.network.automata]
         self._plans: Dict[int, Commands] = {0: commands}
@@ -125,6 +126,9 @@ class Judge:
             self._check_command(before, state, clocks, what, now)
         target = move.moves[0].edge.target
         self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
+        for part in move.moves[1:]:  # whoever takes part in what another agent begins is ordered to do so as well
+            if is_doing(part.edge.target) and part.edge.source != part.edge.target:
+                self._joined.append(TakenStep(state.seq, part.automaton, state.event, part.edge.target, True))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
         self._entered = self._standing(before, state, move, now)
         self._moved = now
@@ -194,7 +198,8 @@ class Judge:
 
         `again`: it was restarted, and may send it once more, while the state that follows is on its way.
         """
-        last = next((step for step in reversed(self.steps) if step.seq <= seq and step.agent == agent), None)
+        steps = (step for step in (*self.steps, *self._joined) if step.seq <= seq and step.agent == agent)
+        last = max(steps, key=lambda step: step.seq, default=None)
         what = f"{agent} gets the order {trigger} ({target})"
         if seq < newest:
             self._problem(f"wrong order: {what}, as of state {seq}, though state {newest} is known")

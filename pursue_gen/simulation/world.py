@@ -119,4 +119,4 @@ class SimulatedAgent:
 
     def _window(self) -> Optional[EndWindow]:
         """When what it does ends by its model."""
-        return end_window(self._stage.model.automaton(self.agent), self._place)
+        return end_window(self._stage.model, self._stage.model.automaton(self.agent), self._place)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.language.scenario import Agent, Event, Scenario
@@ -63,6 +63,24 @@ class Surroundings:
         """The agents but the doer who react to an event."""
         return tuple(agent.name for agent in self.scenario.agents if _reacts(agent, event.name) and agent.name != doer)
 
+    def doers(self, event: Event) -> Tuple[Agent, ...]:
+        """The agents who can do an event."""
+        able = (agent for agent in self.scenario.agents if any(ref.name == event.name for ref in agent.can_do))
+        return tuple(agent for agent in able if self.can_ever_do(agent, event))
+
+    def is_contested(self, event: Event) -> bool:
+        """True for an event that partners share and several agents can do.
+
+        The end of one must not be taken for that of another one: it happens once at a time.
+        """
+        return event.is_shared and len(self.doers(event)) > 1
+
+    def pois(self, agent: Agent) -> Tuple[str, ...]:
+        """The POIs at which an agent can ever be, as far as being mobile goes."""
+        if agent.mobile is None:
+            return (agent.location.name,)
+        return tuple(poi.name for poi in self.scenario.pois)
+
 
 def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
     """The automaton of an agent. Edges of an agent that is not controllable are the environment's."""
@@ -82,6 +100,11 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
                 Location(names.doing(name, poi), (shape.within(event.duration),)) for poi in shape.places(event)
             ]
             edges += [edge for poi in shape.places(event) for edge in shape.lasting(event, event.duration, poi)]
+    for name in dict.fromkeys(ref.name for ref in agent.reacts_to):
+        event = around.event(name)
+        places = shape.shared_places(event) if event.is_shared else ()
+        locations += [Location(names.doing(name, poi)) for poi in places]
+        edges += [edge for poi in places for edge in shape.sharing(event, poi)]
     return Automaton(agent.name, tuple(locations), agent.location.name, tuple(edges))
 
 
@@ -101,10 +124,8 @@ class _Shape:
         return names.agent_clock(self.agent.name)
 
     def pois(self) -> Tuple[str, ...]:
-        """The POIs at which the agent can ever be, as far as being mobile goes."""
-        if self.agent.mobile is None:
-            return (self.agent.location.name,)
-        return tuple(poi.name for poi in self.around.scenario.pois)
+        """The POIs at which the agent can ever be."""
+        return self.around.pois(self.agent)
 
     def ways(self) -> Tuple[Tuple[str, str, int], ...]:
         """From, to, and the time units that it takes: both directions of each connection."""
@@ -117,8 +138,14 @@ class _Shape:
         )
 
     def places(self, event: Event) -> Tuple[str, ...]:
-        """The POIs at which the agent can do an event."""
+        """The POIs at which the agent can do an event, or take part in it."""
         return tuple(poi for poi in self.pois() if event.location is None or event.location.name == poi)
+
+    def shared_places(self, event: Event) -> Tuple[str, ...]:
+        """The POIs at which the agent can take part in an event of another one."""
+        others = [doer for doer in self.around.doers(event) if doer is not self.agent]
+        theirs = {poi for doer in others for poi in self.around.pois(doer)}
+        return tuple(poi for poi in self.places(event) if poi in theirs)
 
     def within(self, time: int) -> ClockBound:
         """The invariant of something that takes that long."""
@@ -135,7 +162,32 @@ class _Shape:
         codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
         conditions = self._conditions(event, codes.at(poi))
         start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
-        return start, self._edge(at_work, poi, end, duration, self.around.turn(end), codes.at(poi))
+        ending = self._edge(at_work, poi, end, duration, self.around.turn(end), codes.at(poi))
+        if not self.around.is_contested(event):
+            return start, ending
+        busy = names.busy(event.name)
+        guard = replace(start.guard, integers=(*start.guard.integers, (Test(busy, 0),)))
+        start = replace(start, guard=guard, assign=(*start.assign, (busy, 1)))
+        return start, replace(ending, assign=(*ending.assign, (busy, 0)))
+
+    def sharing(self, event: Event, poi: str) -> Tuple[Edge, Edge]:
+        """Taking part in an event of another agent at a POI, from its beginning to its end.
+
+        When it may begin and end is said by the one who does it: receivers have no clock guards (UPPAAL allows none),
+        and are controllable, so that a command stays one.
+        """
+        codes, at_work = self.around.positions, names.doing(event.name, poi)
+        doers = self.around.doers(event)
+        # With several of them the event has a place, at which they are.
+        here = (Test(names.agent_position(doers[0].name), codes.at(poi)),) if event.location is None else ()
+
+        def edge(source: str, target: str, channel: str, where: Clause, position: int) -> Edge:
+            assign = ((names.agent_position(self.agent.name), position),)
+            guard = Guard(integers=(where,) if where else ())
+            return Edge(source, target, guard, Sync(channel, sends=False), assign, (self.clock,))
+
+        start = edge(poi, at_work, event.name, here, codes.doing(poi))
+        return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi))
 
     def instantaneous(self, event: Event, ways: Sequence[Tuple[str, str, int]]) -> Iterator[Edge]:
         """Doing an event at POIs, and on the way where it has no location (company is then met head-on)."""

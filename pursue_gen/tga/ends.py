@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Mapping
+from typing import Dict, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.tga.names import is_under_way
@@ -14,8 +14,9 @@ def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
     """The network with every end of a movement or an action in the environment's hands.
 
     `slack` is how many time units later than the invariant of its `going_…` and `doing_…` locations an agent may be;
-    an agent that it does not name is never late. Raises PursueError for a slack that is negative or names no
-    automaton of the network.
+    an agent that it does not name is never late. What several do together ends when the last of them is ready: it may
+    be late by the largest of their slacks. Raises PursueError for a slack that is negative or names no automaton of the
+    network.
     """
     known = [automaton.name for automaton in network.automata]
     hint = f"one of {', '.join(known)}"
@@ -30,8 +31,25 @@ def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
     ]
     if problems:
         raise PursueError(problems)
-    automata = tuple(_reported(automaton, slack.get(automaton.name, 0)) for automaton in network.automata)
+    sharing = _sharing(network)
+
+    def late(automaton: str, location: str) -> int:
+        return max(slack.get(name, 0) for name in (automaton, *sharing.get(location, ())))
+
+    automata = tuple(
+        _reported(a, {location.name: late(a.name, location.name) for location in a.locations}) for a in network.automata
+    )
     return replace(network, automata=automata)
+
+
+def _sharing(network: Network) -> Mapping[str, Tuple[str, ...]]:
+    """For each location in which agents take part in what another one does there, these agents."""
+    sharing: Dict[str, Tuple[str, ...]] = {}
+    for automaton in network.automata:
+        for edge in automaton.edges:
+            if is_end(edge) and edge.sync is not None and not edge.sync.sends:
+                sharing[edge.source] = (*sharing.get(edge.source, ()), automaton.name)
+    return sharing
 
 
 def is_agent(automaton: Automaton) -> bool:
@@ -41,11 +59,13 @@ def is_agent(automaton: Automaton) -> bool:
     )
 
 
-def _reported(automaton: Automaton, slack: int) -> Automaton:
+def _reported(automaton: Automaton, slack: Mapping[str, int]) -> Automaton:
+    """`slack`: by which each of its locations may be left later."""
     if not is_agent(automaton):
         return automaton
     edges = tuple(with_controllability(edge, edge.controllable and not is_end(edge)) for edge in automaton.edges)
-    return replace(automaton, locations=tuple(_late(location, slack) for location in automaton.locations), edges=edges)
+    locations = tuple(_late(location, slack[location.name]) for location in automaton.locations)
+    return replace(automaton, locations=locations, edges=edges)
 
 
 def _late(location: Location, slack: int) -> Location:

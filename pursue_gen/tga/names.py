@@ -51,6 +51,11 @@ def done(event: str) -> str:
     return f"{event}DONE"
 
 
+def busy(event: str) -> str:
+    """The variable that is 1 while an event goes on that several agents can do, and that its partners share."""
+    return f"B{event}"
+
+
 def has_happened(event: Event) -> str:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
     return event.name if event.duration is None else done(event.name)

@@ -34,7 +34,8 @@ def translate(scenario: Scenario) -> Network:
     automata += [safety_automaton(scenario.safety, happened, codes)] if scenario.safety else []
     automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
     automata += [automaton for automaton, _ in rules]
-    network = Network(_clocks(scenario), _variables(scenario, codes.pois), _channels(scenario), tuple(automata))
+    variables = _variables(scenario, codes.pois) + _busy(around)
+    network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network
 
@@ -64,6 +65,11 @@ def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, 
     variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
     variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
     return tuple(variables)
+
+
+def _busy(around: Surroundings) -> Tuple[Tuple[str, int], ...]:
+    """The variables of the events that happen once at a time."""
+    return tuple((names.busy(event.name), 0) for event in around.scenario.events if around.is_contested(event))
 
 
 def _channels(scenario: Scenario) -> Tuple[str, ...]:

@@ -141,6 +141,8 @@ class CommandScheduler:
             begins = origin != target and is_under_way(target)
             if own and before is not None and not self._holds(before, state):
                 self.counts["not_ours"] += 1  # a report, or a word published by hand: the robot gets no order
+            elif begins and not own and self._joins_by_hand(state, agent, target):
+                self.counts["not_ours"] += 1  # as for the one who does it
             elif begins or (own and origin == target and self._instant(state, target)):
                 trigger = state.event if own else self._event(state, target)
                 orders.append(StartedActivity(agent, trigger, origin, target))
@@ -150,7 +152,15 @@ class CommandScheduler:
         """Return the event that begins what is done there. A strategy knows it, also if a place has `_in_` in it."""
         strategies = (self._plans.strategy_for(state), self._own)
         known = (strategy.actions[location] for strategy in strategies if strategy and location in strategy.actions)
-        return next(known, action_of(location))
+        shared = (event for events in self._own.reacts_to.values() for event in events)
+        fitting = [event for event in shared if location.startswith(action(event, ""))]
+        return next(known, max(fitting, key=len, default=action_of(location)))
+
+    def _joins_by_hand(self, state: SystemState, agent: str, location: str) -> bool:
+        """Return True if our robot takes part there in what somebody else has begun by hand for a robot or person that
+        controllers command."""
+        doers = self._own.reacts_to.get(agent, {}).get(state.event, ())
+        return not state.commanded and state.agent in doers and location.startswith(action(state.event, ""))
 
     def _joined(self, before: Optional[SystemState], state: SystemState) -> List[StartedActivity]:
         """Return the collaborative events that others have begun since the state before, with our robots as partners:
@@ -158,6 +168,8 @@ class CommandScheduler:
         orders: List[StartedActivity] = []
         for robot, events in self._own.reacts_to.items():
             place = state.locations.get(robot, "")
+            if is_under_way(place):
+                continue  # it is on its way, or busy with the event itself: that is begun like its own actions
             for event, doers in events.items():
                 others = (agent for agent in state.locations if agent != robot)
                 begun = {agent for agent in others if self._begins(before, state, agent, event, place)}

@@ -137,6 +137,7 @@ class Observer:
             lost_after=self.settings.lost_after,
             controllers=self.controllers,
             name=self.source.mission,
+            shared_ends=self.settings.shared_ends,
         )
 
     def _planner(self) -> Planner:
@@ -327,6 +328,7 @@ class Observer:
             blocked = " ".join("-".join(way) for way in sorted(mission.ways.blocked))
             values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
             robots = {"held": mission.robots.held, "displaced": mission.robots.displaced}
+            robots["finished"] = dict.fromkeys(mission.shared_ends.finished, "")
             values.update({key: " ".join(sorted(names)) for key, names in robots.items()})
             values.update({"journal": self.journal.is_open, **mission.counts})
             message = mission.status + (f": {mission.reason}" if mission.reason else "")

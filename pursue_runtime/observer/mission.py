@@ -10,6 +10,7 @@ from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
+from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
@@ -51,7 +52,8 @@ class Mission:
     takes its time) before a deadline counts as missed or a state as not covered; `lost_after`, in time units, is how
     late an agent may be before it counts as lost. `on_uncovered` is what follows in a state that the strategy does not
     cover: `plan` again, `stop`, or `warn`. `controllers` are the nodes that have to acknowledge a new plan.
-    `name` is the mission's id, which its states carry.
+    `name` is the mission's id, which its states carry. `shared_ends` (`all`, `doer`): whose reports end what several do
+    together.
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class Mission:
         lost_after: float = 30.0,
         controllers: Collection[str] = (),
         name: str = "",
+        shared_ends: str = ALL,
     ) -> None:
         self.model, self.name = model, name
         self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
@@ -75,6 +78,7 @@ class Mission:
         self.silent: Set[str] = set()
         self.ways = Ways(model)
         self.robots = Robots(model)
+        self.shared_ends = SharedEnds(model, shared_ends)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
         self._on_uncovered, self._lost_after = on_uncovered, lost_after
@@ -100,7 +104,9 @@ class Mission:
         what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
         state = SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
         held, displaced, returning = self.robots.revision()
-        return state._replace(held=held, displaced=displaced, returning=returning, commanded=self._commanded)
+        finished = tuple(sorted(self.shared_ends.finished))
+        robots = state._replace(held=held, displaced=displaced, returning=returning)
+        return robots._replace(commanded=self._commanded, finished=finished)
 
     @property
     def plan_request(self) -> Optional[PlanRequest]:
@@ -116,7 +122,7 @@ class Mission:
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        robots = *self.robots.revision(), *self.ways.revision()
+        robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision()
         return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
@@ -126,7 +132,7 @@ class Mission:
         position = self.position(now)
         delays = self._automata.internal_delays(position)
         delays += [(moment - now) / self._unit for moment in self._early.values()]
-        delays += [delay + self._tolerance for name, delay in self._automata.bounds(position) if name not in self.late]
+        delays += [delay + self._tolerance for name, delay in self._bounds(position) if name not in self.late]
         delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
         if self.status == RUNNING and not self._warned:
             delays.append(stays(self._cover, position, self._tolerance) + self._cover_grace)
@@ -155,9 +161,11 @@ class Mission:
             self._reject("held", f"{text} while the mission holds", level="info")
         elif word.seq is not None and not self._is_current(word):
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
-        else:
+        elif word.seq is not None:
             moves = self._moves_of(word, now)
-            return self._take_command(moves, now) if moves and word.seq is not None else self._take(moves, now)
+            return self._take_command(moves, now) if moves else []
+        else:
+            return self._on_report(word, now)
         return []
 
     def on_time(self, now: float) -> List[SystemState]:
@@ -171,7 +179,7 @@ class Mission:
         moves = self._due_command(position, now)
         if moves:
             return self._take_command(moves, now)
-        for name, delay in self._automata.bounds(position):
+        for name, delay in self._bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
                 continue
             automaton, place = self.model.automaton(name), position.locations[name]
@@ -183,7 +191,7 @@ class Mission:
         for name, delay in self._late_agents(position):
             if delay + self._lost_after <= EPSILON:
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
-        return self._status_changes(now)
+        return self._after_losses(now)
 
     def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
         """Hold the mission until this controller, which is silent, is back."""
@@ -231,6 +239,7 @@ class Mission:
         self.ways.turns.clear()
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
+        self.shared_ends.adopt(state)
         self._commanded = state.commanded
         self._shown = self.robots.revision()
         return [self.state(now), *self._status_changes(now)]
@@ -322,7 +331,7 @@ class Mission:
             before = self.state(now)
             self._automata.take(moves, now)
             self.robots.on_moves(moves)
-            for name, _ in moves:
+            for name in self.shared_ends.on_moves(moves, self.lost):
                 self.late.discard(name)
                 self.lost.pop(name, None)
                 self.ways.turns.pop(name, None)
@@ -430,7 +439,7 @@ class Mission:
         position = Model.after(tuple(self.ways.turns.values()), self.position(now))
         gone = frozenset(self.late | set(self.lost))
         excused = gone - set(self.ways.turns)
-        ends = [delay for name, delay in self._automata.bounds(position) if name not in gone]
+        ends = [delay for name, delay in self._bounds(position) if name not in gone]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
         self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
         return not self._planning.no_plan_reason
@@ -478,7 +487,27 @@ class Mission:
             self.robots.drop(agent)
         if wrong:
             self._reject("impossible", f"{agent}:{report.event}: {wrong}")
-        return self._status_changes(now)
+        return self._after_losses(now)
+
+    def _on_report(self, word: Word, now: float) -> List[SystemState]:
+        """Take a report of an event. The end of what several do together counts when all have reported it."""
+        if self.shared_ends.settles(word):
+            self.lost.pop(word.agent, None)
+            return self._status_changes(now)
+        counts = self.shared_ends.take(word, self.position(now), self.lost)
+        if counts is not None:
+            return self._take(self._moves_of(counts, now), now)
+        who = word.agent or "the one who does it"
+        self._log("info", f"{word.event}: {who} has finished, others have not")
+        self.late.discard(word.agent)
+        self.lost.pop(word.agent, None)
+        return self._status_changes(now) or [self.state(now)]
+
+    def _after_losses(self, now: float) -> List[SystemState]:
+        """Take an end that does not wait for lost agents any more; return new states, if there are any."""
+        word = self.shared_ends.completed(self.position(now), self.lost)
+        moves = self._moves_of(word, now) if word is not None else None
+        return self._take(moves, now) if moves else self._status_changes(now)
 
     def _mark_lost(self, agent: str, why: str) -> None:
         self.lost[agent] = why
@@ -487,9 +516,14 @@ class Mission:
 
     def _late_agents(self, position: Position) -> List[Tuple[str, float]]:
         """Return the agents that are late but not lost, with their delays (time units; negative: overdue)."""
-        acting = self._automata.bounds(position, *ACTING)
+        acting = self._bounds(position, *ACTING)
         waiting = self.robots.waiting()
         return [(name, delay) for name, delay in acting if name in self.late and name not in {*self.lost, *waiting}]
+
+    def _bounds(self, position: Position, *kinds: str) -> List[Tuple[str, float]]:
+        """Return on whom it waits that locations are left, and the time units until then (negative: overdue)."""
+        bounds = self._automata.bounds(position, *kinds)
+        return [(who, delay) for name, delay in bounds for who in self.shared_ends.awaited(name, position)]
 
     # Ends -------------------------------------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Mapping, NamedTuple
 
+from pursue_runtime.observer.shared_ends import ALL, WHOSE
 from pursue_runtime.parameters import choice, command, flag, number, text
 
 ON_UNCOVERED = ("plan", "stop", "warn")
@@ -27,6 +28,7 @@ class Settings(NamedTuple):
     linger: float
     received: bool
     again: bool
+    shared_ends: str
 
 
 def read_settings(given: Mapping[str, Any]) -> Settings:
@@ -45,4 +47,5 @@ def read_settings(given: Mapping[str, Any]) -> Settings:
         linger=number(given, "linger", 1.0),
         received=flag(given, "received"),
         again=flag(given, "again"),
+        shared_ends=choice(given, "shared_ends", ALL, WHOSE),
     )

@@ -32,7 +32,8 @@ def find_state(
     newest = _newest({node: state for node, state in seen.items() if _counts(state, own, after)})
     if not newest:
         return Finding(stop=f"{why}; no other node has seen a state of this mission" if why else "")
-    nodes, (state, *others) = " and ".join(sorted(newest)), newest.values()
+    nodes = " and ".join(sorted(newest))
+    state, *others = sorted(newest.values(), key=lambda state: -state.stamp)
     if not begun and not why and own.status == WAITING:
         return Finding(stop=other_launch(nodes, state) if state.status in LIVE else "")
     if why and _rank(state) < _rank(own):
@@ -90,8 +91,8 @@ def _place(state: SystemState) -> Tuple[object, ...]:
 
 def _differs(state: SystemState, other: SystemState) -> bool:
     """Return True if two states with one number are not the same one, apart from the time that has passed."""
-    # An agent may become late without a new number.
-    what, others = (each._replace(stamp=0.0, clocks={}, reason="", late=()) for each in (state, other))
+    # An agent may become late, or report the end of what others have not finished, without a new number.
+    what, others = (each._replace(stamp=0.0, clocks={}, reason="", late=(), finished=()) for each in (state, other))
     return what != others or any(abs(a - b) > SAME for a, b in zip(_resets(state), _resets(other)))
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 
 from pursue_runtime.locations import action, is_end, is_movement
-from pursue_runtime.model import Automaton, Model
+from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
 from pursue_runtime.words import Word, format_word
@@ -48,11 +48,16 @@ class Activity:
     sent: float = 0.0
 
 
-def end_window(automaton: Automaton, location: str) -> Optional[EndWindow]:
-    """Return when the movement or action of this location ends; None for other locations."""
+def end_window(model: Model, automaton: Automaton, location: str) -> Optional[EndWindow]:
+    """Return when the movement or action of this location ends; None for other locations.
+
+    Whoever takes part in what another agent does has the same window, by its own clock.
+    """
     for edge in automaton.edges_from(location):
-        if edge.sync == "receive" or not is_end(edge.source, edge.target):
+        if not is_end(edge.source, edge.target):
             continue
+        if edge.sync == "receive":
+            return _shared_window(model, edge)
         lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
         for bound in automaton.invariants[location]:
             if bound.left in lows:
@@ -60,10 +65,25 @@ def end_window(automaton: Automaton, location: str) -> Optional[EndWindow]:
     return None
 
 
+def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
+    """Return when somebody who takes part in what another agent does, until this edge, should report its end."""
+    for other in model.of_kind(*ACTING):
+        if any(edge.word == ending.word and edge.sync == "send" for edge in other.edges_from(ending.source)):
+            window = end_window(model, other, ending.source)
+            return window._replace(clock=ending.resets[0]) if window is not None and ending.resets else None
+    return None
+
+
 def report_word(model: Model, agent: str, event: str) -> str:
     """Return the word that reports an event, with the agent's name only if another agent has the same event."""
-    able = {a.name for a in model.automata for edge in a.edges if edge.word == event and edge.sync != "receive"}
+    able = {a.name for a in model.automata for edge in a.edges if edge.word == event and reports(a, edge)}
     return format_word(Word(agent if able - {agent} else "", event))
+
+
+def reports(automaton: Automaton, edge: Edge) -> bool:
+    """Return True if the agent reports this edge: an event of its own or, as a robot, the end of what it does together
+    with others."""
+    return edge.sync != "receive" or (automaton.kind == "robot" and is_end(edge.source, edge.target))
 
 
 def _begins(order: str, location: str) -> bool:
@@ -143,7 +163,9 @@ class Simulator:
     def due(self, now: float, real: float) -> List[str]:
         """Return the words to publish at this ROS time and time of the monotonic clock."""
         words = []
-        for activity in self._activities.values():
+        for name, activity in self._activities.items():
+            if self._is_confirmed(name):
+                continue
             ended = activity.under_way and now >= activity.moment - 1e-6
             if ended and (activity.sends == 0 or self._is_unanswered(activity, real)):
                 activity.sends += 1
@@ -153,15 +175,21 @@ class Simulator:
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """Return when to call `due` again, in ROS time and on the real clock; None: not before the next message."""
-        ends = [a.moment for a in self._activities.values() if a.under_way and a.sends == 0]
-        receipts = [self._resend_at(a) for a in self._activities.values() if a.sends]
+        activities = [activity for name, activity in self._activities.items() if not self._is_confirmed(name)]
+        ends = [activity.moment for activity in activities if activity.under_way and activity.sends == 0]
+        receipts = [self._resend_at(activity) for activity in activities if activity.sends]
         return min(ends, default=None), min(receipts, default=None)
+
+    def _is_confirmed(self, name: str) -> bool:
+        """Return True if the state shows that the agent has finished what others have not."""
+        return self._state is not None and name in self._state.finished
 
     def _update_activity(self, automaton: Automaton, state: SystemState, newborn: bool) -> None:
         name = automaton.name
         location = state.locations.get(name, "")
-        window = end_window(automaton, location)
-        if window is None or window.clock not in state.clocks:
+        window = end_window(self._model, automaton, location)
+        reported = any(is_end(e.source, e.target) and reports(automaton, e) for e in automaton.edges_from(location))
+        if window is None or not reported or window.clock not in state.clocks:
             self._activities.pop(name, None)
             return
         since = state.stamp - state.clocks[window.clock] * state.unit

@@ -10,7 +10,7 @@ from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, P
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.simulator.simulator import ACTING, report_word
+from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
 from pursue_runtime.ui.phrases import phrase, sentence, where
@@ -87,7 +87,8 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
             found.append(Task(automaton.name, automaton.kind, "held, until it is to continue", "Resume", resume))
             continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
-        end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
+        ends = (edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target))
+        end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
             is_person = automaton.kind == "human"
             text = _instruction_text(begin, automaton.edges) if is_person else _activity_text(begin, automaton.edges)
@@ -242,18 +243,20 @@ class MissionView:
             lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
             lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {state.reason}")
-        if state.agent in self._people and state.status == RUNNING:
-            instruction = self._instruction(state)
-            lines += [f"          {instruction}"] if instruction else []
+        if state.status == RUNNING:
+            instructions = [self._instruction(person, state, last) for person in sorted(self._people)]
+            lines += [f"          {instruction}" for instruction in instructions if instruction]
         return lines
 
-    def _instruction(self, state: SystemState) -> str:
-        """What the person whose event this is must do now; "" where it is over."""
-        automaton = self._model.automaton(state.agent)
+    def _instruction(self, person: str, state: SystemState, last: Optional[SystemState]) -> str:
+        """What a person must do now whose event this is, or who is busy with it from now on; "" where that is over."""
+        automaton, here = self._model.automaton(person), state.locations.get(person)
+        if person != state.agent and (last is None or last.locations.get(person) == here):
+            return ""
         for edge in automaton.edges:
-            if edge.word == state.event and edge.target == state.locations.get(state.agent):
+            if edge.word == state.event and edge.target == here:
                 text = "" if is_end(edge.source, edge.target) else _instruction_text(edge, automaton.edges, " now")
-                return text and f"{state.agent}: {text}"
+                return text and f"{person}: {text}"
         return ""
 
 

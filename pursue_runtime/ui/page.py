@@ -164,7 +164,7 @@ class Page:
         """Where an agent is, what it does, and between which moments that ends."""
         location = state.locations.get(automaton.name, automaton.initial)
         place, to = self._where(automaton, location)
-        window = end_window(automaton, location)
+        window = end_window(self._model, automaton, location)
         agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to, "doing": f"at {place or location}",
                                  "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
         begin = begin_of(automaton, location)
@@ -172,6 +172,7 @@ class Page:
             agent["doing"] = f"from {place} to {to}"
         elif begin is not None and is_action(location):
             agent["doing"] = f"{begin.word}, at {place or begin.source}"
+            agent["doing"] += " (has finished)" if automaton.name in state.finished else ""
         if window is not None and window.clock in state.clocks:
             since = at - state.clocks[window.clock]
             agent.update(since=_round(since), low=_round(since + window.low), high=_end(since, window.high))

@@ -74,6 +74,16 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         [("PML154", 5, "hand can never happen", "")],
     ),
     ({"agent_bot": BOT + ", work"}, [("PML156", 10, "work twice behind can_do", "delete one")]),
+    ({"event_hand": 'event "hand" collaborative duration 3'}, [("PML158", 5, "may leave as soon as", "together")]),
+    ({"event_work": 'event "work" together location b duration 3'}, [("PML159", 4, "not collaborative", "delete")]),
+    ({"event_hand": 'event "hand" collaborative together'}, [("PML159", 5, "has no duration", "duration 4")]),
+    (
+        {
+            "event_hand": 'event "hand" collaborative together duration 3',
+            "agent_bot": BOT + '\nagent "bot2" controllable mobile 1 location a can_do hand',
+        },
+        [("PML163", 5, "anywhere by bot and by bot2", "location")],
+    ),
     # rules and dependencies
     ({"rule": 'rule "order": (work before hand) before work'}, [("PML160", 7, "names work twice", "each event once")]),
     ({"rule": 'rule "order": work before hand\nrule "back": hand before work'}, [
@@ -117,7 +127,7 @@ def test_a_fault_is_reported_with_its_place_and_a_way_out(
         assert finding.hint and hint in finding.hint
 
 
-WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML180", "PML190"}
+WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML158", "PML180", "PML190"}
 
 
 def test_only_what_can_be_meant_is_a_warning() -> None:

@@ -223,7 +223,7 @@ def texts(draw: st.DrawFn) -> str:
         if kind == 1:
             return ["connect", name, "and", other, "distance", number]
         if kind == 2:
-            extra = maybe("collaborative") + maybe("location", name) + maybe("duration", number)
+            extra = maybe("collaborative") + maybe("together") + maybe("location", name) + maybe("duration", number)
             return ["event", quoted, *extra]
         if kind == 3:
             return ["rule", quoted, ":", *body(3)]

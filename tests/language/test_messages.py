@@ -33,6 +33,8 @@ SLIPS = [
     ("event catch", "PML010", 7, "expected a name in quotes", 'event "catch"'),
     ('event "e" duration', "PML010", 19, "expected a whole number after `duration`", "the form is"),
     ('event "e" duration 3 location a', "PML010", 22, "expected the end of the statement", "location a duration 6"),
+    ('event "e" together collaborative', "PML010", 20, "found `collaborative`", "parts come in this order"),
+    ('event "e" collaborative togehter', "PML010", 25, "`together`", "did you mean together?"),
     ('event "e" colaborative', "PML010", 11, "`collaborative`", "did you mean collaborative?"),
     ('event "e" location', "PML010", 19, "expected a name after `location`", "the form is"),
     ('rule "r" a before b', "PML010", 10, "expected `:`", "the form is"),

@@ -95,6 +95,16 @@ def test_a_state_may_lack_either_list(sets: str, true_if: List[str], false_if: L
     assert ([ref.name for ref in state.true_if], [ref.name for ref in state.false_if]) == (true_if, false_if)
 
 
+def test_together_is_a_word_behind_collaborative_and_a_name_everywhere_else() -> None:
+    source = text(
+        event_hand='event "hand" collaborative together location together duration 4',
+        event_rest='event "rest" poi "together" connect together and a distance 1',
+    )
+    hand = next(event for event in parse(source, "test.pur").events if event.name == "hand")
+    assert hand.together and hand.is_shared and hand.location is not None and hand.location.name == "together"
+    assert not any(event.is_shared for event in parse(text(), "test.pur").events)
+
+
 def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> None:
     scenario = parse(
         'agent "human" location a agent "nurse" human controllable mobile 3 location a\n'

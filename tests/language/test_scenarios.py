@@ -15,15 +15,17 @@ PUBLISHED = ("CT1", "CT2a", "CT3a", "CT3b", "CT4", "CT5", "EB1", "EB2", "EB2x", 
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "scenarios").rglob("*.pur")), ids=lambda path: path.stem)
-def test_own_scenarios_have_no_findings(path: Path) -> None:
-    assert check(load(path)) == ()
+def test_own_scenarios_have_no_findings_but_lasting_events_of_two(path: Path) -> None:
+    scenario = load(path)
+    assert {finding.code for finding in check(scenario)} <= {"PML158"}
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_published_scenarios_have_no_findings(name: str, reference_dir: Path) -> None:
+def test_published_scenarios_have_no_findings_but_lasting_events_of_two(name: str, reference_dir: Path) -> None:
     scenario = load(reference_dir / name / "scenario.pur")
     assert scenario.name == "scenario"
-    assert check(scenario) == ()
+    of_two = [event for event in scenario.events if event.collaborative and event.duration is not None]
+    assert [finding.code for finding in check(scenario)] == ["PML158"] * len(of_two)
 
 
 THESIS: Dict[str, Tuple[List[str], Dict[Tuple[str, str], int], Dict[str, object], Dict[str, object], str]] = {

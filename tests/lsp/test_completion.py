@@ -88,7 +88,8 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     [
         ("connect a |", ["and"]),
         ('event "new" |', ["location", "duration", "collaborative"]),
-        ('event "new" collaborative loc|', ["location", "duration"]),
+        ('event "new" collaborative loc|', ["location", "duration", "together"]),
+        ('event "new" collaborative together |', ["location", "duration"]),
         ('agent "new" |', ["location", "human", "controllable", "mobile"]),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
@@ -129,6 +130,11 @@ def test_between_the_quotes_of_a_declaration_stand_names_that_are_used_only() ->
 @pytest.mark.parametrize("text", ["// po|", "/* p| */", 'poi "a" //[1, |', "/* never closed |"])
 def test_nothing_is_offered_in_comments(text: str) -> None:
     assert labels(text) == []
+
+
+def test_a_place_may_be_called_together() -> None:
+    text = 'poi "together"\nevent "e" collaborative together location |'
+    assert labels(text, "name") == ["together"] and labels(text, "word") == []
 
 
 def test_an_agent_may_be_called_human() -> None:

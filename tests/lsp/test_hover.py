@@ -44,6 +44,14 @@ def test_plain_words(before: str, words: "list[str]") -> None:
         assert word in told(before)
 
 
+def test_who_is_busy_while_an_event_of_two_lasts() -> None:
+    lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
+    assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)
+    together = lasting.replace("collaborative", "collaborative together")
+    assert "both are busy until it ends" in told('event "ha', together)
+    assert "busy until it ends" in told("toge", together)
+
+
 def test_everybody_who_moves_is_named_at_a_distance() -> None:
     assert told("distance ", SMALL_WITH_MORE).endswith(
         "- bot needs 6 to 7 units of time\n- man needs 15 to 16 units of time"

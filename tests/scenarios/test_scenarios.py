@@ -20,8 +20,13 @@ from pursue_gen.tga import translation_notes
 
 FILES = make.scenario_files()
 AGAIN = "run: python -m docs.scenarios.make"
-LOST = {"two_officers", "two_rolling_bins"}
+LOST = {"lift_ride", "two_officers", "two_rolling_bins"}
 """Kept on purpose."""
+OF_TWO = {
+    "ecobot": 1, "luggage": 2, "drug_delivery": 2, "paper_and_plastic": 2, "rolling_bin": 1, "scenario_2": 1,
+    "scenario_4": 1, "two_robot_farm": 1, "two_rolling_bins": 2,
+}  # fmt: skip
+"""Those that are older than the word `together`, with their lasting events of two: they keep their meaning."""
 
 native = pytest.mark.skipif(not available(), reason="without the native solver this takes too long")
 
@@ -74,7 +79,8 @@ def test_the_file_says_what_it_is_and_has_no_finding(name: str) -> None:
     first = text.split("\n")[0]
     assert first.startswith("// ") and first.endswith("."), "the first line is a comment that says what it is"
     assert max(map(len, text.split("\n"))) <= 120
-    assert check_reading(read(read_text(str(path)), str(path))) == ()
+    codes = [finding.code for finding in check_reading(read(read_text(str(path)), str(path)))]
+    assert codes == ["PML158"] * OF_TWO.get(name, 0)
     assert translation_notes(load(path)) == ()
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Tuple
 
 import pytest
 
@@ -108,3 +108,42 @@ def test_strategies_name_the_partners() -> None:
     assert data["controller_bot3"]["reacts_to"] == {"bot3": {"bot2_ina": ["bot2"]}}
     assert "reacts_to" not in data["controller_bot1"]
     assert Strategy(data["controller_bot3"]).reacts_to == {"bot3": {"bot2_ina": ("bot2",)}}
+
+
+# Where the event keeps its partners busy, their own location says that they take part ---------------------------------
+
+LIFTS = "doing_lift_in_mid"
+
+
+def begun(taker: Taker, state: SystemState) -> List[Tuple[str, str, str]]:
+    """The orders to its robot because of the state: what, from where, to where."""
+    orders = taker.scheduler.on_state(state, state.stamp)
+    assert taker.scheduler.joined == []
+    return [(order.trigger, order.origin, order.target) for order in orders]
+
+
+def test_a_partner_that_is_busy_as_well_gets_one_order(taker: Taker) -> None:
+    lifting = {"giver": LIFTS, "taker": LIFTS}
+    assert begun(taker, state(2, "lift", "giver", **lifting)) == [("lift", "mid", LIFTS)]
+    assert begun(taker, state(3, "visitor_leaves", "visitor", False, **lifting)) == []
+    assert begun(taker, state(4, "liftDONE", "giver", False)) == []
+    assert begun(taker, state(5, "lift", "giver", **lifting)) == [("lift", "mid", LIFTS)]
+
+
+def test_it_gets_it_also_where_states_were_missed_or_its_controller_was_restarted(taker: Taker) -> None:
+    lifting = {"giver": LIFTS, "taker": LIFTS}
+    assert begun(taker, state(7, "visitor_leaves", "visitor", False, **lifting)) == [("lift", "mid", LIFTS)]
+    assert begun(Taker(), state(7, "lift", "giver", **lifting)) == [("lift", "", LIFTS)]
+
+
+def test_what_a_person_began_by_hand_is_no_order_to_a_busy_partner(taker: Taker) -> None:
+    assert begun(taker, state(2, "lift", "giver", False, giver=LIFTS, taker=LIFTS)) == []
+    greeting = "doing_greet_in_mid"
+    assert begun(taker, state(3, "greet", "visitor", False, visitor=greeting, taker=greeting)) == [
+        ("greet", LIFTS, greeting)
+    ]
+
+
+def test_the_event_is_known_where_its_place_has_a_similar_name(taker: Taker) -> None:
+    there = {"giver": "doing_lift_in_car_in_hall", "taker": "doing_lift_in_car_in_hall"}
+    assert begun(taker, state(2, "lift", "giver", **there)) == [("lift", "mid", "doing_lift_in_car_in_hall")]

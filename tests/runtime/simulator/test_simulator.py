@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
 from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator, end_window
+from pursue_runtime.state import SystemState
 from tests.runtime.models import model_data, mover, state, worker
+from tests.together import HOTEL
+from tests.together import model as hotel
 
 MODEL = Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
 EVERYBODY = ["bot", "thief", "nurse"]
@@ -217,7 +222,7 @@ def test_time_units_are_not_seconds() -> None:
 
 @given(st.sampled_from(DELAYS), st.integers(), st.integers(1, 50))
 def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> None:
-    window = end_window(MODEL.automaton("bot"), "going_a_to_b")
+    window = end_window(MODEL, MODEL.automaton("bot"), "going_a_to_b")
     drawn = Delays(choice, seed).draw(window, "bot", number)
     assert window == (ARRIVAL, "Cbot", 9, 10)
     assert 9 < drawn < 10
@@ -225,7 +230,7 @@ def test_ends_fall_inside_the_window(choice: str, seed: int, number: int) -> Non
 
 
 def test_early_middle_and_late_are_in_that_order_and_seeds_differ() -> None:
-    window = end_window(MODEL.automaton("bot"), "going_a_to_b")
+    window = end_window(MODEL, MODEL.automaton("bot"), "going_a_to_b")
     early, middle, late = (Delays(c).draw(window, "bot", 1) for c in ("early", "middle", "late"))
     assert early < middle < late
     assert len({Delays("random", seed).draw(window, "bot", 1) for seed in range(5)}) == 5
@@ -247,3 +252,38 @@ def test_a_state_that_comes_late_starts_nothing() -> None:
     world.on_state(leaves(seq=3, stamp=115.0, bot="b"), real=2.0)
     world.on_state(leaves(), real=3.0)
     assert world.due(200.0, 4.0) == []
+
+
+# What several do together ---------------------------------------------------------------------------------------------
+
+HOUSE = hotel(HOTEL)
+RIDE = "doing_ride_in_lift"
+RIDING = {"porter": RIDE, "waiter": RIDE}
+
+
+def riding(seq: int = 2, stamp: float = 105.0, **more: Any) -> SystemState:
+    known = HOUSE.initial()
+    clocks = {**known.clocks, "Cporter": stamp - 105.0, "Cwaiter": stamp - 105.0}
+    return SystemState(seq, stamp, {**known.locations, **RIDING}, known.values, clocks)._replace(**more)
+
+
+def test_each_robot_that_takes_part_reports_the_end_for_itself() -> None:
+    world = Simulator(HOUSE, ["porter", "waiter"], Delays("middle"))
+    world.on_state(SystemState(1, 100.0, HOUSE.initial().locations, {}, {}), real=0.0)
+    for robot in RIDING:
+        world.on_order(robot, 105.0, "ride")
+    world.on_state(riding(), real=1.0)
+    assert world.due(108.9, 2.0) == []
+    assert sorted(world.due(109.5, 2.0)) == ["porter:rideDONE", "waiter:rideDONE"]
+    assert world.next_moments()[1] is not None, "they are published again"
+    world.on_state(riding(stamp=109.6, finished=("porter",)), real=2.1)
+    assert world.due(120.0, 100.0) == ["waiter:rideDONE"], "the state shows that the porter has finished"
+
+
+def test_who_is_no_robot_does_not_report_what_another_one_does() -> None:
+    people = hotel(HOTEL.replace('agent "waiter" controllable', 'agent "waiter" human controllable'))
+    world = Simulator(people, ["porter", "waiter"], Delays("middle"))
+    world.on_state(riding(), real=1.0)
+    assert world.due(120.0, 2.0) == ["rideDONE"]
+    window = end_window(people, people.automaton("waiter"), RIDE)
+    assert window is not None and (window.clock, window.low, window.high) == ("Cwaiter", 4.0, 5.0)

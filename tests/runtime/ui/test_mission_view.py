@@ -22,6 +22,8 @@ from pursue_runtime.ui.mission_view import (
     tasks,
 )
 from tests.runtime.models import model_data, mover, state, worker
+from tests.together import HOTEL
+from tests.together import model as hotel
 
 DATA = model_data(
     mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human"), worker("boy", "agent")
@@ -191,6 +193,19 @@ def test_people_get_instructions_where() -> None:
     told.on_state(at(1, 100.0, event="_start_"), 100.0)
     lines = told.on_state(at(2, 103.0, event="screw", agent="nurse", nurse="doing_screw_in_s"), 103.0)
     assert [line.strip() for line in lines] == ["3.0  nurse begins screw", "nurse: do screw now, at s"]
+
+
+def test_who_takes_part_in_what_another_one_begins_gets_instructions_as_well() -> None:
+    house = hotel(HOTEL.replace('agent "waiter" controllable', 'agent "waiter" human controllable'))
+    told = MissionView(house, IdleEnvironment())
+    there = {"porter": "lift", "waiter": "lift"}
+    told.on_state(state(house, 1, 100.0, {}, event="_start_", **there), 100.0)
+    riding = {"porter": "doing_ride_in_lift", "waiter": "doing_ride_in_lift"}
+    lines = told.on_state(state(house, 2, 104.0, {}, event="ride", agent="porter", **riding), 104.0)
+    assert [line.strip() for line in lines] == ["4.0  porter begins ride", "waiter: do ride now, at lift"]
+    assert [task.agent for task in tasks(house, told.state, ["porter", "waiter"])] == ["porter"], "who ends it"
+    lines = told.on_state(state(house, 3, 108.5, {}, event="rideDONE", agent="porter", **there), 108.5)
+    assert [line.strip() for line in lines] == ["8.5  porter ends ride"]
 
 
 # What happens

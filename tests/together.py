@@ -1,0 +1,77 @@
+"""Scenarios with an event that keeps its partners busy, for tests of every stage."""
+
+from __future__ import annotations
+
+import functools
+from typing import Dict
+
+import yaml
+
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution, solve_scenario
+from pursue_gen.workspace import Options, generate
+from pursue_runtime.model import Model
+
+HOTEL = """\
+poi "lobby"
+poi "lift"
+poi "floor"
+connect lobby and lift distance 2
+connect lift and floor distance 1
+event "call"
+event "ride" collaborative together location lift duration 4
+event "serve" location floor
+rule "way": ride before serve
+agent "porter" controllable location lift can_do ride
+agent "waiter" controllable mobile 1 location lobby can_do serve reacts_to ride
+agent "guest" mobile 2 location floor can_do call
+reach_objective: do serve
+"""
+"""A waiter rides in a lift that a porter operates; both are robots."""
+
+TWO_PORTERS = HOTEL.replace(
+    'agent "waiter"', 'agent "porter2" controllable mobile 1 location lobby can_do ride\nagent "waiter"'
+)
+"""Another porter may do it as well."""
+
+CARRY = """\
+poi "store"
+poi "ramp"
+poi "van"
+connect store and ramp distance 2
+connect ramp and van distance 1
+event "lift" collaborative together duration 3
+event "load" location van
+event "shout"
+rule "order": lift before load
+agent "bot1" controllable mobile 1 location store can_do lift
+agent "bot2" controllable mobile 2 location ramp can_do load reacts_to lift
+agent "child" mobile 2 location van can_do shout reacts_to lift
+reach_objective: do load
+"""
+"""An event without a place, with a robot and an uncontrollable agent as partners."""
+
+
+def scenario(text: str) -> Scenario:
+    """The scenario of a text."""
+    return parse(text, "hotel.pur", "hotel")
+
+
+@functools.lru_cache(maxsize=None)
+def solved(text: str) -> Solution:
+    """Its strategy in the default game."""
+    return solve_scenario(scenario(text), Rules())
+
+
+@functools.lru_cache(maxsize=None)
+def files(text: str) -> Dict[str, bytes]:
+    """Its workspace."""
+    won = solved(text)
+    return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
+
+
+def model(text: str) -> Model:
+    """Its model, as the nodes have it."""
+    return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))
