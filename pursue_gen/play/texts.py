@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, Iterator, List, Mapping, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
-from pursue_gen.synthesis.game import JointMove
+from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.positions import directions
@@ -70,13 +70,23 @@ def _lasting(setup: Setup, play: PlayState, number: int) -> str:
     place = here.state.locations[number]
     bounds = game.automata[number].invariants[place]
     if not bounds:
-        return ""
+        doer = _doer(game, here.state.locations, number)
+        return "" if doer is None else _lasting(setup, play, doer)
     clock, high = bounds[0]
     begun = play.now - here.clocks[clock - 1]
     lows = [e.duration for e in (game.edges[k] for k in game.automata[number].edges) if e.source == place]
     low = begun + max(lows, default=0)
     verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
     return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + (high >> 1))}"
+
+
+def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:
+    """Who does what this agent takes part in until it ends; None where it does nothing together with others."""
+    location = game.automata[number].locations[places[number]]
+    if not names.is_doing(location):
+        return None
+    others = (k for k, automaton in enumerate(game.automata) if automaton.locations[places[k]] == location)
+    return next((k for k in others if game.automata[k].invariants[places[k]]), None)
 
 
 def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Iterator[str]:

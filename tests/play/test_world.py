@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from players import do, game, moments, whims, world
 
 from pursue_gen.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove, beginning, last_moment
+from pursue_gen.play.texts import event_texts, situation
 from pursue_gen.play.world import StrategyPlay
 
 REACH = ("thesis/scenario_1", "thesis/scenario_2", "thesis/scenario_3", "thesis/scenario_4", "thesis/catch_the_thief",
-         "catch_the_thief/one_officer")
+         "catch_the_thief/one_officer", "museum/film")
 SAFE = ("work_cell/work_cell", "ecobot/ecobot")
 
 
@@ -157,3 +158,14 @@ def test_where_nobody_does_anything_nothing_happens(name: str) -> None:
         table = after
     assert played.advance(table) == table
     assert played.advance(table, table.now + 5).now == table.now + 5
+
+
+def test_a_partner_is_busy_as_long_as_the_one_who_does_it() -> None:
+    played = world("museum/film", 1)
+    words = event_texts(played.setup.scenario, played.setup.network)
+    table = beginning(played.setup)
+    while "doing showFilm at hall" not in "".join(situation(played.setup, words, table)):
+        table = played.advance(table)
+    lines = [line.split(None, 1) for line in situation(played.setup, words, table)]
+    assert dict(lines)["visitor"] == dict(lines)["guide"] and "ends between" in dict(lines)["guide"], lines
+    assert not any(offer.agent == "visitor" for offer in played.offers(table)), "it can do nothing else"
