@@ -86,7 +86,7 @@ def _activities(steps: Sequence[Done], robots: Sequence[str]) -> List[Activity]:
             if is_going(there):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, there))
-            elif is_doing(there):
+            elif is_doing(there) and (mover == robot or robot not in state.lost):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, ""))
     return begun

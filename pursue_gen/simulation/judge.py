@@ -127,7 +127,8 @@ class Judge:
         target = move.moves[0].edge.target
         self.steps.append(TakenStep(state.seq, state.agent, state.event, target, commanded))
         for part in move.moves[1:]:  # whoever takes part in what another agent begins is ordered to do so as well
-            if is_doing(part.edge.target) and part.edge.source != part.edge.target:
+            joins = is_doing(part.edge.target) and part.edge.source != part.edge.target
+            if joins and part.automaton not in state.lost:
                 self._joined.append(TakenStep(state.seq, part.automaton, state.event, part.edge.target, True))
         self._zeros.update((self._arena.network.clocks[index - 1], now) for index in move.resets)
         self._entered = self._standing(before, state, move, now)
@@ -207,7 +208,8 @@ class Judge:
             self._problem(f"wrong order: {what}, which is not what was last commanded")
         elif is_under_way(target):
             here = self._before.locations.get(agent) if self._before is not None else None
-            if here != target and not again:
+            lost = self._before is not None and agent in self._before.lost  # what it did together does not wait for it
+            if here != target and not again and not lost:
                 self._problem(f"wrong order: {what}, which is over already")
         elif (agent, last.seq) in self._ordered:
             self._problem(f"wrong order: {what}, for the second time")

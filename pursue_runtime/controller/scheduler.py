@@ -141,6 +141,8 @@ class CommandScheduler:
             begins = origin != target and is_under_way(target)
             if own and before is not None and not self._holds(before, state):
                 self.counts["not_ours"] += 1  # a report, or a word published by hand: the robot gets no order
+            elif begins and not own and agent in state.lost and self._takes_part(agent, target):
+                continue  # it is moved with the others, and nothing is expected of it
             elif begins and not own and self._joins_by_hand(state, agent, target):
                 self.counts["not_ours"] += 1  # as for the one who does it
             elif begins or (own and origin == target and self._instant(state, target)):
@@ -155,6 +157,10 @@ class CommandScheduler:
         shared = (event for events in self._own.reacts_to.values() for event in events)
         fitting = [event for event in shared if location.startswith(action(event, ""))]
         return next(known, max(fitting, key=len, default=action_of(location)))
+
+    def _takes_part(self, agent: str, location: str) -> bool:
+        """Return True if our robot takes part there in what another agent does."""
+        return any(location.startswith(action(event, "")) for event in self._own.reacts_to.get(agent, ()))
 
     def _joins_by_hand(self, state: SystemState, agent: str, location: str) -> bool:
         """Return True if our robot takes part there in what somebody else has begun by hand for a robot or person that

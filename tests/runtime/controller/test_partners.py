@@ -144,6 +144,13 @@ def test_what_a_person_began_by_hand_is_no_order_to_a_busy_partner(taker: Taker)
     ]
 
 
+def test_a_partner_that_is_lost_gets_no_order(taker: Taker) -> None:
+    """It is where the event is, so the observer moves it with the others; nobody waits for it."""
+    lifting = state(2, "lift", "giver", giver=LIFTS, taker=LIFTS)
+    assert begun(taker, lifting._replace(lost=("taker",))) == []
+    assert begun(Taker(), lifting._replace(lost=("taker",), event="visitor_leaves", agent="visitor")) == []
+
+
 def test_the_event_is_known_where_its_place_has_a_similar_name(taker: Taker) -> None:
     there = {"giver": "doing_lift_in_car_in_hall", "taker": "doing_lift_in_car_in_hall"}
     assert begun(taker, state(2, "lift", "giver", **there)) == [("lift", "mid", "doing_lift_in_car_in_hall")]
