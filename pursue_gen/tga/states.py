@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence
+from typing import Dict, Optional, Sequence
 
 from pursue_gen.language.scenario import State
 from pursue_gen.tga.names import STATES, state_value
@@ -12,11 +12,17 @@ _BASE = "base"
 
 
 def states_automaton(states: Sequence[State]) -> Optional[Automaton]:
-    """The automaton of all states; None where no event sets one."""
+    """The automaton of all states; None where no event sets one.
+
+    An event that sets several states does so by one edge: an automaton takes one edge in a move.
+    """
+    assigned: Dict[str, Dict[str, int]] = {}
+    for state in states:
+        for value, events in ((1, state.true_if), (0, state.false_if)):
+            for event in events:
+                assigned.setdefault(event.name, {})[state_value(state.name)] = value
     edges = tuple(
-        Edge(_BASE, _BASE, sync=Sync(event.name, sends=False), assign=((state_value(state.name), value),))
-        for state in states
-        for value, events in ((1, state.true_if), (0, state.false_if))
-        for event in events
+        Edge(_BASE, _BASE, sync=Sync(event, sends=False), assign=tuple(values.items()))
+        for event, values in assigned.items()
     )
     return Automaton(STATES, (Location(_BASE),), _BASE, edges) if edges else None
