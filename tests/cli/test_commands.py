@@ -258,7 +258,7 @@ def test_files_that_cannot_be_read_are_named(tmp_path: Path, command: str) -> No
 
 
 def test_check_finds_nothing_wrong_and_suggests_the_next_command() -> None:
-    told = pursue("check", FIRST, THESIS / "scenario_2.pur")
+    told = pursue("check", FIRST, THESIS / "scenario_3.pur")
     assert (told.status, told.out) == (0, "")
     assert "2 files: 0 errors, 0 warnings" in told.err
     assert f"next: pursue-gen ws {shlex.quote(FIRST)}" in told.err

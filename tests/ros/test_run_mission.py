@@ -124,6 +124,6 @@ def with_own_master(
 def until_it_runs(log: Path) -> None:
     """Waits until the first robot has set out."""
     deadline = time.monotonic() + PATIENCE
-    while not re.search(r"\d\.\d  bot1_c2b", log.read_text(errors="replace") if log.exists() else ""):
+    while not re.search(r"\d\.\d  bot1 sets off from c to b", log.read_text(errors="replace") if log.exists() else ""):
         assert time.monotonic() < deadline, log.read_text(errors="replace")[-6000:]
         time.sleep(0.05)

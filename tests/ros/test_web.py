@@ -116,8 +116,8 @@ def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros
         page.wait(f"{button}.getAttribute('aria-disabled') === 'false'")
         assert page.value("document.querySelector('[data-word=thief_a2b]').getAttribute('aria-disabled')") == "true"
         page.click("[data-word=thief_c2b]")
-        page.wait("document.getElementById('log').textContent.includes('thief sets out from c to b')")
-        assert page.text("#log").count("thief sets out") == 1, "the press before the start did nothing"
+        page.wait("document.getElementById('log').textContent.includes('thief sets off from c to b')")
+        assert page.text("#log").count("thief sets off") == 1, "the press before the start did nothing"
         page.wait("document.getElementById('agents').textContent.includes('from c to b')")
         page.click("#stop")
         page.wait("document.getElementById('sure').open")

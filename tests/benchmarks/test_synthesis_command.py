@@ -77,10 +77,11 @@ def test_without_a_verdict_the_row_says_why(
 
 
 def test_every_file_of_this_project_is_a_scenario_without_findings(tmp_path: Path) -> None:
+    """But for the warning that a published event of two has been written without `together`, which is younger."""
     for one in GOALS:
         if one.size is not None or "/" in one.name:
             (file,) = files_of(one, NOWHERE, tmp_path)
-            assert check(load(file)) == (), one.title
+            assert {finding.code for finding in check(load(file))} <= {"PML158"}, one.title
 
 
 def test_published_scenarios_are_measured_where_they_are_at_hand(reference_dir: Path, tmp_path: Path) -> None:
