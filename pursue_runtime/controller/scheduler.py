@@ -163,7 +163,7 @@ class CommandScheduler:
         return any(location.startswith(action(event, "")) for event in self._own.reacts_to.get(agent, ()))
 
     def _joins_by_hand(self, state: SystemState, agent: str, location: str) -> bool:
-        """Return True if our robot takes part there in what somebody else has begun by hand for a robot or person that
+        """Return True if our robot takes part there in what was begun by hand for a robot or person that
         controllers command."""
         doers = self._own.reacts_to.get(agent, {}).get(state.event, ())
         return not state.commanded and state.agent in doers and location.startswith(action(state.event, ""))

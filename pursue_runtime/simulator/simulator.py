@@ -66,7 +66,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
-    """Return when somebody who takes part in what another agent does, until this edge, should report its end."""
+    """Return when an agent that takes part in what another one does, until this edge, should report its end."""
     for other in model.of_kind(*ACTING):
         if any(edge.word == ending.word and edge.sync == "send" for edge in other.edges_from(ending.source)):
             window = end_window(model, other, ending.source)
