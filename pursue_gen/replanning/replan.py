@@ -53,8 +53,9 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
             return _lost(_cannot_be_met(game, request))
         left = SolveOptions(limits.since(start))
         strategy = prove(
-            network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT
-        )
+            network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT,
+            otherwise=verdict.cautious,
+        )  # fmt: skip
     except PursueError as problem:
         if problem.exit_status != _AT_A_LIMIT:
             return _lost(f"the plan that was found is not proven: {problem}")

@@ -231,7 +231,8 @@ class _Search:
             self._verdicts.append(verdict.stats)
             if verdict.strategy is None:
                 return None
-            proven = prove(game, wanted, verdict.strategy, self._reaction, verdict.ranks, self._options)
+            how = self._reaction, verdict.ranks, self._options
+            proven = prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious)
         except PursueError as problem:
             if problem.exit_status not in (_LIMIT_HIT, _LOST) or self._budget.used_up:
                 raise

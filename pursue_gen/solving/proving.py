@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from fractions import Fraction
-from typing import Mapping, Optional
+from typing import Callable, Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof.checker import LIMIT, Report, pruned, pruned_ranks, verify
@@ -27,18 +27,24 @@ def prove(
     options: SolveOptions = DEFAULT,
     simpler: bool = True,
     states: int = LIMIT,
+    otherwise: Callable[[], Optional[Strategy]] = lambda: None,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
     `simpler`: in fewer zones and bounds, proven once more, where that costs little. `states`: the most symbolic states
-    that each look of the checker may take. Raises PursueError with the play
-    that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states included.
+    that each look of the checker may take. `otherwise` makes a strategy to try where this one does not win. Raises
+    PursueError with the play that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states
+    included.
     """
     start, limits, progress = time.monotonic(), options.limits, options.progress
     report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
     if not report.ok and ranks is not None:
         ranks = None
         report = verify(network, objective, strategy, reaction, states, limits=limits.since(start), progress=progress)
+    another = otherwise() if not report.ok and not report.reason.startswith("limit") else None
+    if another is not None:
+        again = verify(network, objective, another, reaction, states, limits=limits.since(start), progress=progress)
+        strategy, report = (another, again) if again.ok else (strategy, report)
     if report.reason.startswith("limit"):
         hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
         raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)

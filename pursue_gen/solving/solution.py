@@ -83,7 +83,7 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     left = options.since(start)
-    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks, left)
+    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks, left, otherwise=verdict.cautious)
     won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
     return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
 

@@ -9,7 +9,7 @@ the same zone, as who is there may act anywhere on the way through it, or to a z
 
 from __future__ import annotations
 
-from typing import Iterable, List, Sequence, Tuple
+from typing import Iterable, List, Optional, Sequence, Tuple
 
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.zones.dbm import Dbm
@@ -72,6 +72,43 @@ def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List
             result += [((part, None), rank) for part in early.disjoint()]
         else:
             result.append(((zone, action), rank))
+    return result
+
+
+def ended_earlier(
+    game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]
+) -> Optional[Tuple[RawBlock, ...]]:
+    """The blocks in which no command is on its way where another one of a higher rank is decided; None: they are so.
+
+    Each command's zone ends so early that it takes effect before; the points that are left out are waited in, up to the
+    other command's zone. Ranks hold across such blocks no more: the checker finds out whether the strategy wins.
+    """
+    new_blocks: List[RawBlock] = []
+    changed = False
+    for (locations, values, raw_pieces), numbers in zip(blocks, ranks):
+        pieces = [(Dbm(game.dim, tuple(matrix)), action) for matrix, action in raw_pieces]
+        apart = shortened(pieces, numbers, game.delta)
+        changed = changed or len(apart) != len(pieces)
+        new_blocks.append((locations, values, tuple((zone.m, action) for zone, action in apart)))
+    return tuple(new_blocks) if changed else None
+
+
+def shortened(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List[Piece]:
+    """The pieces of one discrete state: before a command of a higher rank, that of a lower one ends by `late`."""
+    result: List[Piece] = []
+    for (zone, action), rank in zip(pieces, ranks):
+        flight = zone.up_within(late)
+        later = [
+            (other, what)
+            for (other, what), r in zip(pieces, ranks)
+            if action is not None and what not in (None, action) and r > rank and flight.intersect(other) is not None
+        ]
+        near = Federation(tuple(other.down_within(late) for other, _ in later)).intersect_zone(zone)
+        if not near:
+            result.append((zone, action))
+            continue
+        result += [(part, action) for part in Federation((zone,)).minus(near).disjoint()]
+        result += [(part, None) for part in near.disjoint()]
     return result
 
 

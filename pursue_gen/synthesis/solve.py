@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Mapping, Optional, Tuple
+from functools import partial
+from typing import Callable, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.engine import Engine
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.game import Game, RawBlock, compile_game
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.overtaking import without_overtaking
+from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
@@ -35,17 +36,24 @@ class Stats:
     work: int = 0
 
 
+def _none() -> None:
+    """No other strategy."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`).
 
     `ranks` (where the engine knows them): per zone of the strategy a number that every step of a reach game lowers.
+    `cautious` makes another strategy, in which no command can be overtaken by one of a higher rank, and which has no
+    ranks; None where there is none.
     """
 
     won: bool
     strategy: Optional[Strategy]
     stats: Stats
     ranks: Optional[Mapping[ZoneKey, int]] = None
+    cautious: Callable[[], Optional[Strategy]] = _none
 
 
 ENGINES: Tuple[Engine, ...] = (NativeEngine(), ReferenceEngine())
@@ -102,9 +110,17 @@ def solve(
     if not outcome.won:
         return Verdict(False, None, stats, None)
     blocks, ranks = outcome.blocks, outcome.ranks
+    cautious: Callable[[], Optional[Strategy]] = _none
     if game.delta and game.kind is not Kind.SAFETY:
         # Without ranks that hold across states: within one state, what was won later stands later.
         order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
         blocks, order = without_overtaking(game, blocks, order)
+        cautious = partial(_cautious, game, blocks, order)
         ranks = None if ranks is None else order
-    return Verdict(True, to_strategy(game, blocks), stats, None if ranks is None else to_ranks(blocks, ranks))
+    known = None if ranks is None else to_ranks(blocks, ranks)
+    return Verdict(True, to_strategy(game, blocks), stats, known, cautious)
+
+
+def _cautious(game: Game, blocks: Tuple[RawBlock, ...], ranks: Tuple[Tuple[int, ...], ...]) -> Optional[Strategy]:
+    earlier = ended_earlier(game, blocks, ranks)
+    return None if earlier is None else to_strategy(game, earlier)

@@ -15,12 +15,25 @@ from pursue_gen.proof.checker import verify
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
-from pursue_gen.synthesis.overtaking import kept_apart
+from pursue_gen.synthesis.overtaking import kept_apart, shortened
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.zones.dbm import Dbm
 from tests.synthesis.zones import Point, later, points, times, zones
+
+WAITER = """\
+poi "desk"
+poi "room"
+connect desk and room distance 4
+event "call" location room
+event "serve" location room duration 2
+event "pay" location desk
+agent "waiter" controllable mobile 1 location desk can_do serve, pay
+agent "guest" location room can_do call
+objective: if call then serve within {}
+reach_objective: do pay after 20
+"""
 
 HALF = Fraction(1, 2)
 ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
@@ -118,3 +131,34 @@ def test_a_zone_that_ends_in_flight_stays_where_what_comes_next_leads_less_far()
     assert advice(kept_apart(pieces, [1, 2, 3], 1), Fraction(5, 2)) == AGAIN
     alone = kept_apart(pieces[:2], [1, 2], 1)
     assert advice(alone, Fraction(5, 2)) == AGAIN, "nothing comes next"
+
+
+@given(zones, zones, points, st.integers(1, 3))
+def test_an_earlier_command_ends_where_a_later_one_could_overtake_it(
+    first: Dbm, zone: Dbm, point: Point, late: int
+) -> None:
+    parts = zone.minus(first)
+    assume(parts)
+    second = parts[0]
+    shorter = shortened([(first, GO), (second, AGAIN)], [1, 2], late)
+    said = [action for part, action in shorter if part.contains(point)]
+    assert len(said) == (first.contains(point) or second.contains(point))
+    assert (said == [AGAIN]) == second.contains(point), "the later command stays as it is"
+    if first.contains(point):
+        met = any(second.contains(later(point, time)) for time in times(point) if time <= late)
+        assert said == [None if met else GO]
+
+
+@pytest.mark.skipif(not native.available(), reason="not built")
+@pytest.mark.parametrize("deadline", [11, 12, 14, 17])
+def test_a_waiter_whom_a_guest_calls_for_ever_goes_to_the_desk_in_time(deadline: int) -> None:
+    """Lingering in the zone of the way to the desk until the next call has to be answered would never end."""
+    text = WAITER.format(deadline)
+    scenario = parse(text, "waiter.pur", "waiter")
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    verdict = solve(network, objective, Fraction(1, 10), "native")
+    assert verdict.strategy is not None
+    proven = prove(
+        network, objective, verdict.strategy, Fraction(1, 10), verdict.ranks, otherwise=verdict.cautious
+    )
+    assert verify(network, objective, proven, Fraction(1, 10)).ok
