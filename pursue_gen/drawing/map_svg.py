@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.drawing.look import AgentLook, agent_looks, mark, svg, tag, text
-from pursue_gen.language.scenario import Agent, Pose, Scenario
+from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
+from pursue_gen.language.scenario import Agent, Connection, Pose, Scenario
 from pursue_gen.language.wording import kind_words, speed_words
 
 _WIDTH, _WIDEST = 640.0, 1600.0
@@ -15,6 +15,7 @@ _MARGIN = 80.0
 _LINE = 19.0
 _LETTER = 7.8  # px, a generous guess at how wide a letter is
 _ROOMY = 14  # so many places fit the usual width
+_BEFORE, _HEAD = 18.0, 12.0  # px: how far before a place an arrow ends, and how long its head is
 
 Point = Tuple[float, float]
 
@@ -37,7 +38,7 @@ def draw(
     places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
-    body += [_connection(places[c.a], places[c.b], c.distance) for c in scenario.connections]
+    body += [part for c in scenario.connections for part in _connection(places[c.a], places[c.b], c)]
     body += [_poi(name, places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
@@ -88,9 +89,26 @@ class Paper:
         return tag("g", tag("image", opacity=0.6, preserveAspectRatio="none", **picture), transform=turn)
 
 
-def _connection(a: Point, b: Point, distance: int) -> str:
-    line = tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1])
-    return f"{line}\n{text((a[0] + b[0]) / 2, (a[1] + b[1]) / 2 + 5, distance, 'pg-small pg-halo')}"
+def _connection(a: Point, b: Point, way: Connection) -> Iterator[str]:
+    """A line with its length in the middle; one that goes one way has its length, and an arrow, nearer to its end."""
+    yield tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1])
+    part = 0.5
+    if way.one_way:
+        part = 0.42  # two that go opposite ways do not cover each other's lengths
+        yield _arrow(a, b)
+    x, y = a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])
+    yield text(x, y + 5, way.distance, "pg-small pg-halo")
+
+
+def _arrow(a: Point, b: Point) -> str:
+    """The head of an arrow from a to b, in front of the place."""
+    length = math.dist(a, b) or 1.0
+    along = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+    tip = b[0] - _BEFORE * along[0], b[1] - _BEFORE * along[1]
+    back = tip[0] - _HEAD * along[0], tip[1] - _HEAD * along[1]
+    sides = [(back[0] - k * along[1], back[1] + k * along[0]) for k in (_HEAD / 2, -_HEAD / 2)]
+    points = " ".join(f"{x:.2f},{y:.2f}" for x, y in (tip, *sides))
+    return tag("polygon", fill=QUIET, points=points)
 
 
 def _poi(name: str, at: Point) -> str:

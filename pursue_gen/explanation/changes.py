@@ -36,7 +36,7 @@ Variant = Tuple[Scenario, Rules]
 @dataclass(frozen=True)
 class Change:
     """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, distance,
-    rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` describes it;
+    direction, rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` describes it;
     `next_lost` is a smaller change, or what is now, that does not win: the next smaller one, where the change is known
     to be the `least`.
     """
@@ -312,6 +312,10 @@ def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) ->
         values = range(connection.distance - 1, 0, -1)
         label = f"a shorter way between {ends}"
         yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
+    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
+        both = tuple(replace(c, one_way=False) if c == connection else c for c in scenario.connections)
+        label = f"a way between {ends} in both directions"
+        yield _switch("direction", ends, label, "one_way", (replace(scenario, connections=both), rules), connection.span)
 
 
 def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:

@@ -11,7 +11,6 @@ from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Edge, Network
-from pursue_gen.tga.positions import directions
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
 
@@ -102,7 +101,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
             turns[rule.name, location.name] = _turn(automaton, location.name)
     places, moves = {}, {}
     parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}
-    for a, b in (way for connection in scenario.connections for way in directions(connection)):
+    for a, b in (way for connection in scenario.connections for way in connection.directions):
         places[names.going(a, b)] = f"on the way from {a} to {b}"
         parts[names.going(a, b)] = ("way", a, b)
         for agent in scenario.agents:

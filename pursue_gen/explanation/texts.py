@@ -12,7 +12,6 @@ from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
-from pursue_gen.tga.positions import directions
 
 _MOST_OTHERS = 3
 """So many of the others' last actions are named in an attempt."""
@@ -89,7 +88,7 @@ def _words(scenario: Scenario) -> Dict[_Key, str]:
             begins = event.name if event.duration is None else f"begins {event.name}"
             words[agent.name, event.name, ""] = begins
             words[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
-        for a, b in (way for connection in scenario.connections for way in directions(connection)):
+        for a, b in (way for connection in scenario.connections for way in connection.directions):
             words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
             words[agent.name, "", names.going(a, b)] = f"arrives at {b}"
     return words

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
@@ -32,20 +33,44 @@ def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
     return connected
 
 
-def component(scenario: Scenario, start: str) -> FrozenSet[str]:
-    """The POIs that are connected with one of them, itself included."""
-    return components(scenario).get(start, frozenset({start}))
+def destinations(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
+    """For each POI those that can be reached from it, itself included; connected ones share one set where they can."""
+    one_ways = [way for way in scenario.connections if way.one_way]
+    if not one_ways:
+        return components(scenario)
+    both = tuple(way for way in scenario.connections if not way.one_way)
+    parts = components(replace(scenario, connections=both))  # within these one can go anywhere and back
+    alone = {name: frozenset({name}) for way in one_ways for name in (way.a, way.b)}
+    parts = {**alone, **parts}
+    onward: Dict[FrozenSet[str], List[FrozenSet[str]]] = {}
+    for way in one_ways:
+        onward.setdefault(parts[way.a], []).append(parts[way.b])
+    reached: Dict[FrozenSet[str], FrozenSet[str]] = {}
+    for start in set(parts.values()):
+        found, open_ = {start}, [start]
+        while open_:
+            for other in onward.get(open_.pop(), ()):
+                if other not in found:
+                    found.add(other)
+                    open_.append(other)
+        reached[start] = frozenset().union(*found)
+    return {name: reached[part] for name, part in parts.items()}
+
+
+def destinations_from(scenario: Scenario, start: str) -> FrozenSet[str]:
+    """The POIs that can be reached from one of them, itself included."""
+    return destinations(scenario).get(start, frozenset({start}))
 
 
 def reachable(agent: Agent, connected: Mapping[str, FrozenSet[str]]) -> FrozenSet[str]:
-    """The POIs where an agent can be: those connected with its start; its start alone if it is not mobile."""
+    """The POIs where an agent can be: those that its start leads to; its start alone if it is not mobile."""
     alone = frozenset({agent.location.name})
     return connected.get(agent.location.name, alone) if agent.mobile is not None else alone
 
 
 def robots_at(scenario: Scenario) -> Dict[str, Tuple[str, ...]]:
     """For each POI the robots that may be there, in the order of their declaration."""
-    connected = components(scenario)
+    connected = destinations(scenario)
     where = {agent.name: reachable(agent, connected) for agent in scenario.agents if agent.is_robot}
     return {poi.name: tuple(name for name, places in where.items() if poi.name in places) for poi in scenario.pois}
 
@@ -56,7 +81,7 @@ _Part = Tuple[Agent, Ref]
 
 def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
     """Events that nothing uses, that nobody can do, that lack a partner, or that are out of an agent's reach."""
-    connected = components(scenario)
+    connected = destinations(scenario)
     where = {agent.name: reachable(agent, connected) for agent in scenario.agents}
     able, reacting = _parts(scenario, "can_do"), _parts(scenario, "reacts_to")
     used = events_used(scenario)

@@ -114,15 +114,17 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
-    seen: Dict[FrozenSet[str], Span] = {}
+    seen: Dict[Tuple[str, str], Span] = {}
     for way in scenario.connections:
-        ends = frozenset((way.a, way.b))
-        if len(ends) == 1:
+        known = [seen[direction] for direction in way.directions if direction in seen]
+        if way.a == way.b:
             yield error("PML145", f"this connects {way.a} with itself", way.span, "name two different places")
-        elif ends in seen:
-            message = f"{way.a} and {way.b} are connected twice; line {seen[ends].line} does it already"
-            yield error("PML146", message, way.span, "delete one: a connection goes both ways")
-        seen.setdefault(ends, way.span)
+        elif known:
+            message = f"{way.a} and {way.b} are connected twice; line {known[0].line} does it already"
+            hint = "delete one: a connection goes both ways; or write one_way behind both"
+            yield error("PML146", message, way.span, hint)
+        for direction in way.directions:
+            seen.setdefault(direction, way.span)
 
 
 def _agents(scenario: Scenario) -> Iterator[Diagnostic]:

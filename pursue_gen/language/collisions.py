@@ -104,8 +104,8 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
 
 def _ways(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for way in scenario.connections:
-        yield way.a, way.b, way.span
-        yield way.b, way.a, way.span
+        for a, b in way.directions:
+            yield a, b, way.span
 
 
 def _moves(scenario: Scenario) -> Iterator[Tuple[str, str]]:

@@ -12,7 +12,7 @@ from pursue_gen.language.usable import proposal
 
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
-    "CONNECT": "connect a and b distance 3",
+    "CONNECT": "connect a and b distance 3 one_way (one_way is optional)",
     "EVENT": 'event "work" collaborative together location a duration 6 (all but the name is optional)',
     "RULE": 'rule "order": first before second (or: first or second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
@@ -28,7 +28,7 @@ STATEMENTS = frozenset(FORMS) | {"TAIL"}
 KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
     "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
-    "REACH_OBJECTIVE": "reach_objective", "AND": "and", "DISTANCE": "distance", "LOCATION": "location",
+    "REACH_OBJECTIVE": "reach_objective", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location",
     "DURATION": "duration", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
@@ -37,7 +37,7 @@ KEYWORDS: Dict[str, str] = {
 }  # fmt: skip
 """The words of the language, by token."""
 
-MAY_BE_NAMES: Dict[str, str] = {"HUMAN": "human", "TOGETHER": "together"}
+MAY_BE_NAMES: Dict[str, str] = {"HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way"}
 """Those of them that scenarios may use as names, by token."""
 
 RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())

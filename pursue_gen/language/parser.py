@@ -175,9 +175,10 @@ class _Builder:
         self.findings += found.findings
         return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots)
 
-    def _connection(self, a: Any, b: Any, distance: Token, span: Span) -> pml.Connection:
+    def _connection(self, a: Any, b: Any, distance: Token, one_way: Any, span: Span) -> pml.Connection:
         first, second = self._ref(a), self._ref(b)
-        return pml.Connection(first.name, second.name, self._number(distance), span, (first.span, second.span))
+        ends = first.span, second.span
+        return pml.Connection(first.name, second.name, self._number(distance), span, ends, one_way is not None)
 
     def _event(
         self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, span: Span

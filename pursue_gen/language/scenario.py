@@ -52,9 +52,9 @@ class Poi:
 
 @dataclass(frozen=True)
 class Connection:
-    """A way between two POIs, both directions; `distance` is a natural number of distance units (at least 1).
+    """A way between two POIs; `distance` is a natural number of distance units (at least 1).
 
-    `ends` are the places in the text where it names them.
+    `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
     """
 
     a: str
@@ -62,6 +62,12 @@ class Connection:
     distance: int
     span: Span
     ends: Tuple[Span, Span]
+    one_way: bool = False
+
+    @property
+    def directions(self) -> Tuple[Tuple[str, str], ...]:
+        """From and to, for each direction in which it can be taken; the declared one first."""
+        return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
 
 
 @dataclass(frozen=True)

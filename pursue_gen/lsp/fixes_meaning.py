@@ -9,7 +9,7 @@ from typing import Iterator, List, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
-from pursue_gen.language.behaviour import component
+from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.messages import MAY_BE_NAMES, RESERVED
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.usable import proposal, well_formed
@@ -193,7 +193,7 @@ def get_there(document: Document, finding: Diagnostic, part: Optional[Statement]
     place, start = event.location.name, agent.location.name
     if agent.mobile is None:
         after = [token for token in part.tokens if token.type in ("NAME", "HUMAN", "CONTROLLABLE")][-1]
-        if place in component(document.scenario, start):
+        if place in destinations_from(document.scenario, start):
             yield f"Make {agent.name} mobile", (_behind(after, " mobile 1"),)
         location = agent.location.span
         yield f"Let {agent.name} start in {place}", (Edit(*document.positions.of_span(location), place),)

@@ -7,7 +7,7 @@ from typing import Dict, Tuple
 
 MEANINGS: Dict[str, str] = {
     "POI": "A place where something can happen, or where ways meet.",
-    "CONNECT": "A way between two places, in both directions. Write it once.",
+    "CONNECT": "A way between two places, in both directions unless it is one_way. Write it once.",
     "EVENT": "Something that can happen: what an agent does, alone or with a partner.",
     "RULE": "An order of events, round after round: each may happen only when it is its turn.",
     "STATE": "Something that is true or false, and that events change.",
@@ -17,6 +17,7 @@ MEANINGS: Dict[str, str] = {
     "REACH_OBJECTIVE": "What is to be achieved once.",
     "AND": "The other end of the way.",
     "DISTANCE": "How long the way is, in the unit of distance that you chose.",
+    "ONE_WAY": "From the first place to the second only. Without it, the way goes in both directions.",
     "LOCATION": "Where it happens (events), or where it starts (agents).",
     "DURATION": "How long it takes, in the unit of time that you chose. Without it, it takes no time.",
     "COLLABORATIVE": "It takes two at one place: one who can do it, and one who reacts to it.",
@@ -57,7 +58,10 @@ class Form:
 
 FORMS: Dict[str, Tuple[Form, ...]] = {
     "POI": (Form("a place", 'poi "{=room}"'),),
-    "CONNECT": (Form("a way between two places", "connect {POI} and {POI} distance {=1}"),),
+    "CONNECT": (
+        Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
+        Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
+    ),
     "EVENT": (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
         Form("something that two do at once", 'event "{=handOver}" collaborative'),

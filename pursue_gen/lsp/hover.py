@@ -92,10 +92,12 @@ def _listed(lines: List[str]) -> List[str]:
 
 def _poi(scenario: Scenario, poi: Poi) -> List[str]:
     lines = [f"**{poi.name}**: a place", ""]
-    ways = [(w.b if w.a == poi.name else w.a, w.distance) for w in scenario.connections if poi.name in (w.a, w.b)]
-    for other, distance in ways:
-        times = ", ".join(f"{a.name} {lasts(distance * a.mobile)}" for a in scenario.agents if a.mobile is not None)
-        lines.append(f"- to {other}: distance {distance}" + (f" ({times})" if times else ""))
+    ways = [way for way in scenario.connections if poi.name in (way.a, way.b)]
+    for way in ways:
+        times = ", ".join(f"{a.name} {lasts(way.distance * a.mobile)}" for a in scenario.agents if a.mobile is not None)
+        other = way.b if way.a == poi.name else way.a
+        words = f"to {other}" if (poi.name, other) in way.directions else f"from {other} only"
+        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else ""))
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")

@@ -34,7 +34,7 @@ def _drawable(scenario: Scenario) -> Scenario:
     pois = tuple({poi.name: poi for poi in reversed(scenario.pois)}.values())[::-1]
     names = {poi.name for poi in pois}
     ways = {
-        frozenset((way.a, way.b)): replace(way, distance=max(way.distance, 1))
+        way.directions[0] if way.one_way else frozenset((way.a, way.b)): replace(way, distance=max(way.distance, 1))
         for way in scenario.connections
         if way.a != way.b and {way.a, way.b} <= names
     }

@@ -14,7 +14,6 @@ from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overd
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge, Network
-from pursue_gen.tga.positions import directions
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class EventTexts:
 def event_texts(scenario: Scenario, network: Network) -> EventTexts:
     """The words of a scenario and its network."""
     orders: Dict[Tuple[str, str, str], str] = {}
-    ways = [way for connection in scenario.connections for way in directions(connection)]
+    ways = [way for connection in scenario.connections for way in connection.directions]
     for agent in scenario.agents:
         for event in scenario.events:
             orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.name}"
@@ -169,9 +168,7 @@ def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.name) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{c.b if c.a == poi.name else c.a} ({c.distance})"
-            for c in setup.scenario.connections
-            if poi.name in (c.a, c.b)
+            f"{to} ({c.distance})" for c in setup.scenario.connections for a, to in c.directions if a == poi.name
         ]
         there = [a for place, people in at.items() if f" {place}".endswith(f" at {poi.name}") for a in people]
         here = f"   here: {', '.join(there)}" if there else ""

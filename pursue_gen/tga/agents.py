@@ -8,7 +8,7 @@ from typing import Iterator, Optional, Sequence, Tuple
 from pursue_gen.language.scenario import Agent, Event, Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
-from pursue_gen.tga.positions import Positions, directions
+from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.rules import Turns
 
 _PAUSE = 1
@@ -128,13 +128,13 @@ class _Shape:
         return self.around.pois(self.agent)
 
     def ways(self) -> Tuple[Tuple[str, str, int], ...]:
-        """From, to, and the time units that it takes: both directions of each connection."""
+        """From, to, and the time units that it takes: each direction of each connection."""
         if self.agent.mobile is None:
             return ()
         return tuple(
             (a, b, connection.distance * self.agent.mobile)
             for connection in self.around.scenario.connections
-            for a, b in directions(connection)
+            for a, b in connection.directions
         )
 
     def places(self, event: Event) -> Tuple[str, ...]:

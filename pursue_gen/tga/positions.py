@@ -44,22 +44,22 @@ class Positions:
 def positions(pois: Sequence[Poi], connections: Sequence[Connection]) -> Positions:
     """The numbers for these POIs and connections."""
     numbers = {poi.name: number for number, poi in enumerate(pois, start=1)}
-    ways: List[Way] = [way for connection in connections for way in directions(connection)]
+    ways: List[Way] = [way for connection in connections for way in _both(connection)]
     ways += [(poi.name, poi.name) for poi in pois]
     digits = {(a, b): -int(f"{numbers[a]}{numbers[b]}") for a, b in ways}
     note = _note(digits, connections)
-    codes = {way: -number for number, way in enumerate(ways, start=1)} if note else digits
+    codes = {way: -number for number, way in enumerate(dict.fromkeys(ways), start=1)} if note else digits
     return Positions(numbers, codes, note)
 
 
-def directions(connection: Connection) -> Tuple[Way, Way]:
-    """Both directions of a connection, the declared one first."""
+def _both(connection: Connection) -> Tuple[Way, Way]:
+    """Both directions of a connection, the declared one first: numbers do not depend on what can be taken."""
     return (connection.a, connection.b), (connection.b, connection.a)
 
 
 def _note(digits: Mapping[Way, int], connections: Sequence[Connection]) -> Optional[Diagnostic]:
     """Why the digits cannot be used, None where they can."""
-    spans = {way: connection.span for connection in connections for way in directions(connection)}
+    spans = {way: connection.span for connection in connections for way in _both(connection)}
     end = "positions on the way and at work are numbered -1, -2, … instead of by the digits of their POIs"
     hint = "nothing has to be changed; tools that read the original's position numbers will not understand these"
     seen: Dict[int, Way] = {}

@@ -11,7 +11,7 @@ from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
-from pursue_gen.tga.positions import directions, positions
+from pursue_gen.tga.positions import positions
 from pursue_gen.tga.rules import rule_automaton
 from pursue_gen.tga.states import states_automaton
 
@@ -78,7 +78,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         for agent in scenario.agents
         if agent.mobile is not None
         for connection in scenario.connections
-        for a, b in directions(connection)
+        for a, b in connection.directions
     ]
     for event in scenario.events:
         channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]

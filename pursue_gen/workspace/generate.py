@@ -14,7 +14,7 @@ import jinja2
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.partition import SubStrategy, partition, strategy_file
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
@@ -206,10 +206,15 @@ def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
         "format": 1,
         "nodes": inline(("observer", *values["controllers"], "simulator")),
         "reports": inline(values["reported"]),
-        "connections": inline([[way.a, way.b, way.distance] for way in scenario.connections]),
+        "connections": inline([_connection(way) for way in scenario.connections]),
     }
     head = f"Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
     return yaml_text(data, [head]).encode()
+
+
+def _connection(way: Connection) -> List[Any]:
+    """A connection in ui.yaml: its ends, its length, and `one_way` where it goes from the first to the second only."""
+    return [way.a, way.b, way.distance, *(["one_way"] if way.one_way else [])]
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:

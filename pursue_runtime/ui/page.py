@@ -50,20 +50,26 @@ def _expected() -> str:
 
 
 class FloorPlan(NamedTuple):
-    """Where the points of interest are (metres), and which of them are connected, at which distance."""
+    """Where the points of interest are (metres), and which of them are connected, at which distance.
+
+    `one_ways`: the connections that go from the first to the second place only.
+    """
 
     places: Dict[str, Tuple[float, float]]
     ways: Tuple[Tuple[str, str, float], ...]
+    one_ways: Tuple[Tuple[str, str], ...] = ()
 
 
 def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> FloorPlan:
     """The map, from poses.yaml and ui.yaml. Raises DataError."""
     places = {name: (pose[0], pose[1]) for name, pose in read_poses(poses).places.items()}
     try:
-        ways = tuple((str(a), str(b), float(length)) for a, b, length in settings.get("connections", ()))
+        given = [(str(a), str(b), float(length), more) for a, b, length, *more in settings.get("connections", ())]
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as problem:
         raise DataError(f"ui.yaml lacks or misspells something: {problem!r}") from problem
-    return FloorPlan(places, tuple(way for way in ways if way[0] in places and way[1] in places))
+    known = [way for way in given if way[0] in places and way[1] in places]
+    one_ways = tuple((a, b) for a, b, _, more in known if more == ["one_way"])
+    return FloorPlan(places, tuple((a, b, length) for a, b, length, _ in known), one_ways)
 
 
 class Facts(NamedTuple):
@@ -102,6 +108,7 @@ class Page:
             "scenario": self._model.scenario,
             "places": {name: list(place) for name, place in self._plan.places.items()},
             "ways": [list(way) for way in self._plan.ways],
+            "one_ways": [list(way) for way in self._plan.one_ways],
             "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
             "reporters": [automaton.name for automaton in self._acting if automaton.name in self._reporters],
             "buttons": [button for automaton in self._model.of_kind("agent") for button in self._buttons(automaton)],

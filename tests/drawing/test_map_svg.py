@@ -83,6 +83,15 @@ def test_it_says_when_positions_are_computed() -> None:
     assert "positions computed from the distances" in texts(draw(SCENARIO, poses((0, 0), (3, 0), (3, 2)), True))
 
 
+def test_a_way_that_goes_one_way_is_an_arrow_to_its_second_place() -> None:
+    one_way = replace(SCENARIO, connections=(replace(SCENARIO.connections[0], one_way=True),))
+    (head,) = ElementTree.fromstring(draw(one_way, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}polygon")
+    tip, *back = [tuple(map(float, point.split(","))) for point in head.attrib["points"].split()]
+    shop = list(ElementTree.fromstring(draw(one_way, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}circle"))[1]
+    assert all(x < tip[0] < float(shop.attrib["cx"]) for x, _ in back)
+    assert not list(ElementTree.fromstring(draw(SCENARIO, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}polygon"))
+
+
 def test_north_is_up() -> None:
     circles = list(ElementTree.fromstring(draw(SCENARIO, poses((0, 0), (0, 5), (1, 1)), False)).iter(f"{SVG}circle"))
     south, north = circles[0], circles[1]

@@ -92,6 +92,21 @@ agent "guest" mobile 2 location shelf can_do shout, hush
 reach_objective: do serve
 """
 
+ROUND = """poi "desk"
+poi "door"
+poi "shelf"
+connect desk and door distance 3
+connect door and shelf distance 3
+connect shelf and desk distance 2 one_way
+event "call"
+event "fetch" location shelf
+event "give" location desk
+rule "order": call before (fetch before give)
+agent "bot" controllable mobile 1 location shelf can_do fetch, give
+agent "guest" location desk can_do call
+objective: if call then give within 9
+"""
+
 SLOW = CALLED.replace("mobile 1", "mobile 3").format(deadline=6)
 
 
@@ -115,6 +130,8 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
         word = words[change.what]
         assert f"{word} {change.before}" in lines[at]
         lines[at] = lines[at].replace(f"{word} {change.before}", f"{word} {value}")
+    elif change.what == "direction":
+        lines[at] = lines[at].replace(" one_way", "")
     elif change.what == "control":
         lines[at] = re.sub(r'(agent "\w+")', r"\1 human controllable", lines[at])
     else:
@@ -145,6 +162,7 @@ SMALL = {
     "deadline 4, late": (CALLED.format(deadline=5), Rules(slack={"bot": 2})),
     "deadline 5, slow to react": (CALLED.format(deadline=5), Rules(reaction=Fraction(3))),
     "ideal, deadline 3": (CALLED.format(deadline=3), IDEAL),
+    "one way": (ROUND, DEFAULT),
     "slow": (SLOW, DEFAULT),
     "shy": (SHY, DEFAULT),
     "shy, ideal": (SHY, IDEAL),

@@ -43,6 +43,15 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     # connections
     ({"connect": "connect a and b distance 3\nconnect a and a distance 1"}, [("PML145", 4, "a with itself", "two")]),
     ({"connect": "connect a and b distance 3\nconnect b and a distance 4"}, [("PML146", 4, "line 3", "delete")]),
+    (
+        {"connect": "connect a and b distance 3 one_way\nconnect b and a distance 4"},
+        [("PML146", 4, "connected twice", "write one_way behind both")],
+    ),
+    ({"connect": "connect b and a distance 3 one_way"}, [
+        ("PML154", 5, "hand can never happen", "connect"),
+        ("PML153", 10, "bot can never do work: no way leads from a to b", "connect them"),
+    ]),
+    ({"connect": "connect a and b distance 3 one_way\nconnect b and a distance 4 one_way"}, []),
     ({"poi_b": 'poi "b" poi "c" poi "d" connect c and d distance 1'}, [("PML147", 2, "from a to c", "connect c and")]),
     # events
     ({"event_rest": 'event "rest" event "fly"'}, [("PML157", 6, "nothing uses fly", "can_do fly")]),

@@ -53,8 +53,9 @@ def formatted(source: str) -> str:
 
 
 def test_one_statement_a_line_with_single_blanks() -> None:
-    source = 'poi"a"  poi\n"b" connect a  and\tb distance 3 rule "r" :( x or y )before z'
-    assert formatted(source) == 'poi "a"\npoi "b"\n\nconnect a and b distance 3\n\nrule "r": (x or y) before z\n'
+    source = 'poi"a"  poi\n"b" connect a  and\tb distance 3\none_way rule "r" :( x or y )before z'
+    way = "connect a and b distance 3 one_way"
+    assert formatted(source) == f'poi "a"\npoi "b"\n\n{way}\n\nrule "r": (x or y) before z\n'
 
 
 def test_an_empty_line_stands_between_kinds_and_one_at_most_elsewhere() -> None:

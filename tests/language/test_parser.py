@@ -105,6 +105,12 @@ def test_together_is_a_word_behind_collaborative_and_a_name_everywhere_else() ->
     assert not any(event.is_shared for event in parse(text(), "test.pur").events)
 
 
+def test_one_way_is_a_word_behind_a_distance_and_a_name_everywhere_else() -> None:
+    source = text(connect='connect a and b distance 3 one_way poi "one_way" connect b and one_way distance 2')
+    there, back = parse(source, "test.pur").connections
+    assert (there.directions, back.directions) == ((("a", "b"),), (("b", "one_way"), ("one_way", "b")))
+
+
 def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> None:
     scenario = parse(
         'agent "human" location a agent "nurse" human controllable mobile 3 location a\n'

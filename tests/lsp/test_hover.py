@@ -44,6 +44,13 @@ def test_plain_words(before: str, words: "list[str]") -> None:
         assert word in told(before)
 
 
+def test_in_which_direction_a_way_goes() -> None:
+    one_way = SMALL.replace("distance 3", "distance 3 one_way")
+    assert "to b: distance 3" in told('poi "', one_way)
+    assert "from a only: distance 3" in told('poi "a"\npoi "', one_way)
+    assert "to the second only" in told("one_w", one_way)
+
+
 def test_who_is_busy_while_an_event_of_two_lasts() -> None:
     lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
     assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)

@@ -64,7 +64,7 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
     if len(objectives) > 1 and draw(st.integers(0, 3)) == 0:
         del objectives[1]
     lines = [f'poi "{place}"' for place in places]
-    lines += [f"connect {a} and {b} distance {distance}" for a, b, distance in ways]
+    lines += [f"connect {a} and {b} distance {distance}{_one_way(draw)}" for a, b, distance in ways]
     lines += events + [f'rule "r{number}": {rule}' for number, rule in enumerate(rules)] + states
     text = "\n".join([*lines, *agents, *objectives, ""])
     try:
@@ -76,6 +76,10 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
 
 def _where(draw: st.DrawFn, places: List[str]) -> str:
     return f" location {draw(st.sampled_from(places))}" if draw(st.integers(0, 3)) else ""
+
+
+def _one_way(draw: st.DrawFn) -> str:
+    return "" if draw(st.integers(0, 7)) else " one_way"
 
 
 def _long(draw: st.DrawFn) -> str:

@@ -68,6 +68,23 @@ def test_a_movement_takes_distance_times_the_inverse_speed() -> None:
     )
 
 
+def test_a_way_that_goes_one_way_has_no_way_back_and_the_numbers_stay() -> None:
+    made = translate(scenario(HOUSE.replace("distance 3", "distance 3 one_way")))
+    names = [location.name for location in made.automaton("dog").locations]
+    assert "going_hall_to_shed" in names and "going_shed_to_hall" not in names
+    assert "bot_hall2shed" in made.channels and "bot_shed2hall" not in made.channels
+    (start,) = (edge for edge in made.automaton("bot").edges if edge.target == "going_hall_to_shed")
+    assert start == house().automaton("bot").edges[0]
+
+
+def test_two_ways_in_opposite_directions_differ_in_length() -> None:
+    ways = "connect hall and shed distance 3 one_way\nconnect shed and hall distance 9 one_way"
+    made = translate(scenario(HOUSE.replace("connect hall and shed distance 3", ways)))
+    invariants = {place.name: place.invariant for place in made.automaton("dog").locations}
+    assert invariants["going_hall_to_shed"] == (ClockBound("Cdog", "<=", 4),)
+    assert invariants["going_shed_to_hall"] == (ClockBound("Cdog", "<=", 10),)
+
+
 def test_an_action_with_a_duration_waits_for_its_turn_twice() -> None:
     (start,), (end,) = edges("bot", "fetch"), edges("bot", "fetchDONE")
     conditions = ((Test("Porder", 0),), (Test("Sopen", 1),))

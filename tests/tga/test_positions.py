@@ -43,6 +43,10 @@ def test_no_number_is_too_small_for_uppaal() -> None:
     assert min(codes.ways.values()) >= -32768
 
 
+def test_two_ways_in_opposite_directions_have_the_numbers_of_one_way_in_both() -> None:
+    assert numbered(3, [(1, 2), (2, 1)]).ways == numbered(3, [(1, 2)]).ways
+
+
 @given(
     st.integers(2, 130).flatmap(
         lambda count: st.tuples(

@@ -325,7 +325,7 @@ def test_names_that_yaml_misreads_are_found_in_every_file(loader: str) -> None:
         pytest.skip("PyYAML was built without libyaml")
     text = """
         poi "on" poi "null" poi "y"
-        connect on and null distance 2
+        connect on and null distance 2 one_way
         connect null and y distance 3
         event "off" location y
         agent "no" controllable mobile 1 location on can_do off
@@ -342,7 +342,7 @@ def test_names_that_yaml_misreads_are_found_in_every_file(loader: str) -> None:
     assert found["src/observer/config/controllers.yaml"]["controllers"][0] == "controller_no"
     assert set(found["src/UI/config/poses.yaml"]["poses"]) == {"on", "null", "y"}
     assert found["src/UI/config/ui.yaml"]["reports"] == ["no"]
-    assert found["src/UI/config/ui.yaml"]["connections"] == [["on", "null", 2], ["null", "y", 3]]
+    assert found["src/UI/config/ui.yaml"]["connections"] == [["on", "null", 2, "one_way"], ["null", "y", 3]]
     strategy = found["src/controller_no/config/strategy.yaml"]
     assert strategy["commands_agents"] == ["no"] and strategy["strategy"][0]["state"]["no"] == "on"
     model = found["src/observer/config/model.yaml"]

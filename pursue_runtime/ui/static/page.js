@@ -228,9 +228,13 @@ function setMap() {
     const from = map.points.get(a), to = map.points.get(b);
     draw("line", picture, { class: "way", x1: from.x, y1: from.y, x2: to.x, y2: to.y });
   }
+  for (const [a, b] of scene.one_ways) {
+    draw("polygon", picture, { class: "arrow", points: arrow(map.points.get(a), map.points.get(b)) });
+  }
   for (const [a, b, length] of scene.ways) {
     const from = map.points.get(a), to = map.points.get(b);
-    draw("text", picture, { class: "length", x: (from.x + to.x) / 2, y: (from.y + to.y) / 2 }).textContent = length;
+    const part = scene.one_ways.some(([first, second]) => first === a && second === b) ? 0.42 : 0.5;
+    draw("text", picture, { class: "length", x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) }).textContent = length;
   }
   for (const name of names) {
     const { x, y } = map.points.get(name);
@@ -243,6 +247,14 @@ function setMap() {
   }
   map.width = width;
   animate(performance.now());
+}
+
+function arrow(from, to) { // its head, in front of the place that it leads to
+  const length = Math.hypot(to.x - from.x, to.y - from.y) || 1;
+  const x = (to.x - from.x) / length, y = (to.y - from.y) / length, before = 2 * POI, head = 12;
+  const tip = [to.x - before * x, to.y - before * y], back = [tip[0] - head * x, tip[1] - head * y];
+  const points = [tip, [back[0] - head / 2 * y, back[1] + head / 2 * x], [back[0] + head / 2 * y, back[1] - head / 2 * x]];
+  return points.map((point) => point.map((value) => value.toFixed(1)).join(",")).join(" ");
 }
 
 function labelled(parent, kind, name, height, round) { // a name in a box, around 0, 0

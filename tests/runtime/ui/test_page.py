@@ -66,6 +66,8 @@ def test_a_map_is_read_and_a_wrong_one_refused() -> None:
     poses = {"poses": {"a": [1, 2, 0, 0, 0, 0, 1], "b": [3, 4, 0, 0, 0, 0, 1]}}
     plan = read_floor_plan(poses, {"connections": [["a", "b", 3], ["a", "nowhere", 1]]})
     assert plan == FloorPlan({"a": (1.0, 2.0), "b": (3.0, 4.0)}, (("a", "b", 3.0),))
+    one_way = read_floor_plan(poses, {"connections": [["a", "b", 3, "one_way"]]})
+    assert (one_way.ways, one_way.one_ways) == ((("a", "b", 3.0),), (("a", "b"),))
     assert read_floor_plan(poses, {}).ways == ()
     for wrong in ({}, {"poses": {"a": [1]}}, {"poses": {"a": ["x", 0]}}, {"poses": 7}, {**poses, "robots": []}):
         with pytest.raises(DataError):
