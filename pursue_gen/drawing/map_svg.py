@@ -7,8 +7,8 @@ from typing import Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
-from pursue_gen.language.scenario import Agent, Connection, Pose, Scenario
-from pursue_gen.language.wording import kind_words, speed_words
+from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
+from pursue_gen.language.wording import kind_words, speed_words, window_words
 
 _WIDTH, _WIDEST = 640.0, 1600.0
 _MARGIN = 80.0
@@ -47,7 +47,7 @@ def draw(
     body += _standing(scenario, places, looks)
     above, below = _room(scenario, places, paper.height)
     for agent in scenario.agents:
-        lines = _wrapped(_description(agent), width - 150)
+        lines = _wrapped(_description(agent, scenario), width - 150)
         body += _legend(agent, looks[agent.name], lines, below)
         below += _LINE * len(lines) + 8
     notes = [_anywhere(scenario)] if _anywhere(scenario) else []
@@ -129,8 +129,8 @@ def _happening(scenario: Scenario, places: Mapping[str, Point]) -> List[str]:
         name = event.location.name
         x, y = places[name]
         first = 31 if len(name) <= 3 else 47
-        lasts = "" if event.duration is None else f" ({event.duration})"
-        parts.append(text(x, y + first + 15 * rows.get(name, 0), f"⚙ {event.name}{lasts}", "pg-small pg-halo"))
+        words = f"⚙ {event.name}{_lasts(event)}"
+        parts.append(text(x, y + first + 15 * rows.get(name, 0), words, "pg-small pg-halo"))
         rows[name] = rows.get(name, 0) + 1
     return parts
 
@@ -170,9 +170,9 @@ def _legend(agent: Agent, look: AgentLook, lines: List[str], top: float) -> List
     return [mark(look, 20, top + 7, 7.0), line, *words]
 
 
-def _description(agent: Agent) -> str:
+def _description(agent: Agent, scenario: Scenario) -> str:
     """What an agent is and can do, in a sentence."""
-    parts = [f"{agent.name}: {kind_words(agent)}, {speed_words(agent)}"]
+    parts = [f"{agent.name}: {kind_words(agent)}, {speed_words(agent, scenario)}"]
     if agent.can_do:
         parts.append("can do " + ", ".join(ref.name for ref in agent.can_do))
     if agent.reacts_to:
@@ -182,8 +182,13 @@ def _description(agent: Agent) -> str:
 
 def _anywhere(scenario: Scenario) -> str:
     """Events that are bound to no place."""
-    free = [e.name + ("" if e.duration is None else f" ({e.duration})") for e in scenario.events if e.location is None]
+    free = [event.name + _lasts(event) for event in scenario.events if event.location is None]
     return f"Anywhere: {', '.join(free)}" if free else ""
+
+
+def _lasts(event: Event) -> str:
+    """How long an event takes, in brackets; nothing where it takes no time."""
+    return "" if event.window is None else f" ({window_words(*event.window)})"
 
 
 def _wrapped(words: str, room: float) -> List[str]:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.explanation.windows import SLOWER, WindowEnd, event_windows, travel_windows
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
@@ -24,9 +25,6 @@ _SHARE = 0.5
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before it looks at the end of a long list: large numbers take longer."""
 
-_SLOWER = 32
-"""How many times slower an agent, or longer an event, is tried."""
-
 _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""
 
@@ -35,10 +33,10 @@ Variant = Tuple[Scenario, Rules]
 
 @dataclass(frozen=True)
 class Change:
-    """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, distance,
-    direction, rule, dependency or control; `name` whose; `before` and `after` its values as text; `sentence` describes it;
-    `next_lost` is a smaller change, or what is now, that does not win: the next smaller one, where the change is known
-    to be the `least`.
+    """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or
+    earliest (an end of an event's window), travel, distance, direction, rule, dependency or control; `name` whose;
+    `before` and `after` its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is now,
+    that does not win: the next smaller one, where the change is known to be the `least`.
     """
 
     what: str
@@ -188,6 +186,8 @@ def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
         yield from _duration_knobs(scenario, rules, event)
     for connection in scenario.connections:
         yield from _distance_knobs(scenario, rules, connection)
+    for travel in scenario.travels:
+        yield from _window_knobs(scenario, rules, travel_windows(scenario, travel))
     yield from _order_knobs(scenario, rules)
     for agent in scenario.agents:
         yield from _control_knobs(scenario, rules, agent)
@@ -263,13 +263,16 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Kn
         return f"a {word} {agent.name}, mobile {k} instead of {pace}"
 
     word = "faster" if agent.controllable else "slower"
-    values = range(pace - 1, 0, -1) if agent.controllable else range(pace + 1, pace * _SLOWER + 1)
+    values = range(pace - 1, 0, -1) if agent.controllable else range(pace + 1, pace * SLOWER + 1)
     if values:
         yield _number("agent", agent.name, f"a {word} {agent.name}", pace, values, make, say, agent.span, 2)
 
 
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
     duration = event.duration or 0
+    if event.latest is not None:
+        yield from _window_knobs(scenario, rules, event_windows(scenario, event))
+        return
 
     def make(k: int) -> Variant:
         changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
@@ -289,6 +292,15 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
     if doers and not any(agent.controllable for agent in doers):
         longer = range(duration + 1, max(duration * 2, 2 * _all_time(scenario)) + 1)
         yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
+
+
+def _window_knobs(scenario: Scenario, rules: Rules, ends: Iterable[WindowEnd]) -> Iterator[_Knob]:
+    for end in ends:
+
+        def make(k: int, end: WindowEnd = end) -> Variant:
+            return end.make(k), rules
+
+        yield _number(end.what, end.name, end.label, end.before, end.values, make, end.say, end.span, 2)
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
@@ -315,7 +327,8 @@ def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) ->
     if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
         both = tuple(replace(c, one_way=False) if c == connection else c for c in scenario.connections)
         label = f"a way between {ends} in both directions"
-        yield _switch("direction", ends, label, "one_way", (replace(scenario, connections=both), rules), connection.span)
+        freer = replace(scenario, connections=both)
+        yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
 
 
 def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
@@ -369,7 +382,8 @@ def _reactions(reaction: Fraction) -> Tuple[str, ...]:
 def _all_time(scenario: Scenario) -> int:
     """More than it takes to do everything once and to go each way in both directions, waiting included."""
     slowest = max((agent.mobile or 0 for agent in scenario.agents), default=0)
-    working = sum((event.duration or 0) + 2 for event in scenario.events)
+    working = sum((event.latest or event.duration or 0) + 2 for event in scenario.events)
+    working += sum(travel.window[1] for travel in scenario.travels)
     return working + sum(2 * (way.distance * slowest + 2) for way in scenario.connections)
 
 

@@ -71,6 +71,7 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
         agents=tuple(
             replace(a, can_do=_others(a.can_do, gone), reacts_to=_others(a.reacts_to, gone)) for a in agents
         ),
+        travels=tuple(travel for travel in scenario.travels if travel.agent.name != name),
     )
 
 

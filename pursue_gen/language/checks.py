@@ -48,7 +48,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     whole = reading.scenario is not None
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
-    for part in (_numbers, _connections, _agents, _objectives, _order):
+    for part in (_numbers, _connections, _travels, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if not whole:
@@ -95,9 +95,11 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"the way from {way.a} to {way.b} has no length"
             yield error("PML140", message, way.span, "write distance 1 or more")
     for event in scenario.events:
-        if event.duration is not None and event.duration < 1:
+        if event.duration is not None and event.duration < 1 and event.latest is None:
             hint = "write duration 1 or more, or delete duration: then it takes no time"
             yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
+        if event.latest is not None and event.duration is not None:
+            yield from _window(event.name, event.duration, event.latest, "duration", event.span)
     longest = max((way.distance for way in scenario.connections), default=0)
     for agent in scenario.agents:
         if agent.mobile is None:
@@ -111,6 +113,38 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
     if isinstance(scenario.safety, Respond) and scenario.safety.deadline < 1:
         message = "within 0 leaves no time to answer: expected 1 or more"
         yield error("PML143", message, scenario.safety.span, "write the time units that the answer may take")
+
+
+def _window(name: str, low: int, high: int, word: str, span: Span) -> Iterator[Diagnostic]:
+    if high <= low:
+        message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
+        yield error("PML200", message, span, f"write the smaller number first: {word} {high} to {max(low, high + 1)}")
+
+
+def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
+    agents = {agent.name: agent for agent in scenario.agents}
+    pois = {poi.name for poi in scenario.pois}
+    ways = {way for connection in scenario.connections for way in connection.directions}
+    seen: Dict[Tuple[str, Tuple[str, str]], Span] = {}
+    for travel in scenario.travels:
+        agent, (a, b) = agents.get(travel.agent.name), travel.way
+        moves = f"the way of {travel.agent.name} from {a} to {b}"
+        if travel.latest is not None:
+            yield from _window(moves, travel.earliest, travel.latest, "takes", travel.span)
+        elif travel.earliest < 1:
+            yield error("PML200", f"{moves} takes no time", travel.span, "write takes 1 or more, or takes 0 to 1")
+        if agent is not None and agent.mobile is None:
+            message = f"{agent.name} does not move, so it does not go from {a} to {b}"
+            yield error("PML201", message, travel.span, f"write mobile 1 behind {agent.name}, or delete this line")
+        elif travel.way not in ways and {a, b} <= pois:
+            back = f" (it is one_way, from {b} to {a})" if (b, a) in ways else ""
+            message = f"no way leads from {a} to {b}{back}"
+            hint = f"connect them: connect {a} and {b} distance …, or delete this line"
+            yield error("PML201", message, travel.span, hint)
+        elif (travel.agent.name, travel.way) in seen:
+            message = f"line {seen[travel.agent.name, travel.way].line} says already how long {moves} takes"
+            yield error("PML202", message, travel.span, "delete one of the two lines")
+        seen.setdefault((travel.agent.name, travel.way), travel.span)
 
 
 def _connections(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -13,11 +13,12 @@ from pursue_gen.language.usable import proposal
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
     "CONNECT": "connect a and b distance 3 one_way (one_way is optional)",
-    "EVENT": 'event "work" collaborative together location a duration 6 (all but the name is optional)',
+    "EVENT": 'event "work" collaborative together location a duration 6 (or: 6 to 9; all but the name is optional)',
     "RULE": 'rule "order": first before second (or: first or second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
+    "TRAVEL": "travel bot from a to b takes 5 to 8",
     "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e · objective: bot1 never_with bot2",
     "REACH_OBJECTIVE": "reach_objective: do e after 0 (after is optional)",
 }
@@ -28,7 +29,8 @@ STATEMENTS = frozenset(FORMS) | {"TAIL"}
 KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
     "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
-    "REACH_OBJECTIVE": "reach_objective", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location",
+    "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to",
+    "TAKES": "takes", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location",
     "DURATION": "duration", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
@@ -37,7 +39,9 @@ KEYWORDS: Dict[str, str] = {
 }  # fmt: skip
 """The words of the language, by token."""
 
-MAY_BE_NAMES: Dict[str, str] = {"HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way"}
+MAY_BE_NAMES: Dict[str, str] = {
+    "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
+}  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
 RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())
@@ -214,7 +218,7 @@ def _in_words(expected: FrozenSet[str]) -> str:
     if "COLLABORATIVE" in expected:
         kinds.remove("TOGETHER")  # it says something behind collaborative only
     if "WORD" in expected:
-        kinds = [kind for kind in kinds if kind not in MAY_BE_NAMES]
+        kinds = [kind for kind in kinds if kind not in MAY_BE_NAMES and kind != "NAME"]
     words = [_OTHERS.get(kind) or _SIGNS.get(kind) or f"`{KEYWORDS[kind]}`" for kind in kinds if kind != "POSE"]
     return _list(words + (["the end of the statement"] if "$END" in expected else []))
 

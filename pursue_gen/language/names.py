@@ -152,6 +152,9 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for agent in scenario.agents:
         yield from all_of("POI", [agent.location])
         yield from all_of("event", agent.can_do + agent.reacts_to)
+    for travel in scenario.travels:
+        yield from all_of("agent", [travel.agent])
+        yield from all_of("POI", [travel.a, travel.b])
     for objective in (scenario.safety, scenario.reach):
         for field in ("trigger", "response", "event"):
             yield from all_of("event", [getattr(objective, field, None)])

@@ -114,6 +114,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         agents=only(pml.Agent),
         safety=safety[0] if safety else None,
         reach=reach[0] if reach else None,
+        travels=only(pml.Travel),
     )
     broken = any(finding.severity is Severity.ERROR for finding in statements.findings)
     return Reading(None if broken else value, in_order(findings), value, statements.lost if broken else frozenset())
@@ -183,14 +184,26 @@ class _Builder:
     def _event(
         self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, span: Span
     ) -> pml.Event:
+        earliest, latest = (None, None) if duration is None else self._window(duration)
         return pml.Event(
             _bare(name),
             collaborative is not None,
             None if location is None else self._ref(location),
-            None if duration is None else self._number(duration),
+            earliest,
             span_of(name, self.file),
             together is not None,
+            latest,
         )
+
+    def _window(self, tree: Any) -> Tuple[int, Optional[int]]:
+        """The numbers of `5 to 8`; one alone has no second one."""
+        low, _, high = tree.children
+        return self._number(low), None if high is None else self._number(high)
+
+    def _travel(self, _: Any, agent: Any, a: Any, _to: Any, b: Any, _takes: Any, takes: Any, span: Span) -> pml.Travel:
+        quoted = isinstance(agent, Token)
+        who = pml.Ref(_bare(agent), span_of(agent, self.file)) if quoted else self._ref(agent)
+        return pml.Travel(who, self._ref(a), self._ref(b), *self._window(takes), span)
 
     def _rule(self, name: Token, body: Any, span: Span) -> pml.Rule:
         return pml.Rule(_bare(name), self._body(body), span_of(name, self.file))

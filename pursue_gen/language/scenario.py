@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Tuple, Union
+from typing import Dict, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 
@@ -70,10 +70,20 @@ class Connection:
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
 
 
+Window = Tuple[int, int]
+"""Something ends later than the first time and at the second one at the latest (time units from its start)."""
+
+
+def _window(low: int, high: Optional[int]) -> Window:
+    """The window of something for which the author wrote one number or two: one alone leaves one time unit."""
+    return low, low + 1 if high is None else high
+
+
 @dataclass(frozen=True)
 class Event:
     """Something that agents do. `duration` is in time units, None: instantaneous; `location` None: anywhere.
 
+    It ends later than `duration`, and at `latest` at the latest; None: within one time unit more.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     """
 
@@ -83,11 +93,17 @@ class Event:
     duration: Optional[int]
     span: Span
     together: bool = False
+    latest: Optional[int] = None
 
     @property
     def is_shared(self) -> bool:
         """True for an event that lasts for its partners as well."""
         return self.together and self.collaborative and self.duration is not None
+
+    @property
+    def window(self) -> Optional[Window]:
+        """Between which times it ends; None for an event that is instantaneous."""
+        return None if self.duration is None else _window(self.duration, self.latest)
 
 
 @dataclass(frozen=True)
@@ -164,6 +180,30 @@ class Agent:
 
 
 @dataclass(frozen=True)
+class Travel:
+    """How long an agent takes from `a` to `b`, in place of what distance and speed say: more than `earliest` time units
+    and at most `latest`; None: one more than that.
+    """
+
+    agent: Ref
+    a: Ref
+    b: Ref
+    earliest: int
+    latest: Optional[int]
+    span: Span
+
+    @property
+    def way(self) -> Tuple[str, str]:
+        """From where to where."""
+        return self.a.name, self.b.name
+
+    @property
+    def window(self) -> Window:
+        """Between which times the agent arrives."""
+        return _window(self.earliest, self.latest)
+
+
+@dataclass(frozen=True)
 class Respond:
     """`if trigger then response within deadline` (time units)."""
 
@@ -218,3 +258,15 @@ class Scenario:
     agents: Tuple[Agent, ...]
     safety: Optional[Safety]
     reach: Optional[Reach]
+    travels: Tuple[Travel, ...] = ()
+
+    def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
+        """From and to of each movement that the agent can make, and between which times it arrives."""
+        if agent.mobile is None:
+            return {}
+        own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
+        return {
+            way: own.get(way) or _window(connection.distance * agent.mobile, None)
+            for connection in self.connections
+            for way in connection.directions
+        }

@@ -149,7 +149,7 @@ class _Reader:
 def _declared(chunk: List[Token]) -> Set[str]:
     """The names that a statement with an error in it perhaps declares."""
     kind = chunk[0].type
-    if kind in ("CONNECT", "STATEDEPENDENCY", "OBJECTIVE", "REACH_OBJECTIVE", "TAIL"):
+    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "OBJECTIVE", "REACH_OBJECTIVE", "TAIL"):
         tokens = [token for token in chunk if token.type == "UNCLOSED_COMMENT"]
     elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
         tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
@@ -177,7 +177,11 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
-        if token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
+        if token.type == "TRAVEL":  # an event may be called so
+            from_follows = index + 2 < len(tokens) and tokens[index + 2].type == "FROM"
+            ended = index == 0 or tokens[index - 1].type in _ENDS
+            begins = goes_on or from_follows or (opens_line and (ended or following == "WORD"))
+        elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
         elif token.type == "WORD" and opens_line and index:
             begins = goes_on or (tokens[index - 1].type in _ENDS and looks_like_statement(token))

@@ -28,11 +28,19 @@ def objective_words(scenario: Scenario) -> List[str]:
     return result
 
 
-def speed_words(agent: Agent) -> str:
+def speed_words(agent: Agent, scenario: Scenario) -> str:
     """How fast an agent is, in words."""
     if agent.mobile is None:
         return "stays there"
-    return f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"
+    words = [f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"]
+    own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
+    words += [f"{travel.a.name} to {travel.b.name} in {window_words(*travel.window)}" for travel in own]
+    return ", ".join(words)
+
+
+def window_words(low: int, high: int) -> str:
+    """Between which times something ends; a window of one time unit, which is the usual one, by its first time."""
+    return str(low) if high == low + 1 else f"{low} to {high}"
 
 
 def kind_words(agent: Agent) -> str:

@@ -12,7 +12,7 @@ from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
 from pursue_gen.language.poses import robots_in
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS, MEANINGS
-from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, kind_behind, statements
+from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, are_names, kind_behind, statements
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
@@ -116,9 +116,7 @@ def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Itera
     kind = kind_behind(place.behind)
     if "WORD" not in expected or kind is None:
         return
-    pairs = zip(place.behind, place.behind[1:])
-    words = (token for before, token in pairs if before.type not in ("NAME", "COLLABORATIVE"))
-    used = {str(token) for token in words if token.type in ("WORD", *MAY_BE_NAMES)}
+    used = {str(token) for token, is_name in zip(place.behind, are_names(place.behind)) if is_name}
     known = document.declared[kind]
     fitting = [name for name in known if name not in used]
     if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
@@ -166,7 +164,7 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
         yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a whole number", snippet=True)
-    if "NAME" in expected:
+    if "NAME" in expected and place.behind[0].type in DECLARED:
         example = _EXAMPLES[DECLARED[place.behind[0].type]]
         yield Completion(f'"{example}"', f'"${{1:{example}}}"', "NAME", "value", *span, "a new name", snippet=True)
     if "POSE" in expected and place.same_line:

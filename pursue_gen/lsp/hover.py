@@ -23,6 +23,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     Sequence,
     State,
+    Window,
 )
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import MEANINGS
@@ -67,9 +68,9 @@ def units(number: int) -> str:
     return f"{number} unit{'' if number == 1 else 's'}"
 
 
-def lasts(duration: int) -> str:
-    """How long something takes that takes `duration` in the model: its end comes within one unit more."""
-    return f"{duration} to {duration + 1} units of time"
+def lasts(window: Window) -> str:
+    """How long something takes."""
+    return f"{window[0]} to {window[1]} units of time"
 
 
 def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
@@ -94,9 +95,11 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
     lines = [f"**{poi.name}**: a place", ""]
     ways = [way for way in scenario.connections if poi.name in (way.a, way.b)]
     for way in ways:
-        times = ", ".join(f"{a.name} {lasts(way.distance * a.mobile)}" for a in scenario.agents if a.mobile is not None)
         other = way.b if way.a == poi.name else way.a
-        words = f"to {other}" if (poi.name, other) in way.directions else f"from {other} only"
+        there = (poi.name, other) in way.directions
+        words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
+        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
+        times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
         lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else ""))
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
@@ -114,7 +117,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
 def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
     lines = [f"**{event.name}**: an event", "", f"- happens {where}"]
-    lines.append(f"- takes {lasts(event.duration)}" if event.duration is not None else "- takes no time")
+    lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
     lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
     if event.collaborative:
         partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
@@ -195,8 +198,10 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         lines.append("- stays there")
     else:
         lines.append(f"- needs {units(agent.mobile)} of time for a unit of distance")
-        ways = [f"- {w.a} to {w.b}: {lasts(w.distance * agent.mobile)}" for w in scenario.connections]
-        lines += _listed(ways)
+        own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
+        known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
+        movements = scenario.movements(agent).items()
+        lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     safety = scenario.safety
@@ -213,12 +218,16 @@ def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
         lines = [f"A way of {units(number)} of distance.", ""]
-        return "\n".join(lines + _listed([f"- {a.name} needs {lasts(number * (a.mobile or 0))}" for a in movers]))
-    if word == "DURATION":
-        return f"It takes {lasts(number)}."
+        times = [(agent.name, number * (agent.mobile or 0)) for agent in movers]
+        return "\n".join(lines + _listed([f"- {name} needs {lasts((time, time + 1))}" for name, time in times]))
+    if word in ("DURATION", "TAKES", "TO"):
+        begins = next((t.start_pos or 0) for t in part.tokens if t.type in ("DURATION", "TAKES"))
+        numbers = [int(t) for t in part.tokens if t.type == "NUMBER" and t.isdigit() and (t.start_pos or 0) > begins]
+        return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else numbers[0] + 1))}."
     if word == "MOBILE":
         lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
-        ways = [f"- {w.a} to {w.b}: {lasts(w.distance * number)}" for w in scenario.connections]
+        times = [(f"{way.a} to {way.b}", way.distance * number) for way in scenario.connections]
+        ways = [f"- {name}: {lasts((time, time + 1))}" for name, time in times]
         return "\n".join(lines + _listed(ways))
     if word == "WITHIN":
         return f"The answer must have come {units(number)} of time later at most."

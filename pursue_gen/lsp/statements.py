@@ -7,7 +7,7 @@ from typing import Dict, List, Tuple
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.tokens import Statement
 
-_ORDER = ("POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "OBJECTIVE")
+_ORDER = ("POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "TRAVEL", "OBJECTIVE")
 _RANK: Dict[str, int] = {kind: rank for rank, kind in enumerate(_ORDER)}
 
 
@@ -19,7 +19,8 @@ def rank(part: Statement) -> int:
 def inserted(document: Document, statement: str) -> Tuple[Edit, ...]:
     """The edit that adds a statement, behind the last one of its kind or of a kind that goes before."""
     word = statement.split(" ", 1)[0].rstrip(":")
-    new = _RANK.get({"connect": "CONNECT", "stateDependency": "STATEDEPENDENCY"}.get(word, word.upper()), 7)
+    kind = {"connect": "CONNECT", "stateDependency": "STATEDEPENDENCY"}.get(word, word.upper())
+    new = _RANK.get(kind, _RANK["OBJECTIVE"])
     before = [part for part in document.statements if rank(part) <= new]
     if before:
         at = line_end(document, before[-1].end)

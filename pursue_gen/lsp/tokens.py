@@ -31,6 +31,9 @@ _USED: Dict[Tuple[str, str], str] = {
     ("AGENT", "LOCATION"): "POI",
     ("AGENT", "CAN_DO"): "event",
     ("AGENT", "REACTS_TO"): "event",
+    ("TRAVEL", "TRAVEL"): "agent",
+    ("TRAVEL", "FROM"): "POI",
+    ("TRAVEL", "TO"): "POI",
     ("OBJECTIVE", "OBJECTIVE"): "agent",
     ("OBJECTIVE", "NEVER_WITH"): "agent",
     ("OBJECTIVE", "IF"): "event",
@@ -40,7 +43,7 @@ _USED: Dict[Tuple[str, str], str] = {
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 
-_WITHOUT_NAME = frozenset({*MAY_BE_NAMES, "TRUE", "FALSE"})  # no name stands behind these
+_BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 
 
 @dataclass(frozen=True)
@@ -111,8 +114,24 @@ def kind_behind(tokens: Sequence[Token]) -> Optional[str]:
     """What a name stands for that is used behind these tokens of one statement; None: no name is used there."""
     if not tokens:
         return None
-    keywords = [token.type for token in tokens if token.type in KEYWORDS and token.type not in _WITHOUT_NAME]
+    named = are_names(tokens)
+    keywords = [token.type for token, is_name in zip(tokens, named) if token.type in KEYWORDS and not is_name]
     return _USED.get((tokens[0].type, keywords[-1])) if keywords else None
+
+
+def are_names(tokens: Sequence[Token]) -> List[bool]:
+    """Which tokens of one statement are names in use, as far as they stand where one may stand.
+
+    A word of the language that may be a name is one where a name has to stand.
+    """
+    named: List[bool] = []
+    for index, token in enumerate(tokens):
+        before = tokens[index - 1] if index else None
+        behind = before is not None and not named[-1] and (
+            before.type in _BEFORE_NAMES or (tokens[0].type, before.type) in _USED
+        )  # fmt: skip
+        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind))
+    return named
 
 
 def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
@@ -138,15 +157,19 @@ def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
 def _occurrences(part: Statement, number: int) -> List[Occurrence]:
     found = []
     kind: Optional[str] = None
+    named = are_names(part.tokens)
     for index, token in enumerate(part.tokens):
         start = token.start_pos or 0
         if index == 1 and token.type == "NAME" and part.kind in DECLARED:
             name = str(token)[1:-1]
             found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
-        elif token.type in KEYWORDS and token.type not in _WITHOUT_NAME:
+        elif token.type in KEYWORDS and not named[index]:
             kind = _USED.get((part.kind, token.type))
-        elif kind is not None and token.type in ("WORD", *MAY_BE_NAMES) and (index > 1 or part.kind not in DECLARED):
+        elif kind is not None and named[index] and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
+        elif kind is not None and token.type == "NAME" and part.kind == "TRAVEL":  # quotes are possible there
+            name = str(token)[1:-1]
+            found.append(Occurrence(name, kind, start + 1, start + 1 + len(name), False, number))
         elif token.type == "POSE":
             places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]
             found += [Occurrence(name, "agent", at, at + len(name), False, number) for name, at in places]

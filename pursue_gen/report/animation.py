@@ -190,6 +190,6 @@ def _end_point(
     after = next((step.locations.get(agent.name) for step in recording.steps if step.at >= stay.end), None)
     if stay.over and after == part[2]:
         return b
-    ways = (c.distance for c in recording.scenario.connections if (part[1], part[2]) in c.directions)
-    share = min(0.95, (stay.end - stay.start) / (next(ways, 1) * (agent.mobile or 1) + 1))
+    _, longest = recording.scenario.movements(agent).get((part[1], part[2]), (1, 2))
+    share = min(0.95, (stay.end - stay.start) / longest)
     return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])

@@ -102,9 +102,9 @@ def _game(rules: Rules) -> str:
     """The rules of the game, for people."""
     reaction = f"{float(rules.reaction):g}"
     if rules.ends == "reported":
-        ends = "Robots report when they have arrived or finished, at any moment within one unit of the model"
+        ends = "Robots report when they have arrived or finished, at any moment of the model's windows"
     else:
-        ends = "The plan decides when movements and actions end, within one unit of the model (no real robot lets it)"
+        ends = "The plan decides when movements and actions end, within the model's windows (no real robot lets it)"
     slack = "".join(f"; {agent} may be {units(str(late))} later" for agent, late in rules.slack.items())
     return f"{ends}{slack}. A command may take effect up to {reaction} units after it was due."
 
@@ -114,6 +114,6 @@ def _agents(scenario: Scenario) -> str:
     for agent in scenario.agents:
         does = ", ".join(ref.name for ref in agent.can_do) or "-"
         reacts = ", ".join(ref.name for ref in agent.reacts_to) or "-"
-        speed = speed_words(agent)
+        speed = speed_words(agent, scenario)
         rows.append((agent.name, kind_words(agent), agent.location.name, speed, does, reacts))
     return table(("agent", "is", "starts at", "moves", "can do", "takes part in"), rows, "Who is there")

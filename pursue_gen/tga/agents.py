@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import Iterable, Iterator, Mapping, Optional, Tuple
 
-from pursue_gen.language.scenario import Agent, Event, Scenario
+from pursue_gen.language.scenario import Agent, Event, Scenario, Window
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
@@ -13,10 +13,6 @@ from pursue_gen.tga.rules import Turns
 
 _PAUSE = 1
 """Time units that an agent rests after an action or a movement, before it can begin the next."""
-
-_WINDOW = 1
-"""Time units within which an action or a movement that may end does end."""
-
 
 @dataclass(frozen=True)
 class Surroundings:
@@ -87,19 +83,18 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
     shape = _Shape(agent, around)
     ways = shape.ways()
     locations = [Location(poi) for poi in shape.pois()]
-    locations += [Location(names.going(a, b), (shape.within(cost),)) for a, b, cost in ways]
-    edges = [edge for a, b, cost in ways for edge in shape.movement(a, b, cost)]
+    locations += [Location(names.going(*way), (shape.within(window),)) for way, window in ways.items()]
+    edges = [edge for (a, b), window in ways.items() for edge in shape.movement(a, b, window)]
     for name in dict.fromkeys(ref.name for ref in agent.can_do):
         event = around.event(name)
         if not around.can_ever_do(agent, event):
             continue
-        if event.duration is None:
+        window = event.window
+        if window is None:
             edges += shape.instantaneous(event, ways)
         else:
-            locations += [
-                Location(names.doing(name, poi), (shape.within(event.duration),)) for poi in shape.places(event)
-            ]
-            edges += [edge for poi in shape.places(event) for edge in shape.lasting(event, event.duration, poi)]
+            locations += [Location(names.doing(name, poi), (shape.within(window),)) for poi in shape.places(event)]
+            edges += [edge for poi in shape.places(event) for edge in shape.lasting(event, window, poi)]
     for name in dict.fromkeys(ref.name for ref in agent.reacts_to):
         event = around.event(name)
         places = shape.shared_places(event) if event.is_shared else ()
@@ -127,15 +122,9 @@ class _Shape:
         """The POIs at which the agent can ever be."""
         return self.around.pois(self.agent)
 
-    def ways(self) -> Tuple[Tuple[str, str, int], ...]:
-        """From, to, and the time units that it takes: each direction of each connection."""
-        if self.agent.mobile is None:
-            return ()
-        return tuple(
-            (a, b, connection.distance * self.agent.mobile)
-            for connection in self.around.scenario.connections
-            for a, b in connection.directions
-        )
+    def ways(self) -> Mapping[Tuple[str, str], Window]:
+        """From and to of each movement, and when it may end."""
+        return self.around.scenario.movements(self.agent)
 
     def places(self, event: Event) -> Tuple[str, ...]:
         """The POIs at which the agent can do an event, or take part in it."""
@@ -147,22 +136,22 @@ class _Shape:
         theirs = {poi for doer in others for poi in self.around.pois(doer)}
         return tuple(poi for poi in self.places(event) if poi in theirs)
 
-    def within(self, time: int) -> ClockBound:
-        """The invariant of something that takes that long."""
-        return ClockBound(self.clock, "<=", time + _WINDOW)
+    def within(self, window: Window) -> ClockBound:
+        """The invariant of something that ends in that window."""
+        return ClockBound(self.clock, "<=", window[1])
 
-    def movement(self, a: str, b: str, time: int) -> Tuple[Edge, Edge]:
+    def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, Edge]:
         """Setting off from a and arriving at b."""
         codes, on_the_way = self.around.positions, names.going(a, b)
         start = self._edge(a, on_the_way, names.movement(self.agent.name, a, b), _PAUSE, (), codes.going(a, b))
-        return start, self._edge(on_the_way, b, None, time, (), codes.at(b))
+        return start, self._edge(on_the_way, b, None, window[0], (), codes.at(b))
 
-    def lasting(self, event: Event, duration: int, poi: str) -> Tuple[Edge, Edge]:
+    def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, Edge]:
         """Beginning and ending an event at a POI."""
         codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
         conditions = self._conditions(event, codes.at(poi))
         start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
-        ending = self._edge(at_work, poi, end, duration, self.around.turn(end), codes.at(poi))
+        ending = self._edge(at_work, poi, end, window[0], self.around.turn(end), codes.at(poi))
         if not self.around.is_contested(event):
             return start, ending
         busy = names.busy(event.name)
@@ -189,13 +178,13 @@ class _Shape:
         start = edge(poi, at_work, event.name, here, codes.doing(poi))
         return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi))
 
-    def instantaneous(self, event: Event, ways: Sequence[Tuple[str, str, int]]) -> Iterator[Edge]:
+    def instantaneous(self, event: Event, ways: Iterable[Tuple[str, str]]) -> Iterator[Edge]:
         """Doing an event at POIs, and on the way where it has no location (company is then met head-on)."""
         codes = self.around.positions
         for poi in self.places(event):
             yield self._edge(poi, poi, event.name, _PAUSE, self._conditions(event, codes.at(poi)), None)
         if event.location is None:
-            for a, b, _ in ways:
+            for a, b in ways:
                 here = names.going(a, b)
                 guard = Guard((ClockBound(self.clock, ">", 0),), self._conditions(event, codes.going(b, a)))
                 yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)

@@ -12,9 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.look import QUIET
 from pursue_gen.drawing.map_svg import draw
 from pursue_gen.language import parse
-from pursue_gen.language.scenario import Pose
+from pursue_gen.language.scenario import Pose, Scenario
 
 TEXT = """
 poi "hall" poi "shop" poi "yard"
@@ -83,13 +84,19 @@ def test_it_says_when_positions_are_computed() -> None:
     assert "positions computed from the distances" in texts(draw(SCENARIO, poses((0, 0), (3, 0), (3, 2)), True))
 
 
+def arrows(scenario: Scenario) -> List[List[List[float]]]:
+    """The corners of each arrow, its tip first; agents' marks are polygons too, of other colours."""
+    picture = ElementTree.fromstring(draw(scenario, poses((0, 0), (9, 0), (3, 2)), False))
+    heads = [one for one in picture.iter(f"{SVG}polygon") if one.attrib["fill"] == QUIET]
+    return [[[float(x) for x in corner.split(",")] for corner in one.attrib["points"].split()] for one in heads]
+
+
 def test_a_way_that_goes_one_way_is_an_arrow_to_its_second_place() -> None:
-    one_way = replace(SCENARIO, connections=(replace(SCENARIO.connections[0], one_way=True),))
-    (head,) = ElementTree.fromstring(draw(one_way, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}polygon")
-    tip, *back = [tuple(map(float, point.split(","))) for point in head.attrib["points"].split()]
-    shop = list(ElementTree.fromstring(draw(one_way, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}circle"))[1]
-    assert all(x < tip[0] < float(shop.attrib["cx"]) for x, _ in back)
-    assert not list(ElementTree.fromstring(draw(SCENARIO, poses((0, 0), (9, 0), (3, 2)), False)).iter(f"{SVG}polygon"))
+    way, *others = SCENARIO.connections
+    ((tip, *back),) = arrows(replace(SCENARIO, connections=(replace(way, one_way=True), *others)))
+    ((other, *behind),) = arrows(replace(SCENARIO, connections=(replace(way, a=way.b, b=way.a, one_way=True), *others)))
+    assert all(x < tip[0] for x, _ in back) and all(x > other[0] for x, _ in behind)
+    assert tip[0] > other[0] and arrows(SCENARIO) == []
 
 
 def test_north_is_up() -> None:

@@ -107,6 +107,10 @@ agent "guest" location desk can_do call
 objective: if call then give within 9
 """
 
+WINDOWS = CALLED.format(deadline=12).replace("mobile 1", "mobile 2").replace(
+    "objective", "travel bot from desk to shelf takes 4 to 11\nobjective"
+)
+
 SLOW = CALLED.replace("mobile 1", "mobile 3").format(deadline=6)
 
 
@@ -126,6 +130,15 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
     words = {"deadline": "within", "after": "after", "agent": "mobile", "duration": "duration", "distance": "distance"}
     if change.what == "duration" and change.before == "0":
         lines[at] += f" duration {value}" if value != "0" else ""
+    elif change.what in ("latest", "earliest"):
+        pattern = rf"to {change.before}\b" if change.what == "latest" else rf"duration {change.before}\b"
+        assert re.search(pattern, lines[at])
+        lines[at] = re.sub(pattern, pattern[:-2].replace(change.before, value), lines[at])
+    elif change.what == "travel":
+        low, high = (int(number) for number in re.findall(r"\d+", lines[at]))
+        less, more = (min(low, int(value) - 1), int(value)), (int(value), max(high, int(value) + 1))
+        new = less if change.before == str(high) else more
+        lines[at] = lines[at].replace(f"takes {low} to {high}", f"takes {new[0]} to {new[1]}")
     elif change.what in words:
         word = words[change.what]
         assert f"{word} {change.before}" in lines[at]
@@ -163,6 +176,7 @@ SMALL = {
     "deadline 5, slow to react": (CALLED.format(deadline=5), Rules(reaction=Fraction(3))),
     "ideal, deadline 3": (CALLED.format(deadline=3), IDEAL),
     "one way": (ROUND, DEFAULT),
+    "windows": (WINDOWS, DEFAULT),
     "slow": (SLOW, DEFAULT),
     "shy": (SHY, DEFAULT),
     "shy, ideal": (SHY, IDEAL),

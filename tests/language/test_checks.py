@@ -40,6 +40,25 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         {"connect": "connect a and b distance 1000000", "agent_bot": BOT.replace("mobile 2", "mobile 11")},
         [("PML144", 10, "more than 10000000 time units", "larger unit")],
     ),
+    ({"event_work": 'event "work" location b duration 3 to 3'}, [("PML200", 4, "later than 3 and at 3", "3 to 4")]),
+    ({"event_work": 'event "work" location b duration 5 to 3'}, [("PML200", 4, "no such time", "duration 3 to 5")]),
+    ({"event_work": 'event "work" location b duration 0 to 3'}, []),
+    # travel times
+    ({"more": "travel bot from a to b takes 5 to 8\ntravel bot from b to a takes 7"}, []),
+    ({"more": "travel bot from a to b takes 8 to 8"}, [("PML200", 14, "way of bot from a to b ends", "takes 8 to 9")]),
+    ({"more": "travel bot from a to b takes 0"}, [("PML200", 14, "takes no time", "takes 0 to 1")]),
+    ({"more": "travel man from a to b takes 5"}, [("PML201", 14, "man does not move", "write mobile 1 behind man")]),
+    (
+        {"poi_b": 'poi "b" poi "c"', "more": "connect b and c distance 1 travel bot from a to c takes 5"},
+        [("PML190", 14, "only before", ""), ("PML201", 14, "no way leads from a to c", "connect a and c")],
+    ),
+    (
+        {"connect": "connect a and b distance 3 one_way", "more": "travel bot from b to a takes 5"},
+        [("PML201", 14, "(it is one_way, from a to b)", "delete this line")],
+    ),
+    ({"more": "travel bot from a to b takes 5\ntravel bot from a to b takes 6"}, [("PML202", 15, "line 14", "delete")]),
+    ({"more": "travel boot from a to b takes 5"}, [("PML110", 14, "there is no agent boot", "did you mean bot?")]),
+    ({"more": "travel bot from a to x takes 5"}, [("PML110", 14, "there is no POI x", "declare it")]),
     # connections
     ({"connect": "connect a and b distance 3\nconnect a and a distance 1"}, [("PML145", 4, "a with itself", "two")]),
     ({"connect": "connect a and b distance 3\nconnect b and a distance 4"}, [("PML146", 4, "line 3", "delete")]),

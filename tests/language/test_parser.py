@@ -111,6 +111,46 @@ def test_one_way_is_a_word_behind_a_distance_and_a_name_everywhere_else() -> Non
     assert (there.directions, back.directions) == ((("a", "b"),), (("b", "one_way"), ("one_way", "b")))
 
 
+def test_a_window_has_one_number_or_two() -> None:
+    one, two = parse('event "a" duration 3 event "b" duration 3 to 5', "test.pur").events
+    assert (one.duration, one.latest, one.window) == (3, None, (3, 4))
+    assert (two.duration, two.latest, two.window) == (3, 5, (3, 5))
+
+
+@pytest.mark.parametrize("agent", ["bot", '"bot"'])
+def test_an_agent_has_its_own_time_for_a_way(agent: str) -> None:
+    scenario = parse(text(more=f"travel {agent} from a to b takes 5 to 8"), "test.pur")
+    bot, man = scenario.agents
+    (travel,) = scenario.travels
+    assert (travel.agent.name, travel.way, travel.window) == ("bot", ("a", "b"), (5, 8))
+    assert (scenario.movements(bot), scenario.movements(man)) == ({("a", "b"): (5, 8), ("b", "a"): (6, 7)}, {})
+
+
+def test_words_of_younger_statements_are_names_everywhere_else() -> None:
+    """The statement is cut there only where one can begin."""
+    source = """
+        poi "hall" poi "to" poi "takes"
+        connect hall and to distance 1 connect to and takes distance 2
+        event "travel" location
+            to
+        event "walk" event "times"
+        rule "r":
+            travel before walk
+        agent "bot" controllable mobile 1 location hall can_do walk,
+            travel
+        agent "travel2" mobile 1 location takes can_do times
+        travel bot from hall to to takes 3
+        objective: if times then
+            travel within 20
+        reach_objective: do
+            travel
+    """
+    scenario = parse(source, "test.pur")
+    assert [ref.name for ref in scenario.agents[0].can_do] == ["walk", "travel"]
+    assert scenario.travels[0].way == ("hall", "to") and scenario.reach is not None
+    assert check(scenario) == ()
+
+
 def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> None:
     scenario = parse(
         'agent "human" location a agent "nurse" human controllable mobile 3 location a\n'

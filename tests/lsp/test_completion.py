@@ -43,6 +43,10 @@ WHOLE = SMALL + "{}"
         ('agent "new" location a can_do work, |', ["hand", "rest"]),
         ('agent "new" location a can_do work, re|', ["hand", "rest"]),
         ('agent "new" location a can_do work reacts_to |', ["hand"]),  # the only collaborative one
+        ("travel |", ["bot", "man"]),
+        ("travel bot from |", ["a", "b"]),
+        ("travel bot from a to |", ["b"]),
+        ("travel bot from a to b takes |", []),
         ("objective: |", ["bot", "man"]),
         ("objective: bot never_with |", ["man"]),
         ("objective: if work then |", ["hand", "rest"]),

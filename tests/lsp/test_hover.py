@@ -51,6 +51,16 @@ def test_in_which_direction_a_way_goes() -> None:
     assert "to the second only" in told("one_w", one_way)
 
 
+def test_windows_and_travel_times() -> None:
+    more = SMALL.replace("duration 3", "duration 3 to 5") + "travel bot from a to b takes 5 to 8\n"
+    assert "takes 3 to 5 units of time" in told('event "wo', more)
+    assert "3 to 5 units" in told("duration ", more) and "3 to 5 units" in told("duration 3 to ", more)
+    assert "5 to 8 units" in told("takes ", more) and "5 to 8 units" in told("takes 5 to ", more)
+    assert "a to b: 5 to 8 units" in told('agent "b', more) and "bot 5 to 8 units" in told('poi "', more)
+    assert "Where the agent sets off." in told("travel bot fr", more)
+    assert "a robot" in told("travel b", more) and "a place" in told("from ", more)
+
+
 def test_who_is_busy_while_an_event_of_two_lasts() -> None:
     lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
     assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)

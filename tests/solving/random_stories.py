@@ -83,4 +83,6 @@ def _one_way(draw: st.DrawFn) -> str:
 
 
 def _long(draw: st.DrawFn) -> str:
-    return f" duration {draw(st.integers(1, 3))}" if draw(st.booleans()) else ""
+    low = draw(st.integers(1, 3))
+    until = f" to {low + draw(st.integers(1, 3))}" if draw(st.integers(0, 5)) == 0 else ""
+    return f" duration {low}{until}" if draw(st.booleans()) else ""

@@ -73,8 +73,21 @@ def test_a_way_that_goes_one_way_has_no_way_back_and_the_numbers_stay() -> None:
     names = [location.name for location in made.automaton("dog").locations]
     assert "going_hall_to_shed" in names and "going_shed_to_hall" not in names
     assert "bot_hall2shed" in made.channels and "bot_shed2hall" not in made.channels
-    (start,) = (edge for edge in made.automaton("bot").edges if edge.target == "going_hall_to_shed")
+    (start,) = (e for e in made.automaton("bot").edges if e.target == "going_hall_to_shed" and e.source == "hall")
     assert start == house().automaton("bot").edges[0]
+
+
+def test_a_window_with_two_numbers_is_guard_and_invariant() -> None:
+    text = HOUSE.replace("duration 5", "duration 5 to 9") + "travel dog from shed to hall takes 4 to 8\n"
+    made = translate(scenario(text))
+    bot, dog = made.automaton("bot"), made.automaton("dog")
+    places = {place.name: place.invariant for agent in (bot, dog) for place in agent.locations}
+    assert places["doing_fetch_in_shed"] == (ClockBound("Cbot", "<=", 9),)
+    assert places["going_shed_to_hall"] == (ClockBound("Cdog", "<=", 8),)
+    assert places["going_hall_to_shed"] == (ClockBound("Cdog", "<=", 4),)
+    ends = {edge.source: edge.guard.clocks for agent in (bot, dog) for edge in agent.edges}
+    assert ends["doing_fetch_in_shed"] == (ClockBound("Cbot", ">", 5),)
+    assert ends["going_shed_to_hall"] == (ClockBound("Cdog", ">", 4),)
 
 
 def test_two_ways_in_opposite_directions_differ_in_length() -> None:

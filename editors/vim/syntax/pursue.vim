@@ -6,10 +6,11 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent connect event objective poi reach_objective rule state stateDependency
+syntax keyword pursueStatement agent connect event objective poi reach_objective rule state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after and avoid before can_do collaborative controllable distance do duration false_if human
-syntax keyword pursueKeyword if initially location mobile never_with one_way only_if or reacts_to then together true_if within
+syntax keyword pursueKeyword from if initially location mobile never_with one_way only_if or reacts_to takes then to together
+syntax keyword pursueKeyword true_if within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

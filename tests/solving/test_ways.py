@@ -1,0 +1,82 @@
+"""Statements on ways and times in the game: won and lost because of them, by both engines, and in simulation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.report.recording import simulated
+from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.runs import case_of
+from pursue_gen.simulation.stage import stage_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import DEFAULT
+from pursue_gen.solving.solution import solution, solve_scenario
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.workspace import Options
+
+SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
+
+
+def text(name: str) -> str:
+    return (SCENARIOS / f"{name}.pur").read_text(encoding="utf-8")
+
+
+def is_won(source: str, engine: str) -> bool:
+    read = parse(source, "x.pur", "x")
+    try:
+        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
+    except PursueError as problem:
+        assert problem.exit_status == 4, problem
+        return False
+    return True
+
+
+TRAVEL = "travel visitor from gallery to hall takes 12 to 20\n"
+
+
+@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize(
+    ("name", "words", "instead", "won"),
+    [
+        ("museum/one_way_tour", " one_way", "", True),
+        ("airport/roundabout", " one_way", "", False),
+        ("museum/slow_visitor", TRAVEL, "", True),
+        ("hotel/early_breakfast", " to 9", "", False),
+    ],
+)
+def test_what_the_words_decide(name: str, words: str, instead: str, won: bool, engine: str) -> None:
+    assert words in text(name)
+    assert (is_won(text(name), engine), is_won(text(name).replace(words, instead), engine)) == (won, not won)
+
+
+WON = [
+    text("museum/one_way_tour"),
+    text("airport/roundabout").replace("within 14", "within 20"),
+    text("museum/slow_visitor").replace("duration 2", "duration 1 to 4"),
+    text("hotel/early_breakfast").replace("within 17", "within 20"),
+]
+
+
+@pytest.mark.parametrize("source", WON, ids=range(len(WON)))
+def test_missions_with_random_opponents_end_well(source: str) -> None:
+    """The judge takes each step for wrong that is not one of the network, and each command that is not held."""
+    read = parse(source, "x.pur", "x")
+    stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
+    outcomes = [simulate_mission(stage, Settings("random"), seed) for seed in range(30)]
+    assert {outcome.end for outcome in outcomes} <= {GOAL, SAFE}, [outcome.reason for outcome in outcomes]
+
+
+def test_ends_are_drawn_from_the_whole_window() -> None:
+    read = parse(WON[3], "x.pur", "x")
+    case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
+    lasted = []
+    for seed in range(20):
+        begun = 0.0
+        for step in simulated(case, seed).steps:
+            begun = step.at if step.event == "boil" else begun
+            lasted += [step.at - begun] if step.event == "boilDONE" else []
+    assert 4 < min(lasted) < 5 and 8 < max(lasted) < 9.5
