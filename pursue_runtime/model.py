@@ -43,6 +43,15 @@ class Automaton(NamedTuple):
         return self.by_source.get(location, ())
 
 
+class Assumption(NamedTuple):
+    """What is assumed of an agent: its variable is 1, and 0 once it has been broken; `clock` is "" for those that are
+    not about times."""
+
+    variable: str
+    clock: str
+    says: str
+
+
 class Move(NamedTuple):
     """One automaton's part of what an event does."""
 
@@ -73,6 +82,10 @@ class Model:
             self.clocks: Tuple[str, ...] = tuple(data["clocks"])
             self.variables: Dict[str, int] = dict(data["variables"])
             self.automata = tuple(_automaton(automaton) for automaton in data["automata"])
+            self.assumptions = tuple(
+                Assumption(str(each["variable"]), str(each.get("clock", "")), str(each["says"]))
+                for each in data.get("assumptions", ())
+            )
             objective = data["objective"]
             self.objective = str(objective["kind"])
             self.goal: Optional[Tuple[str, str]] = tuple(objective["goal"]) if objective["goal"] else None
@@ -93,6 +106,12 @@ class Model:
         """Where everything starts, clocks at zero."""
         locations = {automaton.name: automaton.initial for automaton in self.automata}
         return Position(locations, dict(self.variables), dict.fromkeys(self.clocks, 0.0))
+
+    def bounds_of(self, automaton: str, location: str, values: Mapping[str, int]) -> Zone:
+        """The upper bounds on clocks of a location, without those of assumptions that have been broken."""
+        bounds = self._by_name[automaton].invariants[location]
+        broken = {each.clock for each in self.assumptions if values[each.variable] == 0}
+        return tuple(bound for bound in bounds if bound.left not in broken) if broken else bounds
 
     def joint_move(
         self, position: Position, word: str, agent: str = "", timed: bool = True
@@ -149,7 +168,9 @@ class Model:
     def _fits(self, moves: Tuple[Move, ...], position: Position) -> bool:
         """True where the invariants hold that the moves lead to."""
         after = self.after(moves, position)
-        return all(holds(self._by_name[name].invariants[edge.target], after.clocks, EPSILON) for name, edge in moves)
+        return all(
+            holds(self.bounds_of(name, edge.target, after.values), after.clocks, EPSILON) for name, edge in moves
+        )
 
 
 def _automaton(data: Mapping[str, Any]) -> Automaton:

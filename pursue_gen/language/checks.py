@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
+from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
@@ -59,6 +60,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         if "PML110" not in codes:
             findings += check_rules(scenario)
             findings += check_poses(scenario)
+            findings += check_assumptions(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     return _presentable(in_order(findings))

@@ -19,6 +19,8 @@ FORMS: Dict[str, str] = {
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
     "TRAVEL": "travel bot from a to b takes 5 to 8",
+    "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
+    "assume: visitor leaves hall within 30 · assume: visitor never at store",
     "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e · objective: bot1 never_with bot2",
     "REACH_OBJECTIVE": "reach_objective: do e after 0 (after is optional)",
 }
@@ -36,11 +38,15 @@ KEYWORDS: Dict[str, str] = {
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
     "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
+    "ASSUME": "assume", "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
+    "LEAVES": "leaves", "NEVER": "never", "AT": "at",
 }  # fmt: skip
 """The words of the language, by token."""
 
 MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
+    "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
+    "LEAVES": "leaves", "NEVER": "never", "AT": "at",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
@@ -71,8 +77,8 @@ def shown(text: str, most: int = 30) -> str:
 
 def looks_like_statement(token: Token) -> bool:
     """Whether a word at the start of a line is one that begins a statement, misspelled."""
-    close = closest(str(token), _STARTERS + _INNER)
-    return close in _STARTERS or (not close and _MEANT.get(str(token).lower()) in _STARTERS)
+    meant = _MEANT.get(str(token).lower()) or closest(str(token), _STARTERS + _INNER)
+    return meant in _STARTERS
 
 
 def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:

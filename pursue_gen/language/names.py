@@ -155,6 +155,10 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for travel in scenario.travels:
         yield from all_of("agent", [travel.agent])
         yield from all_of("POI", [travel.a, travel.b])
+    for assumption in scenario.assumptions:
+        yield from all_of("agent", [assumption.agent])
+        yield from all_of("event", [getattr(assumption, "event", None)])
+        yield from all_of("POI", [getattr(assumption, "place", None)])
     for objective in (scenario.safety, scenario.reach):
         for field in ("trigger", "response", "event"):
             yield from all_of("event", [getattr(objective, field, None)])

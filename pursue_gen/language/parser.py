@@ -19,6 +19,8 @@ from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
 
+_ASSUMPTIONS = (pml.AtMost, pml.Waits, pml.Leaves, pml.NeverAt)
+
 _PATIENCE = 5
 """Seconds in which something has to come where the file is a pipe."""
 
@@ -115,6 +117,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         safety=safety[0] if safety else None,
         reach=reach[0] if reach else None,
         travels=only(pml.Travel),
+        assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
     )
     broken = any(finding.severity is Severity.ERROR for finding in statements.findings)
     return Reading(None if broken else value, in_order(findings), value, statements.lost if broken else frozenset())
@@ -226,6 +229,17 @@ class _Builder:
 
     def _dependency(self, event: Any, state: Any, value: Token, span: Span) -> pml.Dependency:
         return pml.Dependency(self._ref(event), self._ref(state), value.type == "IS_TRUE", span)
+
+    def _assumption(self, tree: Any, span: Span) -> pml.Assumption:
+        first, *rest = tree.children
+        agent = self._ref(first)
+        if tree.data == "at_most":
+            return pml.AtMost(agent, self._ref(rest[0]), self._number(rest[1]), span)
+        if tree.data == "waits":
+            return pml.Waits(agent, self._ref(rest[1]), self._number(rest[0]), span)
+        if tree.data == "leaves":
+            return pml.Leaves(agent, self._ref(rest[0]), self._number(rest[1]), span)
+        return pml.NeverAt(agent, self._ref(rest[0]), span)
 
     def _agent(
         self, name: Token, human: Any, controllable: Any, mobile: Any, location: Any, can: Any, reacts: Any, span: Span

@@ -243,6 +243,49 @@ class Reach:
 
 
 @dataclass(frozen=True)
+class AtMost:
+    """`assume: agent does event at_most times times`: it begins the event no more often."""
+
+    agent: Ref
+    event: Ref
+    times: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class Waits:
+    """`assume: agent waits time between event`: so many time units from the end of one to the beginning of the next."""
+
+    agent: Ref
+    event: Ref
+    time: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class Leaves:
+    """`assume: agent leaves place within time`: so many time units after it came (or the start) it has set off."""
+
+    agent: Ref
+    place: Ref
+    time: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class NeverAt:
+    """`assume: agent never at place`: it does not set off to that place."""
+
+    agent: Ref
+    place: Ref
+    span: Span
+
+
+Assumption = Union[AtMost, Waits, Leaves, NeverAt]
+"""What an agent that is not controlled is assumed to do, or not to do."""
+
+
+@dataclass(frozen=True)
 class Scenario:
     """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration."""
 
@@ -259,6 +302,7 @@ class Scenario:
     safety: Optional[Safety]
     reach: Optional[Reach]
     travels: Tuple[Travel, ...] = ()
+    assumptions: Tuple[Assumption, ...] = ()
 
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
         """From and to of each movement that the agent can make, and between which times it arrives."""

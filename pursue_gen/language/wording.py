@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import List
 
-from pursue_gen.language.scenario import Agent, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Agent, Assumption, AtMost, Avoid, Leaves, NeverWith, Respond, Scenario, Waits
 
 
 def units(amount: str) -> str:
@@ -26,6 +26,23 @@ def objective_words(scenario: Scenario) -> List[str]:
         after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
         result.append(f"{reach.event.name} happens{after}.")
     return result
+
+
+def assumption_words(assumption: Assumption) -> str:
+    """What is assumed, as a sentence without its full stop; the same words as in the scenario where they read well."""
+    name = assumption.agent.name
+    if isinstance(assumption, AtMost):
+        times = "once" if assumption.times == 1 else f"{assumption.times} times"
+        return (
+            f"{name} does {assumption.event.name} at most {times}"
+            if assumption.times
+            else (f"{name} never does {assumption.event.name}")
+        )
+    if isinstance(assumption, Waits):
+        return f"{name} waits {units(str(assumption.time))} between one {assumption.event.name} and the next"
+    if isinstance(assumption, Leaves):
+        return f"{name} leaves {assumption.place.name} within {units(str(assumption.time))}"
+    return f"{name} is never at {assumption.place.name}"
 
 
 def speed_words(agent: Agent, scenario: Scenario) -> str:

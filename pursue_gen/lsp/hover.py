@@ -25,6 +25,7 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import MEANINGS
 from pursue_gen.lsp.tokens import Statement
@@ -204,6 +205,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
+    lines += [f"- assumed: {assumption_words(a)}" for a in scenario.assumptions if a.agent.name == agent.name]
     safety = scenario.safety
     if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
         other = safety.second.name if safety.first.name == agent.name else safety.first.name
@@ -229,6 +231,12 @@ def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str
         times = [(f"{way.a} to {way.b}", way.distance * number) for way in scenario.connections]
         ways = [f"- {name}: {lasts((time, time + 1))}" for name, time in times]
         return "\n".join(lines + _listed(ways))
+    if word == "WITHIN" and part.kind == "ASSUME":
+        return f"It has set off {units(number)} of time after it came, or after the start."
+    if word == "WAITS":
+        return f"The next one begins {units(number)} of time after the end of the last, or later."
+    if word == "AT_MOST":
+        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
     if word == "WITHIN":
         return f"The answer must have come {units(number)} of time later at most."
     if word == "AFTER":

@@ -9,6 +9,7 @@ from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.replanning.request import Request, wrong
+from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.names import agent_clock, agent_position, going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
 from pursue_gen.zones.scale import least_common_multiple
@@ -31,6 +32,7 @@ def network_from(network: Network, request: Request) -> Network:
     blocked = {going(*way) for way in request.blocked}
     automata = []
     for automaton in network.automata:
+        automaton = without_broken(automaton, values)
         here = locations[automaton.name]
         moved = replace(automaton, initial=here, home=automaton.home or automaton.initial)
         if automaton.name in request.excused:

@@ -56,6 +56,21 @@ def busy(event: str) -> str:
     return f"B{event}"
 
 
+def assumption(number: int) -> str:
+    """The variable of an assumption (the first has number 1): 1, or 0 in a mission in which it has been broken."""
+    return f"assume{number}"
+
+
+def assumption_count(number: int) -> str:
+    """The variable that counts what the assumption limits."""
+    return f"assume{number}count"
+
+
+def assumption_clock(number: int) -> str:
+    """The clock of an assumption about times."""
+    return f"Cassume{number}"
+
+
 def has_happened(event: Event) -> str:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
     return event.name if event.duration is None else done(event.name)

@@ -9,6 +9,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
+from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
 from pursue_gen.tga.positions import positions
@@ -30,11 +31,11 @@ def translate(scenario: Scenario) -> Network:
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
-    automata += [agent_automaton(agent, around) for agent in scenario.agents]
+    automata += [assumed(agent_automaton(agent, around), scenario) for agent in scenario.agents]
     automata += [safety_automaton(scenario.safety, happened, codes)] if scenario.safety else []
     automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
     automata += [automaton for automaton, _ in rules]
-    variables = _variables(scenario, codes.pois) + _busy(around)
+    variables = _variables(scenario, codes.pois) + _busy(around) + assumption_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network
@@ -57,7 +58,7 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
     clocks = [names.agent_clock(agent.name) for agent in scenario.agents]
     clocks += [names.CLOCK_OBJECTIVE] if scenario.safety else []
     clocks += [names.CLOCK_REACH] if scenario.reach else []
-    return tuple(clocks)
+    return (*clocks, *assumption_clocks(scenario))
 
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:

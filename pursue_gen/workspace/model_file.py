@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.tga import names
 from pursue_gen.tga.names import REACH, STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
@@ -31,7 +33,17 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
         "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad}),
     }
+    if scenario.assumptions:
+        data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
     return yaml_text(data, head)
+
+
+def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str]]:
+    """The variable of each assumption, its clock where it has one, and what it says."""
+    for place, assumption in enumerate(scenario.assumptions, start=1):
+        clock = names.assumption_clock(place)
+        timed = {"clock": clock} if clock in network.clocks else {}
+        yield {"variable": names.assumption(place), **timed, "says": assumption_words(assumption)}
 
 
 def _kinds(scenario: Scenario) -> Dict[str, str]:

@@ -6,7 +6,7 @@ Times are seconds of ROS time, delays are time units.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Dict, Iterable, List, MutableMapping, Optional, Tuple
+from typing import Dict, Iterable, List, Mapping, MutableMapping, Optional, Tuple
 from weakref import WeakKeyDictionary
 
 from transitions import Machine
@@ -126,6 +126,11 @@ class Automata:
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
+    def set_values(self, values: Mapping[str, int]) -> None:
+        """Set variables."""
+        self._position = None
+        self._values.update(values)
+
     def bounds(self, position: Position, *kinds: str) -> List[Tuple[str, float]]:
         """Return the automata whose invariant bounds their stay, and the time units until then (negative: overdue).
 
@@ -134,7 +139,7 @@ class Automata:
         return [
             (automaton.name, bound.bound - position.clocks[bound.left])
             for automaton in (self.model.of_kind(*kinds) if kinds else self.model.automata)
-            for bound in automaton.invariants[position.locations[automaton.name]]
+            for bound in self.model.bounds_of(automaton.name, position.locations[automaton.name], position.values)
         ]
 
     def internal_delays(self, position: Position) -> List[float]:

@@ -6,7 +6,8 @@ from typing import Any, Callable, Collection, Dict, List, Mapping, Optional, Set
 
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
-from pursue_runtime.model import Model, Move, Position
+from pursue_runtime.model import Assumption, Model, Move, Position
+from pursue_runtime.observer.assumptions import Breach, breach, broken_reason, overstayed
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.planning import Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
@@ -186,6 +187,10 @@ class Mission:
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
             if automaton.kind == "safety" and own:
                 return self._take((Move(name, own[0]),), now, f"the deadline of {name} has passed")
+            overstays = overstayed(self.model, position, name, self._tolerance)
+            if overstays:
+                self._note_broken(overstays)
+                continue
             self.late.add(name)
             self._log("warn", f"{name} is late: it should have left {place} by now")
         for name, delay in self._late_agents(position):
@@ -284,6 +289,10 @@ class Mission:
         moves = self.model.joint_move(position, word.event, word.agent)
         if moves:
             return moves
+        breach = self._breach_of(word, position) if word.seq is None else None
+        if breach is not None:
+            self._note_broken(breach.assumptions)
+            return breach.moves
         untimed = self.model.joint_move(position, word.event, word.agent, timed=False)
         if untimed and word.seq is None:
             self.counts["untimely"] += 1
@@ -297,6 +306,18 @@ class Mission:
         could = ", ".join(self.model.possible(position, timed=False)) or "nothing"
         self._reject("impossible", f"{word.event}: {why}; what could have happened: {could}")
         return None
+
+    def _breach_of(self, word: Word, position: Position) -> Optional[Breach]:
+        """Return what a word does that is possible but for an assumption; None if that is not what excludes it."""
+        found = breach(self.model, position, word, timed=True)
+        if found is None and self.model.joint_move(position, word.event, word.agent, timed=False) is None:
+            found = breach(self.model, position, word, timed=False)
+        return found
+
+    def _note_broken(self, assumptions: Tuple[Assumption, ...]) -> None:
+        self._automata.set_values({each.variable: 0 for each in assumptions})
+        for each in assumptions:
+            self._log("err", f"an assumption is broken: {each.says}")
 
     def _due_command(self, position: Position, now: float) -> Optional[Tuple[Move, ...]]:
         """Return the moves of an early command that is due now; one that another event has overtaken is dropped."""
@@ -385,6 +406,7 @@ class Mission:
         relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
         trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
+        trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
         trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
         waits = self.robots.reasons()
         trouble = "" if waits else trouble  # another plan begins when these robots can go on

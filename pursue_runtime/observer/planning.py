@@ -52,6 +52,7 @@ class Planning:
     """The steps from one plan to the next: request, proposal, acknowledgement by all controllers, in force.
 
     `excused`: the agents on which the plan in force does not rely; `avoided`: the ways along which it sends nobody;
+    `not_assumed`: the variables of the assumptions on which it does not rely;
     `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has needed
     so far, 0 while they are within ~planning_limit.
     """
@@ -61,6 +62,7 @@ class Planning:
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
         self.avoided: FrozenSet[Way] = frozenset()
+        self.not_assumed: FrozenSet[str] = frozenset()
         self.no_plan_reason = ""
         self.searched = 0.0
         self.lead_time = MIN_LEAD_TIME
@@ -170,6 +172,7 @@ class Planning:
         """Note that the proposal is in force."""
         self.excused = frozenset(proposal.request.excused)
         self.avoided = frozenset(proposal.request.blocked)
+        self.not_assumed = frozenset(name for name, value in proposal.request.values.items() if value == 0)
         self.reset()
 
     def expire(self, proposal: Proposal, now: float) -> None:

@@ -218,7 +218,7 @@ def texts(draw: st.DrawFn) -> str:
 
     def statement() -> List[str]:
         name, other, quoted, number = draw(NAMES), draw(NAMES), f'"{draw(NAMES)}"', str(draw(st.integers(0, 2000)))
-        kind = draw(st.integers(0, 9))
+        kind = draw(st.integers(0, 10))
         if kind == 0:
             return ["poi", quoted]
         if kind == 1:
@@ -236,6 +236,11 @@ def texts(draw: st.DrawFn) -> str:
         if kind == 6:
             moves = maybe("human") + maybe("controllable") + maybe("mobile", number)
             return ["agent", quoted, *moves, "location", name, "can_do", *refs(), "reacts_to", *refs()]
+        if kind == 9:
+            return ["assume", ":", name, *draw(st.sampled_from((
+                ["does", other, "at_most", number, "times"], ["waits", number, "between", other],
+                ["leaves", other, "within", number], ["never", "at", other],
+            )))]  # fmt: skip
         if kind == 7:
             return ["objective", ":", "if", name, "then", other, "within", number]
         if kind == 8:

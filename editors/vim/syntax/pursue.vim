@@ -6,11 +6,11 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent connect event objective poi reach_objective rule state stateDependency travel
+syntax keyword pursueStatement agent assume connect event objective poi reach_objective rule state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
-syntax keyword pursueKeyword after and avoid before can_do collaborative controllable distance do duration false_if human
-syntax keyword pursueKeyword from if initially location mobile never_with one_way only_if or reacts_to takes then to together
-syntax keyword pursueKeyword true_if within
+syntax keyword pursueKeyword after and at at_most avoid before between can_do collaborative controllable distance do does
+syntax keyword pursueKeyword duration false_if from human if initially leaves location mobile never never_with one_way
+syntax keyword pursueKeyword only_if or reacts_to takes then times to together true_if waits within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -1,0 +1,162 @@
+"""Assumptions: what the automata of agents that are not controlled leave out.
+
+Each assumption has a variable that is 1 and that no edge sets. While it is 1, guards keep the agent to what is assumed.
+A mission in which an assumption has been broken goes on with 0 in it, and plans from there do not rely on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Callable, List, Mapping, Optional, Tuple
+
+from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, Scenario, Waits
+from pursue_gen.tga import names
+from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Location, Test
+
+_PAUSE = 1
+"""Time units that an agent rests before it can set off."""
+
+
+def assumed(automaton: Automaton, scenario: Scenario) -> Automaton:
+    """The automaton of an agent, kept to what the scenario assumes of it."""
+    for number, assumption in enumerate(scenario.assumptions, start=1):
+        if assumption.agent.name == automaton.name:
+            automaton = _kept(automaton, number, assumption)
+    return automaton
+
+
+def assumption_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
+    """The variables of the assumptions with their first values."""
+    found: List[Tuple[str, int]] = []
+    for number, assumption in enumerate(scenario.assumptions, start=1):
+        found.append((names.assumption(number), 1))
+        if isinstance(assumption, (AtMost, Waits)):
+            found.append((names.assumption_count(number), 0))
+    return tuple(found)
+
+
+def assumption_clocks(scenario: Scenario) -> Tuple[str, ...]:
+    """The clocks of the assumptions about times."""
+    numbered = enumerate(scenario.assumptions, start=1)
+    return tuple(names.assumption_clock(number) for number, a in numbered if isinstance(a, (Waits, Leaves)))
+
+
+def without_broken(automaton: Automaton, values: Mapping[str, int]) -> Automaton:
+    """The automaton without the invariants of assumptions whose variables are 0 among these values."""
+    broken = {
+        names.assumption_clock(number)
+        for number in range(1, len(values) + 1)
+        if values.get(names.assumption(number)) == 0
+    }
+    if not broken:
+        return automaton
+
+    def free(location: Location) -> Location:
+        return replace(location, invariant=tuple(bound for bound in location.invariant if bound.clock not in broken))
+
+    return replace(automaton, locations=tuple(free(location) for location in automaton.locations))
+
+
+def _kept(automaton: Automaton, number: int, assumption: Assumption) -> Automaton:
+    if isinstance(assumption, AtMost):
+        return _at_most(automaton, number, assumption)
+    if isinstance(assumption, Waits):
+        return _waits(automaton, number, assumption)
+    if isinstance(assumption, Leaves):
+        return _leaves(automaton, number, assumption)
+    return _never_at(automaton, number, assumption)
+
+
+def _at_most(automaton: Automaton, number: int, assumption: AtMost) -> Automaton:
+    """Each time is counted; there is no edge for one time more."""
+    count = names.assumption_count(number)
+
+    def edges(edge: Edge) -> List[Edge]:
+        if not _sends(edge, assumption.event.name):
+            return [edge]
+        counted = [_with(edge, (Test(count, k),), assign=(count, k + 1)) for k in range(assumption.times)]
+        return [*counted, _when_broken(edge, number)]
+
+    return _each(automaton, edges)
+
+
+def _waits(automaton: Automaton, number: int, assumption: Waits) -> Automaton:
+    """The first time is free; a clock runs from the end of each one to the next."""
+    count, clock, event = names.assumption_count(number), names.assumption_clock(number), assumption.event.name
+    lasts = any(_sends(edge, names.done(event)) for edge in automaton.edges)
+
+    def edges(edge: Edge) -> List[Edge]:
+        if _sends(edge, names.done(event)):
+            return [_with(edge, reset=clock)]
+        if not _sends(edge, event):
+            return [edge]
+        reset = "" if lasts else clock
+        again = _with(edge, (Test(count, 1),), bound=ClockBound(clock, ">=", assumption.time), reset=reset)
+        first = _with(edge, (Test(count, 0),), assign=(count, 1), reset=reset)
+        return [first, again, _with(_when_broken(edge, number), reset=reset)]
+
+    return _each(automaton, edges)
+
+
+def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
+    """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
+    place, clock, most = assumption.place.name, names.assumption_clock(number), assumption.time
+    takes = {location.name: max((b.bound for b in location.invariant), default=0) for location in automaton.locations}
+    here = ClockBound(clock, "<=", most)
+    locations = tuple(
+        replace(location, invariant=(*location.invariant, here)) if location.name == place else location
+        for location in automaton.locations
+    )
+
+    def edges(edge: Edge) -> List[Edge]:
+        if edge.target == place and names.is_going(edge.source):
+            return [_with(edge, reset=clock)]
+        if edge.sync is not None and not edge.sync.sends:
+            # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.
+            return [_with(edge, reset=clock)] if edge.target == place else [edge]
+        if edge.source != place or names.is_going(edge.target):
+            return [edge]
+        lasts = 0 if edge.target == place else takes[edge.target]
+        in_time = _with(edge, bound=ClockBound(clock, "<", most - _PAUSE - lasts))
+        return [in_time, _when_broken(edge, number)]
+
+    return _each(replace(automaton, locations=locations), edges)
+
+
+def _never_at(automaton: Automaton, number: int, assumption: NeverAt) -> Automaton:
+    place = assumption.place.name
+    ways = {edge.source for edge in automaton.edges if edge.target == place and names.is_going(edge.source)}
+    return _each(automaton, lambda edge: [_when_broken(edge, number) if edge.target in ways else edge])
+
+
+def _each(automaton: Automaton, edges: Callable[[Edge], List[Edge]]) -> Automaton:
+    """The automaton with these edges in the place of each one."""
+    return replace(automaton, edges=tuple(new for edge in automaton.edges for new in edges(edge)))
+
+
+def _sends(edge: Edge, channel: str) -> bool:
+    return edge.sync is not None and edge.sync.sends and edge.sync.channel == channel
+
+
+def _when_broken(edge: Edge, number: int) -> Edge:
+    """The edge for a mission in which the assumption has been broken."""
+    return _with(edge, (Test(names.assumption(number), 0),))
+
+
+def _with(
+    edge: Edge,
+    clause: Clause = (),
+    bound: Optional[ClockBound] = None,
+    assign: Optional[Tuple[str, int]] = None,
+    reset: str = "",
+) -> Edge:
+    """The edge with one more test, bound, assignment or reset."""
+    guard = edge.guard
+    guard = replace(guard, integers=(*guard.integers, clause)) if clause else guard
+    guard = replace(guard, clocks=(*guard.clocks, bound)) if bound else guard
+    return replace(
+        edge,
+        guard=guard,
+        assign=(*edge.assign, assign) if assign else edge.assign,
+        resets=(*edge.resets, reset) if reset else edge.resets,
+    )

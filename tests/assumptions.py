@@ -1,0 +1,103 @@
+"""Scenarios with assumptions, for tests of every stage."""
+
+from __future__ import annotations
+
+import functools
+from typing import Dict
+
+import yaml
+
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.solution import Solution, solve_scenario
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.workspace import Options, generate
+from pursue_gen.workspace.model_file import render
+from pursue_runtime.model import Model
+
+PLAYROOM = """\
+poi "room"
+event "clean" location room duration 5
+event "spill" location room
+event "inspect" location room
+state "tidy": initially false, true_if clean false_if spill
+stateDependency: inspect only_if tidy is_true
+agent "bot" controllable location room can_do clean, inspect
+agent "child" location room can_do spill
+{}
+reach_objective: do inspect
+"""
+"""A robot tidies up, and a child spills."""
+
+TWICE = "assume: child does spill at_most 2 times"
+SPACED = "assume: child waits 20 between spill"
+
+CAFE = """\
+poi "desk"
+poi "room"
+connect desk and room distance 4
+event "call" location room
+event "serve" location room duration 2
+event "pay" location desk
+agent "waiter" controllable mobile 1 location desk can_do serve, pay
+agent "guest" location room can_do call
+{}
+objective: if call then serve within 20
+reach_objective: do pay after 15
+"""
+"""A guest who calls, and a waiter who answers; won without any assumption as well."""
+
+ONCE = "assume: guest does call at_most 1 times"
+
+MUSEUM = """\
+poi "hall"
+poi "gallery"
+poi "store"
+connect hall and gallery distance 3
+connect gallery and store distance 3
+event "goodbye" collaborative location hall
+event "look" location gallery duration 4
+event "touch" location store
+agent "bot" controllable location hall can_do goodbye
+agent "visitor" mobile 1 location gallery can_do look, touch reacts_to goodbye
+{}
+"""
+"""A visitor who goes where he likes, and a robot that says goodbye to him."""
+
+LEAVES = "assume: visitor leaves gallery within 30"
+AWAY = "assume: visitor never at store"
+GOODBYE = "reach_objective: do goodbye"
+UNTOUCHED = "objective: avoid touch"
+
+
+def scenario(text: str) -> Scenario:
+    """The scenario of a text."""
+    return parse(text, "story.pur", "story")
+
+
+@functools.lru_cache(maxsize=None)
+def solved(text: str) -> Solution:
+    """Its strategy in the default game. Raises PursueError where it is lost."""
+    return solve_scenario(scenario(text), Rules())
+
+
+@functools.lru_cache(maxsize=None)
+def files(text: str) -> Dict[str, bytes]:
+    """Its workspace."""
+    won = solved(text)
+    return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
+
+
+def model(text: str) -> Model:
+    """Its model, as the nodes have it."""
+    return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))
+
+
+@functools.lru_cache(maxsize=None)
+def free_model(text: str) -> Model:
+    """Its model with ends that are reported, whether or not it can be won."""
+    story = scenario(text)
+    rules = Rules()
+    made = render(played(translate(story), rules), scenario_objective(story), story, rules.reaction, "test")
+    return Model(yaml.safe_load(made))

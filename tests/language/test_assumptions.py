@@ -1,0 +1,70 @@
+"""Assumptions in the language: what they say, and what cannot be assumed."""
+
+from __future__ import annotations
+
+from typing import List, Tuple
+
+import pytest
+
+from pursue_gen.language import parse
+from pursue_gen.language.checks import check
+from pursue_gen.language.scenario import AtMost, Leaves, NeverAt, Waits
+from pursue_gen.language.wording import assumption_words
+from tests.assumptions import AWAY, LEAVES, MUSEUM, PLAYROOM, SPACED, TWICE, scenario
+
+
+def findings(text: str) -> List[Tuple[str, int, str]]:
+    return [(f.code, f.span.line if f.span else 0, f.message) for f in check(scenario(text))]
+
+
+def test_each_form_is_read() -> None:
+    twice, spaced = scenario(PLAYROOM.format(f"{TWICE}\n{SPACED}")).assumptions
+    leaves, away = scenario(MUSEUM.format(f"{LEAVES}\n{AWAY}")).assumptions
+    assert isinstance(twice, AtMost) and (twice.agent.name, twice.event.name, twice.times) == ("child", "spill", 2)
+    assert isinstance(spaced, Waits) and (spaced.agent.name, spaced.event.name, spaced.time) == ("child", "spill", 20)
+    assert isinstance(leaves, Leaves) and (leaves.place.name, leaves.time) == ("gallery", 30)
+    assert isinstance(away, NeverAt) and (away.agent.name, away.place.name) == ("visitor", "store")
+    assert [assumption_words(each) for each in (twice, spaced, leaves, away)] == [
+        "child does spill at most 2 times",
+        "child waits 20 units between one spill and the next",
+        "visitor leaves gallery within 30 units",
+        "visitor is never at store",
+    ]
+    assert check(scenario(PLAYROOM.format(f"{TWICE}\n{SPACED}"))) == ()
+
+
+def test_its_words_may_be_names_everywhere_else() -> None:
+    text = (
+        'poi "at" poi "never" connect at and never distance 1 event "waits" location at event "times" '
+        'agent "does" controllable mobile 1 location never can_do waits, times '
+        'agent "leaves" mobile 1 location at can_do times\n'
+        "assume: leaves leaves at within 5 assume: leaves never at never\nreach_objective: do waits"
+    )
+    story = parse(text, "words.pur", "words")
+    assert [f.code for f in check(story)] == []
+    assert [assumption_words(each) for each in story.assumptions] == [
+        "leaves leaves at within 5 units", "leaves is never at never",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "words"),
+    [
+        (PLAYROOM.format("assume: bot does clean at_most 2 times"), "PML250", "bot is controlled"),
+        (PLAYROOM.format("assume: child does spill at_most 101 times"), "PML251", "100 or less"),
+        (PLAYROOM.format("assume: child waits 0 between spill"), "PML251", "1 or more"),
+        (MUSEUM.format("assume: visitor leaves gallery within 1\nreach_objective: do goodbye"), "PML251", "too short"),
+        (MUSEUM.format("assume: visitor never at gallery\nreach_objective: do goodbye"), "PML252", "starts in gallery"),
+        (PLAYROOM.format("assume: child leaves room within 5"), "PML252", "cannot leave it"),
+        (PLAYROOM.format(f"{TWICE}\nassume: child does spill at_most 3 times"), "PML253", "line 9 assumes this"),
+        (PLAYROOM.format("assume: child does clean at_most 2 times"), "PML254", "cannot do clean anyway"),
+    ],
+)
+def test_what_cannot_be_assumed_is_reported_once(text: str, code: str, words: str) -> None:
+    ((found, _, message),) = findings(text)
+    assert found == code and words in message
+
+
+def test_an_unknown_name_is_reported_and_nothing_else() -> None:
+    assert [code for code, *_ in findings(PLAYROOM.format("assume: cat does spill at_most 2 times"))] == ["PML110"]
+    assert [code for code, *_ in findings(PLAYROOM.format("assume: child does spil at_most 2 times"))] == ["PML110"]
