@@ -131,9 +131,12 @@ class JointMove:
 
     `bounds` is the clock guard of all the edges; it says nothing of the target's invariant.
 
-    `changes_nothing`: it leads to the same state again, with all clocks as they were; a command also if it only changes
-    what cannot matter. It is no move to solver and checker: whoever makes it, and however often, nothing has happened.
-    So it makes no command stale, and is no way out at the bound of an invariant: nobody keeps time from passing by it.
+    `changes_nothing`: it leads to the same state again, with all clocks as they were; a command also if it is unseen.
+    It is no move to solver and checker: whoever makes it, and however often, nothing has happened. So it makes no
+    command stale, and is no way out at the bound of an invariant: nobody keeps time from passing by it.
+
+    `is_unseen`: it changes at most what cannot matter. A strategy for the whole game has to follow such a move of the
+    environment, but it is no way out either: without what cannot matter it would be no move.
     """
 
     edges: Tuple[int, ...]
@@ -143,6 +146,7 @@ class JointMove:
     controllable: bool
     owner: int
     changes_nothing: bool
+    is_unseen: bool
 
 
 def compile_game(
@@ -403,10 +407,7 @@ def _joint_move(game: Game, state: State, owner: int, numbers: Tuple[int, ...]) 
     controllable = all(edge.controllable for edge in edges)
     before, after = (*state.locations, *state.values), (*locations, *values)
     changed = [k for k, (old, new) in enumerate(zip(before, after)) if old != new]
-    if controllable:
-        noticed = any(k not in game.unseen for k in changed) or any(x not in game.unseen_clocks for x in resets)
-    else:
-        noticed = bool(changed or resets)
+    is_unseen = all(k in game.unseen for k in changed) and all(x in game.unseen_clocks for x in resets)
     return JointMove(
         edges=numbers,
         target=State(tuple(locations), tuple(values)),
@@ -414,5 +415,6 @@ def _joint_move(game: Game, state: State, owner: int, numbers: Tuple[int, ...]) 
         resets=resets,
         controllable=controllable,
         owner=owner,
-        changes_nothing=not noticed,
+        changes_nothing=is_unseen if controllable else not (changed or resets),
+        is_unseen=is_unseen,
     )

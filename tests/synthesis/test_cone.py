@@ -132,6 +132,8 @@ IDLE = Edge("here", "here")
 GO, BACK = Edge("here", "there"), Edge("there", "here")
 CALLING = Edge("here", "here", sync=Sync("a", True))
 HEARING = (Edge("here", "there", sync=Sync("a", False)), Edge("there", "here", sync=Sync("a", False)))
+OTHERS_CALL = replace(CALLING, controllable=False)
+NOTING = Edge("here", "here", sync=Sync("a", False), resets=("z",))
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])
@@ -146,16 +148,22 @@ HEARING = (Edge("here", "there", sync=Sync("a", False)), Edge("there", "here", s
         ((CALLING,), ()),
         ((CALLING,), HEARING),
         ((replace(IDLE, assign=(("w", 0),)),), ()),
+        ((OTHERS_CALL,), ()),
+        ((OTHERS_CALL,), HEARING),
+        ((OTHERS_CALL,), (NOTING,)),
     ],
-    ids=["nobody", "idle", "to and fro", "itself", "calling", "calling, heard", "the same again"],
+    ids=[
+        "nobody", "idle", "to and fro", "itself", "calling", "calling, heard", "the same again",
+        "called", "called, heard", "called, noted",
+    ],
 )
-def test_no_command_that_changes_nothing_keeps_time_from_passing(
+def test_no_move_that_changes_nothing_keeps_time_from_passing(
     engine: str, whole: bool, own: Tuple[Edge, ...], others: Tuple[Edge, ...]
 ) -> None:
     # Whoever has to be away before the end of his time and is not must not be saved by moves without end.
     late = Automaton("A", SOON_OVER, "here", (AWAY, *own))
     bystander = Automaton("B", (Location("here"), Location("there")), "here", others)
-    network = Network(("x",), (("w", 0),), ("a",), (late, bystander))
+    network = Network(("x", "z"), (("w", 0),), ("a",), (late, bystander))
     assert not solve(network, NEVER_BAD, engine=engine, whole=whole).won
     saved = replace(network, automata=(replace(late, edges=(*late.edges, GO)), bystander))
     assert solve(saved, NEVER_BAD, engine=engine, whole=whole).won

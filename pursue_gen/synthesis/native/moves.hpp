@@ -65,11 +65,14 @@ struct Joint {
     std::vector<std::pair<int, int>> writes;  // index in the discrete state, value
     std::vector<std::pair<int, int>> extensions;  // edge id, number of the joint move that has this edge as well
 
-    // True for a move that is none: it leads back to d, and no clock notices; what cannot matter does not make a move of a
-    // command.
+    // True for a move that is none: it leads back to d, and no clock notices; a command also if it is unseen.
     bool changes_nothing(const Discrete& d, const Game& game) const {
+        return controllable ? is_unseen(d, game) : resets.empty() && target(d) == d;
+    }
+
+    // True for a move from d that changes at most what cannot matter.
+    bool is_unseen(const Discrete& d, const Game& game) const {
         Discrete after = target(d);
-        if (!controllable) return resets.empty() && after == d;
         for (int k : game.unseen) after[k] = d[k];
         return after == d && std::all_of(resets.begin(), resets.end(), [&](int x) {
                    return std::find(game.unseen_clocks.begin(), game.unseen_clocks.end(), x) != game.unseen_clocks.end();

@@ -18,6 +18,7 @@ struct Piece {
 
 struct Transition {
     int joint, target;
+    bool unseen;  // it changes at most what cannot matter: it obliges nobody
 };
 
 // Of whose moves a search follows only a few at first; it opens the rest later.
@@ -129,8 +130,9 @@ class ZoneGraph {
         for (const int j : enabled_) {
             const Joint& joint = joints_[j];
             if (joint.changes_nothing(d, game_)) continue;
-            if (full || follows(d, joint, preferred, chosen)) follow(k, j, node(joint.target(d)));
-            else if (!joint.controllable) nodes_[k].unfollowed.push_back({j, node(joint.target(d))});
+            const bool unseen = joint.is_unseen(d, game_);
+            if (full || follows(d, joint, preferred, chosen)) follow(k, {j, node(joint.target(d)), unseen});
+            else if (!joint.controllable) nodes_[k].unfollowed.push_back({j, node(joint.target(d)), unseen});
         }
         enqueue(k);
     }
@@ -153,11 +155,12 @@ class ZoneGraph {
         return first;
     }
 
-    void follow(int k, int joint, int target) {
+    void follow(int k, const Transition& move) {
         for (const Transition& transition : nodes_[k].transitions)
-            if (transition.joint == joint) return;
-        nodes_[k].transitions.push_back({joint, target});
-        if (nodes_[target].parents.empty() || nodes_[target].parents.back() != k) nodes_[target].parents.push_back(k);
+            if (transition.joint == move.joint) return;
+        nodes_[k].transitions.push_back(move);
+        std::vector<int>& parents = nodes_[move.target].parents;
+        if (parents.empty() || parents.back() != k) parents.push_back(k);
     }
 
     void enqueue(int k) {
@@ -259,13 +262,13 @@ class ZoneGraph {
         return out;
     }
 
-    // The points where automaton a can make an uncontrollable move of its own, followed or not.
+    // The points where automaton a can make an uncontrollable move of its own, followed or not, that is not unseen.
     Federation<Z> own_moves(const Node<Z>& n, int a) const {
         Federation<Z> out;
         for (const std::vector<Transition>* transitions : {&n.transitions, &n.unfollowed})
             for (const Transition& transition : *transitions) {
                 const Joint& joint = joints_[transition.joint];
-                if (joint.owner != a || joint.controllable) continue;
+                if (joint.owner != a || joint.controllable || transition.unseen) continue;
                 Z anywhere = universe<Z>();
                 if (invariant(nodes_[transition.target], anywhere)) before(n, joint, {anywhere}, out);
             }
