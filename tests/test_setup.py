@@ -192,7 +192,14 @@ def test_run_explains_itself() -> None:
 def test_run_does_not_know_other_words() -> None:
     told = called([ROOT / "run", "away"], ROOT, dict(os.environ))
     assert told.returncode == 2
-    assert "There is no ./run away" in told.stdout
+    assert "There is no ./run away.\n" in told.stdout
+
+
+@pytest.mark.parametrize(("word", "near"), [("misson", "mission"), ("tests", "test"), ("set-up", "setup")])
+def test_run_proposes_the_word_that_is_meant(word: str, near: str) -> None:
+    told = called([ROOT / "run", word], ROOT, dict(os.environ))
+    assert told.returncode == 2
+    assert f"There is no ./run {word}. Did you mean ./run {near}?\n" in told.stdout
 
 
 def test_the_events_of_a_mission_are_counted(tmp_path: Path) -> None:
