@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -59,7 +60,7 @@ def replay(
     if timeline is not None:
         _draw(record, game, recording, timeline)
     findings = check(record, game, tolerance)
-    _print(findings, record, recording, quiet, as_json_)
+    _print(findings, game, record, recording, quiet, as_json_)
     if not (findings.kept and findings.won):
         raise typer.Exit(1)
 
@@ -75,14 +76,19 @@ def _draw(record: MissionRecord, game: Game, recording: Path, timeline: Path) ->
     info(f"{timeline} shows the mission")
 
 
-def _print(findings: Findings, record: MissionRecord, recording: Path, quiet: bool, as_json_: bool) -> None:
+def _print(
+    findings: Findings, game: Game, record: MissionRecord, recording: Path, quiet: bool, as_json_: bool
+) -> None:
     from pursue_gen.replay.summary import as_json, listed, summary, verdict
+    from pursue_gen.workspace.model_file import model_data
+    from pursue_runtime.model import Model
 
     if as_json_:
         print(json.dumps(as_json(findings, record, str(recording)), indent=1))
         info(verdict(findings))
         return
-    for line in listed(findings, notes=not quiet) if not quiet or not findings.kept else ():
-        print(line)
+    if not quiet or not findings.kept:
+        model = Model(model_data(game.network, game.objective, game.scenario, Fraction(0)))
+        print(*listed(findings, model, notes=not quiet), sep="\n")
     print(summary(findings))
     print(verdict(findings))

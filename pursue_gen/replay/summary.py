@@ -7,12 +7,17 @@ from typing import Any, Dict, Iterator, List
 from pursue_gen.replay.check import Findings, ReplayedStep
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.record import MissionRecord
+from pursue_runtime.model import Model
+from pursue_runtime.ui.phrases import sentence
 
 _MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: "}
 
 
-def listed(findings: Findings, notes: bool = True) -> Iterator[str]:
-    """The mission line by line: each step with its moment in time units, below it what was found there."""
+def listed(findings: Findings, model: Model, notes: bool = True) -> Iterator[str]:
+    """The mission line by line: each step with its moment in time units, below it what was found there.
+
+    Steps are in the words of the node UI.
+    """
     about: Dict[int, List[Finding]] = {}
     for finding in findings.findings:
         if notes or finding.level != NOTE:
@@ -21,7 +26,7 @@ def listed(findings: Findings, notes: bool = True) -> Iterator[str]:
     yield f"{'at':>9} {'state':>6}"
     for seq in sorted({*steps, *about}):
         if seq in steps:
-            yield f"{_at(findings, steps[seq]):9.2f} {seq:6}  {_step(steps[seq])}"
+            yield f"{_at(findings, steps[seq]):9.2f} {seq:6}  {_step(steps[seq], model)}"
         for finding in about.get(seq, ()):
             head = f"{seq:16}  " if seq not in steps and finding is about[seq][0] else " " * 18
             yield f"{head}{_MARKS[finding.level]}{finding.text}"
@@ -90,9 +95,8 @@ def _at(findings: Findings, step: ReplayedStep) -> float:
     return (step.state.stamp - findings.start) / step.state.unit
 
 
-def _step(step: ReplayedStep) -> str:
-    state, word = step.state, step.word
-    what = state.event if state.event.startswith(state.agent) else f"{state.event} ({state.agent})"
+def _step(step: ReplayedStep, model: Model) -> str:
+    word, what = step.word, sentence(model, step.state, step.before)
     if word is None:
         return what
     return f"{what}, {'command' if step.is_command else 'report'}{f' of {word.node}' if word.node else ''}"

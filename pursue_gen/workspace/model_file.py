@@ -22,9 +22,14 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
         f"The automata of {scenario.name}, written by pursue-gen {generator}.",
         "Clocks count time units; an event moves one sender (or owner) and every automaton that can receive it.",
     )
+    return yaml_text(model_data(network, objective, scenario, reaction), head)
+
+
+def model_data(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction) -> Dict[str, Any]:
+    """The data of model.yaml, see `render`."""
     kinds = _kinds(scenario)
     goal, bad = _place(objective.goal), _place(objective.bad)
-    data = {
+    data: Dict[str, Any] = {
         "format": 1,
         "scenario": scenario.name,
         "reaction": number(reaction),
@@ -35,7 +40,7 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
     }
     if scenario.assumptions:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
-    return yaml_text(data, head)
+    return data
 
 
 def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str]]:

@@ -33,7 +33,7 @@ def test_a_bag_alone_is_enough(bag: Path) -> None:
     done = called(bag)
     assert done.status == 0, done.out + done.err
     assert done.out.splitlines()[-1] == "The mission kept to the model and was won."
-    assert "    10.40      5  bot1_going_c_to_b2b, report of simulator" in done.out
+    assert "    10.40      5  bot1 arrives at b, report of simulator" in done.out
 
 
 def test_the_scenario_may_be_named(bag: Path, tmp_path: Path) -> None:
