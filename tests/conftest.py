@@ -48,8 +48,22 @@ def pytest_configure(config: pytest.Config) -> None:
         settings.load_profile("explore")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """With pytest-xdist, each worker compiles other test files."""
+    worker = getattr(session.config, "workerinput", None)
+    if worker is not None:
+        from tests.schedule import files_in, from_its_share_on
+
+        files = files_in(session.config.args)
+        if files:
+            session.config.args = from_its_share_on(files, int(worker["workerid"][2:]), worker["workercount"])
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
     """With `--explore`: multiplies the examples of each property test, those with a number of their own included."""
+    items.sort(key=lambda item: str(item.path))  # the same order on all workers
     if not config.getoption("--explore"):
         return
     changed: Set[int] = set()

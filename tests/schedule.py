@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable
+from pathlib import Path
+from typing import Any, Iterable, List, Sequence
 
 import pytest
 from xdist.scheduler import LoadScopeScheduling
@@ -43,6 +44,22 @@ def rank(file: str) -> int:
 def best(files: Iterable[str], worker: str) -> str:
     """The longest of these files that is of the kind that the worker prefers; of any kind where there is none."""
     return min(files, key=lambda file: (("tests/ros/" in file) != (worker in ROS_WORKERS), rank(file)))
+
+
+def files_in(folders: Sequence[str]) -> List[str]:
+    """The test files in these folders, in order; none where one of them is no folder."""
+    if not all(Path(folder).is_dir() for folder in folders):
+        return []
+    return [str(file) for folder in folders for file in sorted(Path(folder).rglob("test_*.py"))]
+
+
+def from_its_share_on(files: Sequence[str], worker: int, workers: int) -> List[str]:
+    """All files, from the worker's share on: it compiles its share, and finds the others' compiled when it comes there.
+
+    pytest's assertions take longer to compile than everything else in the collection of tests.
+    """
+    first = len(files) * worker // workers
+    return [*files[first:], *files[:first]]
 
 
 class LongestFirst(LoadScopeScheduling):
