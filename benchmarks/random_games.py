@@ -70,7 +70,7 @@ def random_game(number: int, kind: Kind) -> Tuple[Network, Objective]:
     losing = draw.choice(("A0", f"A{count - 1}"))
     if kind is Kind.REACH_WHILE_SAFE:
         losing = f"A{count - 1}"
-    return network, Objective(kind, goal=("A0", places[-1]), bad=(losing, places[-1]))
+    return network, Objective(kind, goal=(("A0", places[-1]),), bad=((losing, places[-1]),))
 
 
 def _automaton(

@@ -147,9 +147,11 @@ def _event(edge: Edge) -> str:
 
 def _ends(objective: Objective) -> Set[Tuple[str, str]]:
     """Where the game is over; an objective may name a place that its kind has no use for."""
-    goal = None if objective.kind is Kind.SAFETY else objective.goal
-    bad = None if objective.kind is Kind.REACH else objective.bad
-    return {place for place in (goal, bad) if place is not None}
+    goal = () if objective.kind is Kind.SAFETY else objective.goal
+    bad = () if objective.kind is Kind.REACH else objective.bad
+    if len(goal) > 1:
+        raise ValueError("several goals at once are not written in TChecker's format")
+    return {*goal, *bad}
 
 
 def _bound(bound: ClockBound) -> str:

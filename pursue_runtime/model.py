@@ -88,8 +88,10 @@ class Model:
             )
             objective = data["objective"]
             self.objective = str(objective["kind"])
-            self.goal: Optional[Tuple[str, str]] = tuple(objective["goal"]) if objective["goal"] else None
-            self.bad: Optional[Tuple[str, str]] = tuple(objective["bad"]) if objective["bad"] else None
+            self.goal = places_of(objective["goal"])
+            """Automata and their locations: the goal is reached where all of them are there at once."""
+            self.bad = places_of(objective["bad"])
+            """The same: the mission is lost where any of them is there."""
         except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
             raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
         self._by_name = {automaton.name: automaton for automaton in self.automata}
@@ -171,6 +173,12 @@ class Model:
         return all(
             holds(self.bounds_of(name, edge.target, after.values), after.clocks, EPSILON) for name, edge in moves
         )
+
+
+def places_of(data: Any) -> Tuple[Tuple[str, str], ...]:
+    """Automata and locations as data files have them: one pair, a list of pairs, or nothing."""
+    pairs = [data] if data and isinstance(data[0], str) else data or []
+    return tuple((str(automaton), str(location)) for automaton, location in pairs)
 
 
 def _automaton(data: Mapping[str, Any]) -> Automaton:

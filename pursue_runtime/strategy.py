@@ -26,6 +26,9 @@ from pursue_runtime.locations import automaton_clock, is_action
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 
+OBJECTIVES = ("reachObj", "obj")
+"""The automata of objectives where a strategy does not name them."""
+
 Payload = TypeVar("Payload")
 
 
@@ -148,6 +151,8 @@ class Strategy:
     def __init__(self, data: Mapping[str, Any]) -> None:
         try:
             self.agents: List[str] = list(data["commands_agents"])
+            self.objectives = frozenset(map(str, data.get("objectives", OBJECTIVES)))
+            """Those of its agents that are no agents: the automata of objectives."""
             self.reacts_to = {
                 str(robot): {str(event): tuple(map(str, doers)) for event, doers in events.items()}
                 for robot, events in dict(data.get("reacts_to") or {}).items()

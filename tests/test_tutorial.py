@@ -113,7 +113,7 @@ def test_the_mission_that_the_page_shows_is_one_of_the_model(ward: Path) -> None
         at, what = float(line[:8]), line[10:]
         assert at >= last
         position, last = following(model, position, what), at
-    assert model.goal is not None and position.locations[model.goal[0]] == model.goal[1]
+    assert model.goal == (("reachObj", "win"),) and position.locations["reachObj"] == "win"
     assert end == f"The goal is reached, after {last:.1f} time units."
     assert last <= worst_time()
 

@@ -28,7 +28,6 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga import names
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 from pursue_gen.zones.dbm import constant
@@ -106,7 +105,8 @@ def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:
     """The joint moves with which the controller could begin and does not in this play, and waiting if it does not."""
     game = main.game
     start = initial_state(game)
-    agents = {k for k, automaton in enumerate(game.automata) if automaton.name not in (names.REACH, names.OBJECTIVE)}
+    watching = {automaton for automaton, _ in (*game.goal, *game.bad)}
+    agents = {k for k in range(len(game.automata)) if k not in watching}
     done = [step for step in main.steps if game.edges[step.edges[0]].controllable and step.owner in agents]
     known = {done[0].edges[0]} if done else set()
     found: List[Tuple[int, ...]] = [()] if done else []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import AbstractSet, Callable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
@@ -131,9 +131,9 @@ class Controller:
         if self._planner is None:
             return None
         state = here.state
-        if self._at_risk is not None:
-            number, place = self._at_risk
-            state = replace(state, locations=(*state.locations[:number], place, *state.locations[number + 1 :]))
+        if self._at_risk:
+            locations = tuple(self._at_risk.get(number, place) for number, place in enumerate(state.locations))
+            state = replace(state, locations=locations)
         new = [(move, open_) for move, open_ in windows if move.target not in self._been]
         for offered in (new, windows):
             liked = self._planner.choose(state, [move for move, _ in offered])
@@ -160,17 +160,21 @@ def _both(a: Window, b: Window) -> Window:
     return common if b.high is None else common.at_most(b.high, b.high_open)
 
 
-def _planner(game: Game) -> Tuple[Optional[RelaxedPlanner], Optional[Tuple[int, int]]]:
-    """Plans for the goal; where there is a deadline only, always for the way out of risk: the next risk comes."""
-    if game.goal is not None:
-        return RelaxedPlanner(game), None
-    assert game.bad is not None, "an objective names a goal or what is bad"
-    number = game.bad[0]
-    locations = game.automata[number].locations
-    if names.AT_RISK not in locations:
-        return None, None
-    idle = (number, locations.index(names.IDLE))
-    return RelaxedPlanner(replace(game, goal=idle)), (number, locations.index(names.AT_RISK))
+def _planner(game: Game) -> Tuple[Optional[RelaxedPlanner], Mapping[int, int]]:
+    """Plans for the goal; where there are deadlines only, always for the way out of risk: the next risk comes.
+
+    With the automata that watch deadlines, and their locations at risk.
+    """
+    if game.goal:
+        return RelaxedPlanner(game), {}
+    idle: List[Tuple[int, int]] = []
+    at_risk: Dict[int, int] = {}
+    for number in dict.fromkeys(automaton for automaton, _ in game.bad):
+        locations = game.automata[number].locations
+        if names.AT_RISK in locations:
+            idle.append((number, locations.index(names.IDLE)))
+            at_risk[number] = locations.index(names.AT_RISK)
+    return (RelaxedPlanner(replace(game, goal=tuple(idle))), at_risk) if idle else (None, {})
 
 
 def _named(game: Game, state: State) -> DiscreteState:

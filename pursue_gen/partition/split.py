@@ -13,7 +13,7 @@ from typing import Dict, List, Sequence, Tuple
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Agent
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
-from pursue_gen.tga.names import OBJECTIVE, REACH
+from pursue_gen.tga.names import is_reach_objective, is_safety_objective
 from pursue_gen.tga.network import Network, is_end
 
 DISTRIBUTED, CENTRALIZED, GENERAL = "distributed", "centralized", "general"
@@ -31,13 +31,15 @@ class SubStrategy:
 
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
     no program: its commands are instructions to people. `reacts_to` has, for its robots that take part in collaborative
-    events of others, these events and the controllable agents that do them.
+    events of others, these events and the controllable agents that do them. `objectives` are those of `agents` that
+    are no agents: the automata of objectives.
     """
 
     controller: str
     agents: Tuple[str, ...]
     blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
     reacts_to: Tuple[Tuple[str, str, Tuple[str, ...]], ...] = ()
+    objectives: Tuple[str, ...] = ()
 
     @property
     def commands(self) -> int:
@@ -68,16 +70,23 @@ def partition(
     if strategy.counter:
         message = "a counter-strategy cannot be given to controllers: its moves are the opponent's"
         raise PursueError([error("PAR003", message, hint="use a plan whose property is satisfied")], exit_status=4)
-    _check_senders(strategy, network, (*robots, *humans))
-    senders = {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
     names = tuple(automaton.name for automaton in network.automata)
-    objectives = tuple(n for n in names if n == REACH or (n == OBJECTIVE and n in senders))
+    known = {agent.name for agent in agents}
+    reach = tuple(name for name in names if is_reach_objective(name) and name not in known)
+    safety = tuple(name for name in names if is_safety_objective(name) and name not in known)
+    _check_senders(strategy, network, (*robots, *humans, *reach, *safety))
+    senders = {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
+    objectives = tuple(n for n in names if n in reach or (n in safety and n in senders))
     owners = _owners(robots, objectives, controllers, reach_obj)
     if humans:
         owners[UI] = humans
     return tuple(
         SubStrategy(
-            name, commanded, _select(strategy, commanded, controllers == GENERAL), _reactions(agents, commanded)
+            name,
+            commanded,
+            _select(strategy, commanded, controllers == GENERAL),
+            _reactions(agents, commanded),
+            tuple(automaton for automaton in commanded if automaton in objectives),
         )
         for name, commanded in owners.items()
     )
@@ -143,12 +152,12 @@ def _check_options(controllers: str, reach_obj: str, robots: Tuple[str, ...]) ->
 
 
 def _check_senders(strategy: Strategy, network: Network, controlled: Tuple[str, ...]) -> None:
-    """Raises PursueError where a command's automaton is neither an agent that is controlled nor an objective."""
+    """Raises PursueError where a command's automaton is neither an agent that is controlled nor an objective's."""
     known = {automaton.name for automaton in network.automata}
     for block in strategy.blocks:
         for command in block.commands:
             name = command.moves[0].automaton
-            if name in controlled or (name in (REACH, OBJECTIVE) and name in known):
+            if name in controlled:
                 continue
             edge = command.moves[0].edge
             what = "an agent or rule that nobody controls" if name in known else "no automaton of the network"

@@ -11,6 +11,7 @@ from typing import Any, Dict, Iterable, List, Union
 from pursue_gen.partition.split import SubStrategy
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
+from pursue_gen.tga.names import OBJECTIVE, REACH
 from pursue_gen.tga.words import event_word
 
 
@@ -22,10 +23,12 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
     reacts_to: Dict[str, Dict[str, List[str]]] = {}
     for robot, event, doers in sub.reacts_to:
         reacts_to.setdefault(robot, {})[event] = list(doers)
+    named = not {REACH, OBJECTIVE}.issuperset(sub.objectives)
     return {
-        "format": 1,
+        "format": 2 if named else 1,
         "controller": sub.controller,
         "commands_agents": list(sub.agents),
+        **({"objectives": list(sub.objectives)} if named else {}),
         **({"reacts_to": reacts_to} if reacts_to else {}),
         "reaction": number(reaction),
         "strategy": [

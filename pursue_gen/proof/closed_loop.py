@@ -44,8 +44,8 @@ class ClosedLoop:
         scale = _scale(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
         self.arena, self.strategy = (arenas or Arena.kept(network))(scale), strategy
         self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
-        self.goal = None if objective.kind is Kind.SAFETY else _place(network, objective.goal)
-        self.bad = None if objective.kind is Kind.REACH else _place(network, objective.bad)
+        self.goal = () if objective.kind is Kind.SAFETY else _places(network, objective.goal)
+        self.bad = () if objective.kind is Kind.REACH else _places(network, objective.bad)
         self.used: Set[ZoneKey] = set()
         self.ranks = None if objective.kind is Kind.SAFETY else ranks
         self._advice: Dict[State, Advice] = {}
@@ -66,12 +66,12 @@ class ClosedLoop:
         return MaxConstants(self.arena, self._described, self.rules.reaction)
 
     def won(self, state: State) -> bool:
-        """True in the goal."""
-        return self.goal is not None and state[0][self.goal[0]] == self.goal[1]
+        """True in the goal: in all of its locations at once."""
+        return bool(self.goal) and all(state[0][k] == location for k, location in self.goal)
 
     def lost(self, state: State) -> bool:
-        """True in the bad location."""
-        return self.bad is not None and state[0][self.bad[0]] == self.bad[1]
+        """True in a bad location."""
+        return any(state[0][k] == location for k, location in self.bad)
 
     def successors(self, entry: Entry) -> List[Tuple[JointMove, Entry]]:
         """All next entries. Raises Broken where the strategy fails on the way to them."""
@@ -220,14 +220,18 @@ def _same(some: Sequence[object], others: Sequence[object]) -> bool:
     return len(some) == len(others) and all(one in others for one in some)
 
 
-def _place(network: Network, place: Optional[Tuple[str, str]]) -> Optional[Tuple[int, str]]:
-    """(automaton, location) with the number of the automaton."""
-    if place is None:
+def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[int, str], ...]:
+    """Pairs (automaton, location) with the numbers of the automata."""
+    if not places:
         raise PursueError([error("SYN105", "the objective names no goal or no location to avoid")])
+    return tuple((_number(network, name, location), location) for name, location in places)
+
+
+def _number(network: Network, name: str, location: str) -> int:
     for k, automaton in enumerate(network.automata):
-        if automaton.name == place[0] and any(location.name == place[1] for location in automaton.locations):
-            return k, place[1]
-    problem = f"the objective speaks of {place[0]}.{place[1]}, which the network does not have"
+        if automaton.name == name and any(other.name == location for other in automaton.locations):
+            return k
+    problem = f"the objective speaks of {name}.{location}, which the network does not have"
     raise PursueError([error("SYN105", problem)])
 
 

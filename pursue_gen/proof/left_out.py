@@ -80,9 +80,9 @@ def why_it_matters(
     places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
     noticed = _Noticed({name for name, _ in part.variables}, set(part.clocks), *_channels(part.automata))
-    for place in (objective.goal, objective.bad):
-        if place is not None and place[0] not in kept:
-            return f"the objective is about {place[0]}"
+    for name, _ in (*objective.goal, *objective.bad):
+        if name not in kept:
+            return f"the objective is about {name}"
     for automaton in network.automata:
         if automaton.name in kept:
             why = _why_an_edge_matters(automaton, kept[automaton.name], part)

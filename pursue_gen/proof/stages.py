@@ -86,10 +86,10 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
 
 def stage_objective(objective: Objective, goal: Place, extent: Extent) -> Objective:
     """What is wanted in a part of a stage: to come to its goal, and to avoid what may happen at all in the stage."""
-    bad = objective.bad
-    if objective.kind is Kind.REACH_WHILE_SAFE and bad is not None and bad[1] not in extent.places[bad[0]]:
-        return Objective(Kind.REACH, goal)
-    return replace(objective, goal=goal)
+    if objective.kind is not Kind.REACH_WHILE_SAFE:
+        return replace(objective, goal=(goal,))
+    bad = tuple((name, location) for name, location in objective.bad if location in extent.places[name])
+    return Objective(Kind.REACH_WHILE_SAFE if bad else Kind.REACH, (goal,), bad)
 
 
 def is_sure(known: Known, milestone: Place) -> bool:
@@ -165,7 +165,7 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
     milestones = [place for stage in strategy.stages for place in stage]
     if len({name for name, _ in milestones}) != len(milestones):
         return "an automaton has two milestones"
-    if strategy.stages[-1] != (objective.goal,):
+    if len(objective.goal) != 1 or strategy.stages[-1] != objective.goal:
         return "the last stage does not end at the goal"
     if None in strategy.parts:
         state = strategy.blocks[strategy.parts.index(None)].state

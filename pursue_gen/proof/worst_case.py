@@ -17,7 +17,7 @@ from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.stages import parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import ClockBound, Constraint, Kind, Location, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Kind, Location, Network, Objective
 
 INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units."""
@@ -55,21 +55,20 @@ def with_counter(network: Network) -> Network:
 def with_deadline(network: Network, objective: Objective, bound: int) -> Network:
     """The network in which the goal has to be reached while the counting clock is at most `bound` time units.
 
-    It must have such a clock (see `with_counter`).
+    It must have such a clock (see `with_counter`). Of several locations of the goal each bounds the clock: where one
+    waits for another at the deadline, time is blocked and nobody is obliged to move, which does not reach the goal.
     """
     clock = counting_clock(network)
-    assert clock is not None and objective.goal is not None
-    owner, goal = objective.goal
+    assert clock is not None
+    limit = ClockBound(clock, "<=", bound)
 
-    def limited(location: Location) -> Location:
-        if location.name != goal:
+    def limited(automaton: Automaton, location: Location) -> Location:
+        if (automaton.name, location.name) not in objective.goal:
             return location
-        return replace(location, invariant=(*location.invariant, ClockBound(clock, "<=", bound)))
+        return replace(location, invariant=(*location.invariant, limit))
 
-    automata = tuple(
-        replace(a, locations=tuple(map(limited, a.locations))) if a.name == owner else a for a in network.automata
-    )
-    return replace(network, automata=automata)
+    automata = (replace(a, locations=tuple(limited(a, place) for place in a.locations)) for a in network.automata)
+    return replace(network, automata=tuple(automata))
 
 
 def worst_case(

@@ -84,10 +84,11 @@ def _lost(why: str) -> Dict[str, Any]:
 
 def _reason_lost(network: Network, objective: Objective) -> str:
     """Why the mission is lost already; "" if it is not."""
-    places = [(automaton.name, automaton.initial) for automaton in network.automata]
-    if objective.bad in places and objective.goal not in places:
-        return f"the mission is lost already: {objective.bad[0]} is in {objective.bad[1]}" if objective.bad else ""
-    return ""
+    places = {(automaton.name, automaton.initial) for automaton in network.automata}
+    if objective.goal and set(objective.goal) <= places:
+        return ""
+    broken = next((place for place in objective.bad if place in places), None)
+    return f"the mission is lost already: {broken[0]} is in {broken[1]}" if broken else ""
 
 
 def _cannot_be_met(game: Network, request: Request) -> str:

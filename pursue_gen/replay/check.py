@@ -14,6 +14,7 @@ from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
+from pursue_gen.tga.network import Edge
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
 
@@ -273,16 +274,23 @@ class _Checker:
 
     def _end(self, last: SystemState) -> None:
         goal, bad = self._game.objective.goal, self._game.objective.bad
-        if last.status == WON and goal is not None and last.locations[goal[0]] != goal[1]:
-            self._report(FAULT, "end", last, f"its status is won, but {goal[0]} is not {goal[1]}")
-        if last.status == WON and bad is not None and last.locations[bad[0]] == bad[1]:
-            self._report(FAULT, "end", last, f"its status is won, but {bad[0]} is {bad[1]}")
+        if last.status == WON:
+            for name, location in goal:
+                if last.locations[name] != location:
+                    self._report(FAULT, "end", last, f"its status is won, but {name} is not {location}")
+            for name, location in bad:
+                if last.locations[name] == location:
+                    self._report(FAULT, "end", last, f"its status is won, but {name} is {location}")
         if last.status not in (*ENDED, WAITING):
             overdue = self.moves.overdue(place_of(last), self._clocks_at(last))
             for agent, late in overdue.items():
                 if late > self._tolerance:
                     text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
                     self._report(WORLD, "late", last, text)
+
+    def _is_deadline(self, agent: str, edge: Edge) -> bool:
+        """True for a step by which an objective itself becomes broken."""
+        return edge.sync is None and (agent, edge.target) in self._game.objective.bad
 
     # What was done, by whom -------------------------------------------------------------------------------------------
 
@@ -293,7 +301,7 @@ class _Checker:
             before, state = step.before, step.state
             clocks = _aged(before, state)
             by, late = self.moves.untimely(step.move, place_of(before), clocks)
-            own = step.move[0][0] == (self._game.objective.bad or ("", ""))[0]
+            own = self._is_deadline(*step.move[0])
             if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
                 how = "late" if late else "early"
                 text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
@@ -316,7 +324,7 @@ class _Checker:
         for step in steps:
             before, state, word = step.before, step.state, step.word
             agent, edge = step.move[0]
-            own = agent == (self._game.objective.bad or ("", ""))[0] and edge.sync is None
+            own = self._is_deadline(agent, edge)
             if word is None:
                 if not own:
                     text = f"no word for {state.event} was recorded"

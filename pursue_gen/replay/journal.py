@@ -217,9 +217,10 @@ class _Walk:
         self._noted = [word for word in self._noted if self._moves.sharing(self._place, word.event, word.agent)]
         self._zeros.update(dict.fromkeys(resets, at))
         self._agent, self._event = move[0][0], self._moves.word(*move[0])
-        if _at(self._place, self._objective.goal):
+        goal, bad = self._objective.goal, self._objective.bad
+        if goal and all(_at(self._place, where) for where in goal):
             self._status = WON
-        elif _at(self._place, self._objective.bad):
+        elif any(_at(self._place, where) for where in bad):
             self._status = LOST
 
     def _ending(self, entry: Entry, word: Optional[RecordedWord]) -> str:
@@ -228,7 +229,7 @@ class _Walk:
             return ""
         if entry.call == "stop" or (word is not None and word.text == STOP):
             return STOPPED
-        return WON if word is not None and word.text == FINISH and self._objective.goal is None else ""
+        return WON if word is not None and word.text == FINISH and not self._objective.goal else ""
 
     def _clocks(self, at: float) -> Dict[str, float]:
         return {clock: (at - zero) / self._unit for clock, zero in self._zeros.items()}
@@ -250,5 +251,5 @@ class _Walk:
         )
 
 
-def _at(place: DiscreteState, where: Optional[Tuple[str, str]]) -> bool:
-    return where is not None and place.locations.get(where[0]) == where[1]
+def _at(place: DiscreteState, where: Tuple[str, str]) -> bool:
+    return place.locations.get(where[0]) == where[1]

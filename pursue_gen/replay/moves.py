@@ -96,13 +96,11 @@ class Moves:
         return tuple(name for name, edges in ends.items() if edges) if receiving and ends.get(agent) else ()
 
     def internal(self, place: DiscreteState, objective: Objective) -> Iterator[Move]:
-        """The steps that the safety objective makes by itself."""
-        if objective.bad is None:
-            return
-        name = objective.bad[0]
-        for edge in self._enabled(name, place):
-            if edge.sync is None:
-                yield ((name, edge),)
+        """The steps by which objectives themselves become broken."""
+        for name, bad in objective.bad:
+            for edge in self._enabled(name, place):
+                if edge.sync is None and edge.target == bad:
+                    yield ((name, edge),)
 
     def way_back(self, place: DiscreteState, robot: str) -> Optional[Part]:
         """How a robot that moves there would set out on the same way in the other direction; None if it cannot."""

@@ -99,7 +99,7 @@ def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyDat
     every = [automaton.name for automaton in won.network.automata]
     for stage, milestones in enumerate(won.strategy.stages):
         blocks = tuple(won.strategy.blocks[n] for place in milestones for n in won.strategy.numbers_of(stage, place))
-        own = replace(won, objective=replace(won.objective, goal=milestones[0]), strategy=Strategy(blocks))
+        own = replace(won, objective=replace(won.objective, goal=(milestones[0],)), strategy=Strategy(blocks))
         builder = _Builder(scenario, replace(own, network=own.part), words.words)
         found = builder.situations()
         is_last = stage == len(won.strategy.stages) - 1

@@ -8,7 +8,7 @@ longer ago than the reaction). A robot gets only such commands as orders, and on
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Set, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
@@ -33,7 +33,7 @@ class TakenStep(NamedTuple):
 class Judge:
     """Checks one mission. `problems`: what must never be; `off_model`: how often the world left the model."""
 
-    def __init__(self, arena: Arena, commands: Commands, bad: Optional[Tuple[str, str]], reaction: float,
+    def __init__(self, arena: Arena, commands: Commands, bad: Sequence[Tuple[str, str]], reaction: float,
                  faults: bool = False, offset: float = 0.0) -> None:
         """`reaction` in time units; `offset`: by how much (time units) the clock of a controller may be wrong."""
         self.problems: List[str] = []
@@ -163,7 +163,7 @@ class Judge:
     def _is_deadline(self, move: JointMove) -> bool:
         """True for the step that marks a passed deadline: it is no command, though no other agent owns it."""
         first = move.moves[0]
-        return self._bad == (first.automaton, first.edge.target)
+        return (first.automaton, first.edge.target) in self._bad
 
     def _check_command(
         self, before: SystemState, state: SystemState, clocks: Mapping[str, float], what: str, now: float

@@ -81,7 +81,7 @@ def works_in_parallel(network: Network, goal: Place) -> bool:
 @dataclass(frozen=True)
 class _Part:
     """A part of a stage: where it ends, who can bring it there, what was reached before, and who has something to end
-    that no other part ends."""
+    that no other part ends. `goal` None: the whole game, of an objective without a goal or with several locations."""
 
     goal: Optional[Place]
     doers: FrozenSet[str]
@@ -111,11 +111,11 @@ class _Search:
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises PursueError at a limit."""
-        goal = self._objective.goal
-        if goal is None:
+        if len(self._objective.goal) != 1:
             return self._proven((), self._part(_Part(None, frozenset(self._robots)), at_start(self._network)))
+        (goal,) = self._objective.goal
         goals = subgoals(self._network, goal)
-        first = protections(self._network, self._objective.bad) if self._objective.bad else ()
+        first = protections(self._network, self._objective.bad)
         self._subgoals = [*first, *goals]
         if len(goals) == 1:
             blocks = self._part(_Part(goal, goals[0].agents), at_start(self._network))
@@ -197,7 +197,7 @@ class _Search:
         guards: FrozenSet[str] = frozenset()
         alive, extent = self._alive(part, self._robots, known)
         if part.goal is not None and stage_objective(self._objective, part.goal, extent).kind is Kind.REACH_WHILE_SAFE:
-            safe = replace(self._objective, kind=Kind.SAFETY, goal=None)
+            safe = replace(self._objective, kind=Kind.SAFETY, goal=())
             matter = {automaton.name for automaton in cone_of_influence(alive, safe).automata}
             guards = frozenset(matter.intersection(self._robots))
         some = [name for name in self._robots if name in part.doers]
@@ -238,9 +238,9 @@ class _Search:
                 raise
             return None
         blocks = _without_begin(proven)
-        if wanted.goal is None:
+        if part.goal is None:
             return blocks
-        return list(with_edges(blocks, wanted.goal[0], {there: here for here, there in changed.items()}))
+        return list(with_edges(blocks, wanted.goal[0][0], {there: here for here, there in changed.items()}))
 
     def _alive(self, part: _Part, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
         """What can happen in a stage in which only this team gets commands."""
@@ -260,7 +260,7 @@ class _Search:
                 undoing |= _received(self._network.automaton(name))
         if part.goal is not None and part.goal[0] not in self._variables:
             undoing -= _received(self._network.automaton(part.goal[0]), part.goal[1])
-        is_last = part.goal == self._objective.goal
+        is_last = part.goal is None or (part.goal,) == self._objective.goal
         return {
             (automaton.name, edge)
             for automaton in self._network.automata

@@ -93,7 +93,7 @@ def _smaller(won: Solution, options: SolveOptions) -> Solution:
 
     Robots that work at the same time arrive in any order, and a strategy in one piece has blocks for each order.
     """
-    if won.objective.goal is None or not works_in_parallel(won.network, won.objective.goal):
+    if len(won.objective.goal) != 1 or not works_in_parallel(won.network, won.objective.goal[0]):
         return won
     some = won_by_some(won.network, won.objective, won.reaction, options)
     if some is None or 2 * len(some.strategy.blocks) > len(won.strategy.blocks):

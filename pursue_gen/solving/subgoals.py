@@ -30,9 +30,10 @@ def subgoals(network: Network, goal: Place) -> Tuple[Subgoal, ...]:
     return _Search(network).of(goal)
 
 
-def protections(network: Network, bad: Place) -> Tuple[Subgoal, ...]:
-    """The values after which nobody can do what leads to the location, each given by a controllable agent."""
-    return tuple(dict.fromkeys(_Search(network).against(bad)))
+def protections(network: Network, bad: Iterable[Place]) -> Tuple[Subgoal, ...]:
+    """The values after which nobody can do what leads to the locations, each given by a controllable agent."""
+    search = _Search(network)
+    return tuple(dict.fromkeys(subgoal for place in bad for subgoal in search.against(place)))
 
 
 def commanded_agents(network: Network) -> Tuple[str, ...]:

@@ -41,7 +41,7 @@ class _Cone:
 
     def __init__(self, network: Network, objective: Objective) -> None:
         self._network = network
-        self.automata = {place[0] for place in (objective.goal, objective.bad) if place is not None}
+        self.automata = {name for name, _ in (*objective.goal, *objective.bad)}
         self.automata.intersection_update(automaton.name for automaton in network.automata)
         self.automata.update(a.name for a in network.automata if not _lets_time_pass(a, network))
         self.variables: Set[str] = set()

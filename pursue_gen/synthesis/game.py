@@ -77,14 +77,14 @@ class GameAutomaton:
 class Game:
     """The game. `delta` is the scaled reaction delay; `max_constants[i]` the largest scaled constant of clock i.
 
-    `goal` and `bad` are (automaton, location) or None. `edges[k]` is made from `origins[k]`, an edge of the network.
-    `start` bounds the clocks at the start (see `start_zone`); empty: they are 0. `unseen` and `unseen_clocks`: what
-    cannot matter, indices of automata and, behind them, of variables; and of clocks.
+    `goal` and `bad` are pairs (automaton, location), as the objective has them. `edges[k]` is made from `origins[k]`,
+    an edge of the network. `start` bounds the clocks at the start (see `start_zone`); empty: they are 0. `unseen` and
+    `unseen_clocks`: what cannot matter, indices of automata and, behind them, of variables; and of clocks.
     """
 
     kind: Kind
-    goal: Optional[Tuple[int, int]]
-    bad: Optional[Tuple[int, int]]
+    goal: Tuple[Tuple[int, int], ...]
+    bad: Tuple[Tuple[int, int], ...]
     scale: int
     delta: int
     clocks: Tuple[str, ...]
@@ -164,10 +164,10 @@ def compile_game(
         problems.append(error("SYN001", f"the reaction delay is {reaction}, expected 0 or more time units"))
     scale = common_denominator([reaction, *(constraint.bound for constraint in network.start)])
     tables = _Tables(network, scale, problems)
-    goal, bad = tables.position(objective.goal), tables.position(objective.bad)
-    if objective.kind is not Kind.SAFETY and objective.goal is None:
+    goal, bad = tables.positions(objective.goal), tables.positions(objective.bad)
+    if objective.kind is not Kind.SAFETY and not objective.goal:
         problems.append(error("SYN002", "the objective names no location to reach"))
-    if objective.kind is not Kind.REACH and objective.bad is None:
+    if objective.kind is not Kind.REACH and not objective.bad:
         problems.append(error("SYN003", "the objective names no location to avoid"))
     automata: List[GameAutomaton] = []
     edges: List[GameEdge] = []
@@ -180,8 +180,8 @@ def compile_game(
         raise PursueError(problems)
     return Game(
         kind=objective.kind,
-        goal=goal if objective.kind is not Kind.SAFETY else None,
-        bad=bad if objective.kind is not Kind.REACH else None,
+        goal=goal if objective.kind is not Kind.SAFETY else (),
+        bad=bad if objective.kind is not Kind.REACH else (),
         scale=tables.scale,
         delta=int(reaction * tables.scale),
         clocks=network.clocks,
@@ -227,14 +227,14 @@ class _Tables:
             self._problems.append(error("SYN004", f"unknown {kind} {name!r}; the network has: {known}"))
         return names.get(name, 0)
 
-    def position(self, place: Optional[Tuple[str, str]]) -> Optional[Tuple[int, int]]:
-        """(automaton, location) by their names."""
-        if place is None:
-            return None
-        automaton = self._index(self._automata, "automaton", place[0])
-        if not self._locations:
-            return None
-        return automaton, self._index(self._locations[automaton], f"location of {place[0]}", place[1])
+    def positions(self, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[int, int], ...]:
+        """Pairs (automaton, location) by their names."""
+        found: List[Tuple[int, int]] = []
+        for name, location in places:
+            automaton = self._index(self._automata, "automaton", name)
+            if self._locations:
+                found.append((automaton, self._index(self._locations[automaton], f"location of {name}", location)))
+        return tuple(found)
 
     def automaton(self, automaton: Automaton, edges: Sequence[int]) -> GameAutomaton:
         """The table of one automaton whose edges have these indices."""
@@ -358,12 +358,12 @@ def invariant(game: Game, state: State) -> Tuple[Bound, ...]:
 
 def is_goal(game: Game, state: State) -> bool:
     """True if the state is one to reach."""
-    return game.goal is not None and state.locations[game.goal[0]] == game.goal[1]
+    return bool(game.goal) and all(state.locations[automaton] == location for automaton, location in game.goal)
 
 
 def is_bad(game: Game, state: State) -> bool:
     """True if the state is one to avoid."""
-    return game.bad is not None and state.locations[game.bad[0]] == game.bad[1]
+    return any(state.locations[automaton] == location for automaton, location in game.bad)
 
 
 def joint_moves(game: Game, state: State) -> Iterator[JointMove]:

@@ -40,16 +40,20 @@ def least_time(game: Game) -> Optional[int]:
 
     None: the goal cannot be reached against a lazy environment (or there is none), so the game is lost.
     """
-    if game.goal is None:
+    if not game.goal:
         return None
-    start, goal = initial_state(game), ("at", *game.goal)
+    start = initial_state(game)
+    goals: Set[Fact] = {("at", automaton, location) for automaton, location in game.goal}
     now: Set[Fact] = {("at", k, location) for k, location in enumerate(start.locations)}
     now |= {("is", k, value) for k, value in enumerate(start.values)}
-    return _soonest(_timed_operators(game), now, goal)
+    return _soonest(_timed_operators(game), now, goals)
 
 
-def _soonest(operators: List[_TimedOperator], now: Set[Fact], goal: Fact) -> Optional[int]:
-    """When the goal comes: Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold."""
+def _soonest(operators: List[_TimedOperator], now: Set[Fact], goals: Set[Fact]) -> Optional[int]:
+    """When the last of the goals comes.
+
+    Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold.
+    """
     watchers: Dict[Fact, List[Tuple[int, int]]] = {}
     for k, operator in enumerate(operators):
         for position, precondition in enumerate(operator.preconditions):
@@ -62,9 +66,9 @@ def _soonest(operators: List[_TimedOperator], now: Set[Fact], goal: Fact) -> Opt
         time, fact = heapq.heappop(queue)
         if fact in times:
             continue
-        if fact == goal:
-            return time
         times[fact] = time
+        if fact in goals and goals.issubset(times):
+            return time
         for k, position in watchers.get(fact, ()):
             positions, operator = met.setdefault(k, set()), operators[k]
             if position in positions:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from pursue_gen.language.scenario import Event
 from pursue_runtime import locations
 
@@ -10,6 +12,8 @@ CLOCK_REACH = "Creach"
 OBJECTIVE = "obj"
 REACH = "reachObj"
 STATES = "states"
+
+_SAFETY, _REACH = (re.compile(rf"{name}([2-9]|[1-9][0-9]+)?") for name in (OBJECTIVE, REACH))
 
 IDLE, AT_RISK, LOSE = "idle", "atRisk", "lose"
 """The locations of the objective's automaton: no duty, a deadline is running, a duty was missed."""
@@ -29,6 +33,40 @@ agent_clock = locations.automaton_clock
 
 agent_position = locations.position_variable
 """The variable that holds where an agent is."""
+
+
+def safety_objective(number: int) -> str:
+    """The automaton of a safety objective: `obj`, `obj2`, `obj3`, …; the number counts from 0."""
+    return _numbered(OBJECTIVE, number)
+
+
+def reach_objective(number: int) -> str:
+    """The automaton of a reach objective: `reachObj`, `reachObj2`, …; the number counts from 0."""
+    return _numbered(REACH, number)
+
+
+def safety_clock(number: int) -> str:
+    """The clock of a safety objective: `Cobj`, `Cobj2`, …"""
+    return _numbered(CLOCK_OBJECTIVE, number)
+
+
+def reach_clock(number: int) -> str:
+    """The clock of a reach objective: `Creach`, `Creach2`, …"""
+    return _numbered(CLOCK_REACH, number)
+
+
+def is_safety_objective(automaton: str) -> bool:
+    """True for the name of a safety objective's automaton. An agent may have it where there are not so many."""
+    return _SAFETY.fullmatch(automaton) is not None
+
+
+def is_reach_objective(automaton: str) -> bool:
+    """True for the name of a reach objective's automaton. An agent may have it where there are not so many."""
+    return _REACH.fullmatch(automaton) is not None
+
+
+def _numbered(name: str, number: int) -> str:
+    return name if number == 0 else f"{name}{number + 1}"
 
 
 def rule_turn(rule: str) -> str:

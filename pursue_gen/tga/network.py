@@ -140,11 +140,14 @@ class Kind(enum.Enum):
 
 @dataclass(frozen=True)
 class Objective:
-    """`A<> goal`, `A[] not bad` or `A[ not bad U goal ]`; goal and bad are (automaton, location) or None."""
+    """`A<> goal`, `A[] not bad` or `A[ not bad U goal ]`; goal and bad are pairs (automaton, location).
+
+    The goal is reached where all of its pairs hold at once; what is bad happens where any of its pairs holds.
+    """
 
     kind: Kind
-    goal: Optional[Tuple[str, str]] = None
-    bad: Optional[Tuple[str, str]] = None
+    goal: Tuple[Tuple[str, str], ...] = ()
+    bad: Tuple[Tuple[str, str], ...] = ()
 
 
 def is_end(edge: Edge) -> bool:

@@ -18,7 +18,7 @@ Happened = Mapping[str, str]
 
 def scenario_objective(scenario: Scenario) -> Objective:
     """What the scenario's controller wants. Raises PursueError where it has no objective."""
-    goal, bad = (REACH, _WIN), (OBJECTIVE, LOSE)
+    goal, bad = ((REACH, _WIN),), ((OBJECTIVE, LOSE),)
     if scenario.reach and scenario.safety:
         return Objective(Kind.REACH_WHILE_SAFE, goal=goal, bad=bad)
     if scenario.reach:

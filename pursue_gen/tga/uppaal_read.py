@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from typing import Callable, Dict, List, Optional, Tuple, TypeVar
+from typing import Callable, Dict, List, Pattern, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
@@ -30,6 +30,25 @@ T = TypeVar("T")
 Raw = TypeVar("Raw")
 
 _COMMENTS = re.compile(r"//[^\n]*|/\*.*?(?:\*/|(?P<unclosed>\Z))", re.DOTALL)
+_PLACE = r"(\w+)\s*\.\s*(\w+)"
+
+
+def _queries() -> Dict[Kind, Pattern[str]]:
+    """What the queries of each kind of objective look like: one location, or several with `and` (to reach) or `or`."""
+    place = r"\w+\s*\.\s*\w+"
+    joined = rf"{place}(?:(?:\s+%s\s+|\s*%s\s*){place})*"
+    all_of, any_of = joined % ("and", "&&"), joined % ("or", r"\|\|")
+    goal = rf"(?P<goal>{all_of}|\(\s*{all_of}\s*\))"
+    bad = rf"(?P<bad>(?:not|!)\s*\(\s*{any_of}\s*\)|(?:not\s|!)\s*{place})"
+    control = r"\s*control\s*:\s*A\s*"
+    return {
+        Kind.REACH: re.compile(rf"{control}<\s*>\s*{goal}\s*"),
+        Kind.SAFETY: re.compile(rf"{control}\[\s*\]\s*{bad}\s*"),
+        Kind.REACH_WHILE_SAFE: re.compile(rf"{control}\[\s*{bad}\s*U\s*{goal}\s*\]\s*"),
+    }
+
+
+_QUERIES = _queries()
 _KINDS_IGNORED = ("comments", "testcodeEnter", "testcodeExit", "testcode")
 
 
@@ -59,20 +78,19 @@ def read_network(text: str, file: str) -> Network:
 def read_query(text: str, file: str) -> Objective:
     """The objective of a query file: `A<> x.win`, `A[] not(x.lose)` or `A[ not(x.lose) U y.win ]` after `control:`.
 
-    Raises PursueError where the file has another query, none, or several.
+    Several locations to reach are joined by `and`, several to avoid by `or`: `not(x.lose or z.lose)`. Raises
+    PursueError where the file has another query, none, or several.
     """
-    words = "".join(_uncommented(text, "").split())
-    place = r"(\w+)\.(\w+)"
-    bad = rf"(?:not\({place}\)|!\(?{place}\)?|not{place})"
-    reach = re.fullmatch(rf"control:A<>\(?{place}\)?", words)
+    words = _uncommented(text, "")
+    reach = _QUERIES[Kind.REACH].fullmatch(words)
     if reach:
-        return Objective(Kind.REACH, goal=(reach.group(1), reach.group(2)))
-    safety = re.fullmatch(rf"control:A\[\]{bad}", words)
+        return Objective(Kind.REACH, goal=_places(reach.group("goal")))
+    safety = _QUERIES[Kind.SAFETY].fullmatch(words)
     if safety:
-        return Objective(Kind.SAFETY, bad=_pair(safety.groups()))
-    both = re.fullmatch(rf"control:A\[{bad}U\(?{place}\)?\]", words)
+        return Objective(Kind.SAFETY, bad=_places(safety.group("bad")))
+    both = _QUERIES[Kind.REACH_WHILE_SAFE].fullmatch(words)
     if both:
-        return Objective(Kind.REACH_WHILE_SAFE, goal=_pair(both.groups()[-2:]), bad=_pair(both.groups()[:-2]))
+        return Objective(Kind.REACH_WHILE_SAFE, goal=_places(both.group("goal")), bad=_places(both.group("bad")))
     hint = "control: A<> x.win, control: A[] not(x.lose) or control: A[ not(x.lose) U y.win ], and only one of them"
     lines = text.rstrip().split("\n")
     span = Span(file, 1, 1, len(lines), len(lines[-1]) + 1)
@@ -85,9 +103,9 @@ def _uncommented(text: str, instead: str = " ") -> str:
     return _COMMENTS.sub(lambda match: instead if match.group("unclosed") is None else match.group(), text)
 
 
-def _pair(groups: Tuple[Optional[str], ...]) -> Tuple[str, str]:
-    automaton, location = (group for group in groups if group is not None)
-    return automaton, location
+def _places(text: str) -> Tuple[Tuple[str, str], ...]:
+    """The locations in a part of a query, each once."""
+    return tuple(dict.fromkeys((found.group(1), found.group(2)) for found in re.finditer(_PLACE, text)))
 
 
 def _declarations(nta: Element) -> Tuple[List[str], List[Tuple[str, int]], List[str]]:

@@ -55,7 +55,9 @@ def write_query(objective: Objective) -> str:
 
 
 def _formula(objective: Objective) -> str:
-    goal, bad = (".".join(place) if place else "" for place in (objective.goal, objective.bad))
+    goal = " and ".join(map(".".join, objective.goal))
+    goal = f"({goal})" if len(objective.goal) > 1 else goal
+    bad = " or ".join(map(".".join, objective.bad))
     if objective.kind is Kind.REACH:
         return f"control: A<> {goal}"
     if objective.kind is Kind.SAFETY:

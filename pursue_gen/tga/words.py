@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pursue_gen.tga.names import REACH
+from pursue_gen.tga.names import is_reach_objective, is_under_way
 from pursue_gen.tga.network import Edge
 
 
@@ -14,5 +14,6 @@ def event_word(automaton: str, edge: Edge) -> str:
     """
     if edge.sync is not None:
         return edge.sync.channel
-    going = "going_" if automaton == REACH else ""  # as the thesis writes it: no agent is on its way
+    counts = is_reach_objective(automaton) and not is_under_way(edge.source)
+    going = "going_" if counts else ""  # as the thesis writes it: no agent is on its way
     return f"{automaton}_{going}{edge.source}2{edge.target}"

@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
 from pursue_gen.tga.words import event_word
+from pursue_gen.workspace.model_file import places_data
 
 
 def expected(
@@ -24,7 +25,7 @@ def expected(
     commanded = {word for words in commands.values() for word in words}
     data: Dict[str, Any] = {
         "reach": objective.kind is not Kind.SAFETY,
-        "bad": list(objective.bad) if objective.bad else None,
+        "bad": places_data(objective.bad),
         "nodes": sorted(nodes),
         "robots": dict(robots),
         "commands": {node: sorted(set(words)) for node, words in commands.items()},

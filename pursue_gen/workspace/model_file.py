@@ -10,7 +10,7 @@ from pursue_gen.language.wording import assumption_words
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga import names
-from pursue_gen.tga.names import REACH, STATES
+from pursue_gen.tga.names import STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
 
@@ -27,10 +27,10 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
 
 def model_data(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction) -> Dict[str, Any]:
     """The data of model.yaml, see `render`."""
-    kinds = _kinds(scenario)
-    goal, bad = _place(objective.goal), _place(objective.bad)
+    kinds = _kinds(scenario, objective)
+    goal, bad = places_data(objective.goal), places_data(objective.bad)
     data: Dict[str, Any] = {
-        "format": 1,
+        "format": 2 if scenario.assumptions or _has_several(objective) else 1,
         "scenario": scenario.name,
         "reaction": number(reaction),
         "clocks": inline(network.clocks),
@@ -51,9 +51,15 @@ def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str
         yield {"variable": names.assumption(place), **timed, "says": assumption_words(assumption)}
 
 
-def _kinds(scenario: Scenario) -> Dict[str, str]:
-    """automaton → kind, for all but the safety objective's."""
-    kinds = {STATES: "states", REACH: "reach"}
+def _has_several(objective: Objective) -> bool:
+    """True for what only format 2 can say: several places, or one automaton with a place to reach and one to avoid."""
+    watching = [name for name, _ in (*objective.goal, *objective.bad)]
+    return len(objective.goal) > 1 or len(objective.bad) > 1 or len(set(watching)) < len(watching)
+
+
+def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:
+    """automaton → kind, for all but the safety objectives'."""
+    kinds = {STATES: "states", **{name: "reach" for name, _ in objective.goal}}
     kinds.update((rule.name, "rule") for rule in scenario.rules)
     for agent in scenario.agents:
         kinds[agent.name] = "robot" if agent.is_robot else "human" if agent.controllable else "agent"
@@ -89,5 +95,6 @@ def _bounds(bounds: Sequence[ClockBound]) -> List[str]:
     return [f"{bound.clock} {bound.op} {bound.bound}" for bound in bounds]
 
 
-def _place(place: Optional[Tuple[str, str]]) -> Optional[List[str]]:
-    return None if place is None else list(place)
+def places_data(places: Sequence[Tuple[str, str]]) -> Optional[Sequence[object]]:
+    """Automata and locations as data files have them: one pair as it is, several in a list, None for none."""
+    return None if not places else list(places[0]) if len(places) == 1 else [list(place) for place in places]

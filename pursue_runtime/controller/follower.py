@@ -15,8 +15,6 @@ from pursue_runtime.state_filter import OLD, OTHER, REFUSED, StateFilter
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import Word
 
-OBJECTIVES = ("reachObj", "obj")
-
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
 
@@ -31,8 +29,9 @@ class Part(NamedTuple):
     @property
     def robots(self) -> List[str]:
         """Return the robots that the strategy commands."""
-        agents = self.strategy.agents if self.strategy is not None else []
-        return [agent for agent in agents if agent not in OBJECTIVES]
+        if self.strategy is None:
+            return []
+        return [agent for agent in self.strategy.agents if agent not in self.strategy.objectives]
 
 
 def read_part(source: Source) -> Part:

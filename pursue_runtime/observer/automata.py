@@ -94,9 +94,14 @@ class Automata:
         """Return the location of an automaton, "" if there is none of this name."""
         return self._machines[name].location if name in self._machines else ""
 
-    def is_at(self, place: Optional[Tuple[str, str]]) -> bool:
-        """Return True if the automaton (first) is at the location (second); False for None."""
-        return place is not None and self.location_of(place[0]) == place[1]
+    def is_won(self) -> bool:
+        """Return True if the goal is reached."""
+        goal = self.model.goal
+        return bool(goal) and all(self.location_of(name) == location for name, location in goal)
+
+    def is_lost(self) -> bool:
+        """Return True if an automaton is where it must not be."""
+        return any(self.location_of(name) == location for name, location in self.model.bad)
 
     def position(self, now: float) -> Position:
         """Return the locations, variables and clocks at the time `now`; what is returned is not changed any more.

@@ -185,8 +185,9 @@ class Mission:
                 continue
             automaton, place = self.model.automaton(name), position.locations[name]
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
-            if automaton.kind == "safety" and own:
-                return self._take((Move(name, own[0]),), now, f"the deadline of {name} has passed")
+            lost = [edge for edge in own if (name, edge.target) in self.model.bad]
+            if lost:
+                return self._take((Move(name, lost[0]),), now, f"the deadline of {name} has passed")
             overstays = overstayed(self.model, position, name, self._tolerance)
             if overstays:
                 self._note_broken(overstays)
@@ -273,7 +274,7 @@ class Mission:
     def _finish(self, now: float) -> List[SystemState]:
         if self.status not in LIVE:
             return []  # most often the observer's own word
-        if self.model.goal is not None:
+        if self.model.goal:
             self._log("warn", f"{FINISH} before the goal is reached: ignored")
             return []
         return self._end(WON, "", now)
@@ -371,9 +372,9 @@ class Mission:
     def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
         """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective."""
         position = self.position(now)
-        if self._automata.is_at(self.model.goal):
+        if self._automata.is_won():
             self._conclude(WON, "", now)
-        elif self._automata.is_at(self.model.bad):
+        elif self._automata.is_lost():
             self._conclude(LOST, why or f"{self._event} by {self._agent}", now)
         else:
             moves = self._automata.internal_move(position)

@@ -41,7 +41,8 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
         return "the mission starts" if state.event == START else state.event
     here = state.locations.get(state.agent, "")
     if automaton.kind not in ACTING:
-        counts = model.goal is not None and state.agent == model.goal[0] and here != model.goal[1]
+        goals = dict(model.goal)
+        counts = goals.get(state.agent, here) != here and (state.agent, here) not in model.bad
         return "the goal counts from now on" if counts else f"{state.agent}: {here}"
     before = last.locations.get(state.agent, "") if last is not None else ""
     edges = [edge for edge in automaton.edges if edge.word == state.event and edge.source != edge.target]

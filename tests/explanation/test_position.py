@@ -16,7 +16,7 @@ from pursue_gen.synthesis.game import compile_game, initial_state
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
-from tests.synthesis.random_games import _automaton
+from tests.synthesis.random_games import _automaton, objectives
 from tests.synthesis.region_game import RegionGame
 
 KINDS = tuple(Kind)
@@ -29,7 +29,7 @@ def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...] = KINDS) -> Tuple[Network,
     clocks = ("x", "y")[: draw(st.integers(1, 2))]
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
     kind = draw(st.sampled_from(kinds))
-    return network, Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+    return network, draw(objectives(kind))
 
 
 quick = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
@@ -73,7 +73,7 @@ def test_what_comes_after_the_horizon_does_not_count_however_slow_the_controller
         "A0", (Location("l0"), Location("l1", within["l1"]), Location("l2")), "l0",
         (Edge("l0", "l0", resets=("x",), controllable=False), Edge("l0", "l1", controllable=False), Edge("l1", "l0")),
     )
-    network, objective = Network(("x",), (), (), (other, obliged)), Objective(Kind.SAFETY, bad=("A0", "l2"))
+    network, objective = Network(("x",), (), (), (other, obliged)), Objective(Kind.SAFETY, bad=(("A0", "l2"),))
     oracle, zero = PositionSolver(network, objective, Fraction(1), Budget(Limits(PLENTY))), (Fraction(0),)
     begin = initial_state(compile_game(network, objective))
     assert oracle.lost(Position(begin, zero), Fraction(0), 1)

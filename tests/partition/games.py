@@ -21,8 +21,8 @@ QUICK = settings(max_examples=50, deadline=None)
 """For tests that draw whole strategies: on a busy machine one draw may take long."""
 
 SPAN = Span("game.pur", 1, 1, 1, 2)
-REACH = Objective(Kind.REACH, goal=("reachObj", "win"))
-SAFETY = Objective(Kind.SAFETY, bad=("obj", "lose"))
+REACH = Objective(Kind.REACH, goal=(("reachObj", "win"),))
+SAFETY = Objective(Kind.SAFETY, bad=(("obj", "lose"),))
 
 
 def agent(name: str, controllable: bool = True, human: bool = False) -> Agent:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Iterable, List, Tuple
 
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.partition import SubStrategy, partition
+from pursue_gen.partition.strategy_data import strategy_data
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy
 from pursue_gen.tga.network import is_end
@@ -112,6 +114,22 @@ def test_policies_for_the_objectives() -> None:
     assert with_objective("dedicated") == ["controllerObj"]
     assert with_objective("all") == ["controller_bot1", "controller_bot2"]
     assert with_objective("bot2") == ["controller_bot2"]
+
+
+def test_the_automata_of_several_objectives_belong_together_and_an_agent_of_such_a_name_does_not() -> None:
+    """`reachObj2` is an objective's automaton where no agent has that name."""
+    network, strategy = game(), every_move()
+    second = replace(network.automaton("reachObj"), name="reachObj2")
+    network = replace(network, automata=(*network.automata, second))
+    subs = by_name(partition(strategy, network, AGENTS))
+    assert subs["controllerObj"].agents == subs["controllerObj"].objectives == ("reachObj", "reachObj2")
+    everywhere = by_name(partition(strategy, network, AGENTS, reach_obj="bot1"))["controller_bot1"]
+    assert (everywhere.agents, everywhere.objectives) == (("bot1", "reachObj", "reachObj2"), ("reachObj", "reachObj2"))
+    data = strategy_data(everywhere, Fraction(0))
+    assert (data["format"], data["objectives"]) == (2, ["reachObj", "reachObj2"])
+    subs = by_name(partition(strategy, network, (*AGENTS, agent("reachObj2"))))
+    assert subs["controllerObj"].agents == ("reachObj",) and subs["controller_reachObj2"].objectives == ()
+    assert "objectives" not in strategy_data(subs["controllerObj"], Fraction(0))
 
 
 def test_one_controller_for_all() -> None:

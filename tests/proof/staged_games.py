@@ -79,8 +79,8 @@ def games(draw: st.DrawFn) -> Game:
         k = draw(st.integers(0, len(automata) - 1))
         automata[k] = replace(automata[k], edges=(*automata[k].edges, _free(draw, automata[k], tuple(variables))))
     network = Network(clocks, tuple(variables.items()), ("a", "b", "go", "e"), tuple(automata))
-    bad = (BAD, "b1") if safe else None
-    return network, Objective(Kind.REACH_WHILE_SAFE if safe else Kind.REACH, goal=(GOAL, "g1"), bad=bad)
+    bad = ((BAD, "b1"),) if safe else ()
+    return network, Objective(Kind.REACH_WHILE_SAFE if safe else Kind.REACH, goal=((GOAL, "g1"),), bad=bad)
 
 
 def _listening(source: str, target: str, channel: str, assign: Tuple[Tuple[str, int], ...] = ()) -> Edge:
@@ -160,7 +160,6 @@ def _free(draw: st.DrawFn, automaton: Automaton, variables: Sequence[str]) -> Ed
 def staged(draw: st.DrawFn, game: Game, reaction: Fraction = Fraction(0)) -> Optional[Strategy]:
     """A strategy in stages that may win; None where a stage is not won in the game of those whom it names."""
     network, objective = game
-    assert objective.goal is not None
     numbers = draw(st.permutations((0, 1)))[: draw(st.sampled_from((1, 2, 2, 2)))]
     first = [draw(st.sampled_from(MILESTONES[number])) for number in numbers]
     together = draw(st.booleans())
@@ -168,7 +167,7 @@ def staged(draw: st.DrawFn, game: Game, reaction: Fraction = Fraction(0)) -> Opt
     reached: List[str] = []
     found: List[Block] = []
     milestones: List[Tuple[Place, ...]] = []
-    for places in [*([first] if together else [[place] for place in first]), [objective.goal]]:
+    for places in [*([first] if together else [[place] for place in first]), list(objective.goal)]:
         own: Dict[Place, List[Block]] = {}
         for place in places:
             team = {"R1" if place in MILESTONES[1] else "R0"}
@@ -201,12 +200,12 @@ def _won(
     alone = commanding(network, team, _for_others(draw, place, reached))
     if not (is_value(alone, place) if place[0] in dict(network.variables) else place[0] in known.owned):
         return []
-    wanted = replace(objective, goal=ending_at(alone, place).goal)
+    goal = ending_at(alone, place).goal
+    wanted = replace(objective, goal=(goal,))
     if draw(st.booleans()):  # where it cannot happen in the stage
-        wanted = replace(wanted, kind=Kind.REACH, bad=None)
-    assert wanted.goal is not None
+        wanted = replace(wanted, kind=Kind.REACH, bad=())
     cone = cone_of_influence(alone, wanted)
-    needed = {name for name in reached if name in known.owned}.union([wanted.goal[0]])
+    needed = {name for name in reached if name in known.owned}.union([goal[0]])
     names = {automaton.name for automaton in cone.automata} | needed
     others = sorted({automaton.name for automaton in network.automata} - needed)
     names ^= draw(st.sets(st.sampled_from(others), max_size=draw(st.sampled_from((0, 0, 0, 0, 1, 2)))))
@@ -229,7 +228,7 @@ def _won(
     if verdict.strategy is None:
         return []
     back = {there: here for here, there in ending.changed.items()}
-    return list(with_edges(_without_begin(verdict.strategy), wanted.goal[0], back))
+    return list(with_edges(_without_begin(verdict.strategy), goal[0], back))
 
 
 def _for_others(draw: st.DrawFn, place: Place, reached: Sequence[str]) -> Set[str]:

@@ -11,7 +11,7 @@ from random import Random
 from typing import Dict, List, Optional, Set, Tuple
 
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.part import clocks_of
 from tests.synthesis.play_by_play import HALFWAY, STEP, UNIT, Entry, Move, PlayByPlay, inside
 
@@ -42,9 +42,9 @@ class StagedPlay:
         )
         decided: Decided = {}
         for _ in range(LONGEST):
-            if self._points.at(now, self._objective.goal):
+            if self._points.won(now):
                 return None
-            if self._objective.kind is not Kind.REACH and self._points.at(now, self._objective.bad):
+            if self._points.lost(now):
                 return "bad"
             holding = [n for n, block in enumerate(self._blocks) if self._holds(block, now)]
             decided = {key: left for key, left in decided.items() if key[0] in holding}

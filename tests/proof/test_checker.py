@@ -40,9 +40,9 @@ from pursue_gen.tga.network import (
 from pursue_gen.tga.uppaal import read_network, read_query
 
 HALF = Fraction(1, 2)
-REACH = Objective(Kind.REACH, goal=("bot", "win"))
-SAFETY = Objective(Kind.SAFETY, bad=("bot", "lose"))
-BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=("bot", "win"), bad=("bot", "lose"))
+REACH = Objective(Kind.REACH, goal=(("bot", "win"),))
+SAFETY = Objective(Kind.SAFETY, bad=(("bot", "lose"),))
+BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=(("bot", "win"),), bad=(("bot", "lose"),))
 
 
 def zone(text: str) -> Zone:
@@ -244,10 +244,32 @@ def test_a_prompt_player_loses_a_race_of_two_open_guards() -> None:
 
 
 def test_the_goal_counts_before_the_bad_location() -> None:
-    bad = replace(BOTH, bad=("bot", "win"))
+    bad = replace(BOTH, bad=(("bot", "win"),))
     plan = block(STRAIGHT, "a", ["x<=1"], ("x>1", GO))
     assert kind(checked(STRAIGHT, bad, plan)) == "ok"
-    assert kind(checked(STRAIGHT, replace(bad, bad=("bot", "a")), plan)) == "bad"
+    assert kind(checked(STRAIGHT, replace(bad, bad=(("bot", "a"),)), plan)) == "bad"
+
+
+def test_the_goal_is_all_of_its_locations_and_any_bad_location_loses() -> None:
+    bot, mate = (automaton(name, "a win", edge("a", "win", after)) for name, after in (("bot", "x>1"), ("mate", "x>3")))
+    net = network(bot, mate)
+    first, second = moves(net, ("bot", 0)), moves(net, ("mate", 0))
+    one = block(net, "a a", ["x<=1"], ("x>1", first))
+    two = block(net, "win a", ["x<=3"], ("x>3", second))
+    both = Objective(Kind.REACH, goal=(("bot", "win"), ("mate", "win")))
+    assert kind(checked(net, both, one, two)) == "ok"
+    assert kind(checked(net, both, one)) == "no block"
+    assert kind(checked(net, REACH, one)) == "ok"
+    guarded = Objective(Kind.REACH_WHILE_SAFE, both.goal, bad=(("mate", "lose"), ("bot", "lose")))
+    hurt = network(
+        automaton("bot", "a win lose", edge("a", "win", "x>1"), edge("win", "lose", "x>5", env=True)),
+        automaton("mate", "a win lose", edge("a", "win", "x>3")),
+    )
+    second = moves(hurt, ("mate", 0))
+    soon, late = block(hurt, "win a", ["x<=3"], ("x>3,x<=4", second)), block(hurt, "win a", ["x<=6"], ("x>6", second))
+    start = block(hurt, "a a", ["x<=1"], ("x>1,x<=2", moves(hurt, ("bot", 0))))
+    assert kind(checked(hurt, guarded, start, soon)) == "ok"
+    assert kind(checked(hurt, guarded, start, late)) == "bad"
 
 
 def test_commands_are_the_controllers_and_everyone_who_can_receive_takes_part() -> None:
@@ -363,7 +385,7 @@ def test_networks_and_strategies_that_cannot_be_read_are_reported() -> None:
     for net, objective, strategy, reaction in (
         (hears, REACH, plan, Fraction(0)),
         (lower, REACH, plan, Fraction(0)),
-        (STRAIGHT, replace(REACH, goal=("bot", "nowhere")), plan, Fraction(0)),
+        (STRAIGHT, replace(REACH, goal=(("bot", "nowhere"),)), plan, Fraction(0)),
         (STRAIGHT, replace(REACH, goal=None), plan, Fraction(0)),
         (STRAIGHT, REACH, Strategy((block(STRAIGHT, "a", ["z<=1"]),)), Fraction(0)),
         (STRAIGHT, REACH, plan, Fraction(-1)),

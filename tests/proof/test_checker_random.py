@@ -14,6 +14,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
 from tests.synthesis.play_by_play import PlayByPlay
+from tests.synthesis.random_games import objectives
 
 PLACES = ("l0", "l1", "l2")
 CLOCKS = ("x", "y")
@@ -51,8 +52,8 @@ def _automaton(draw: st.DrawFn, number: int) -> Automaton:
     return Automaton(f"A{number}", locations, "l0", tuple(edges))
 
 
-def _objective(kind: Kind) -> Objective:
-    return Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+OBJECTIVES = st.sampled_from(list(Kind)).flatmap(objectives)
+NEVER_L2 = Objective(Kind.SAFETY, bad=(("A0", "l2"),))
 
 
 def _all_keys(strategy: Strategy) -> List[ZoneKey]:
@@ -98,11 +99,10 @@ def _shifted(draw: st.DrawFn, zone: Zone) -> Zone:
 
 
 @settings(max_examples=150, deadline=None)
-@given(st.data(), networks(), st.sampled_from(list(Kind)), st.sampled_from((Fraction(0), Fraction(1, 2))))
+@given(st.data(), networks(), OBJECTIVES, st.sampled_from((Fraction(0), Fraction(1, 2))))
 def test_a_strategy_with_a_losing_play_is_never_passed(
-    data: st.DataObject, network: Network, kind: Kind, reaction: Fraction
+    data: st.DataObject, network: Network, objective: Objective, reaction: Fraction
 ) -> None:
-    objective = _objective(kind)
     verdict = solve(network, objective, reaction)
     strategy = verdict.strategy
     if strategy is None or not _all_keys(strategy):
@@ -117,9 +117,8 @@ def test_a_strategy_with_a_losing_play_is_never_passed(
 
 
 @settings(max_examples=100, deadline=None)
-@given(networks(), st.sampled_from(list(Kind)), st.sampled_from((Fraction(0), Fraction(1, 2))))
-def test_what_no_play_reaches_may_go(network: Network, kind: Kind, reaction: Fraction) -> None:
-    objective = _objective(kind)
+@given(networks(), OBJECTIVES, st.sampled_from((Fraction(0), Fraction(1, 2))))
+def test_what_no_play_reaches_may_go(network: Network, objective: Objective, reaction: Fraction) -> None:
     strategy = solve(network, objective, reaction).strategy
     if strategy is None:
         return
@@ -135,7 +134,7 @@ def test_a_command_on_its_way_stands_whatever_those_do_who_are_left_out() -> Non
     passing = Edge("l0", "l0", Guard((ClockBound("y", ">", 0),)), resets=("y",), controllable=False)
     soon = (Location("l0", (ClockBound("x", "<=", 1),)), Location("l2"))
     both = Automaton("A0", soon, "l0", (again,)), Automaton("A1", (Location("l0"), Location("l2")), "l0", (passing,))
-    network, objective = Network(CLOCKS, (), (), both), _objective(Kind.SAFETY)
+    network, objective = Network(CLOCKS, (), (), both), NEVER_L2
     strategy = solve(network, objective, Fraction(1, 2)).strategy
     assert strategy is not None and [name for name, _ in strategy.blocks[0].state.locations] == ["A0"]
     assert verify(network, objective, strategy, Fraction(1, 2)).ok

@@ -21,7 +21,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Kind, Network, Objective
 from tests.proof.test_checker import SAFETY, automaton, block, edge, moves, network
-from tests.proof.test_checker_random import _all_keys, _changed, _objective, networks
+from tests.proof.test_checker_random import _all_keys, _changed, networks
 from tests.synthesis import random_games
 from tests.synthesis.play_by_play import PlayByPlay
 from tests.synthesis.test_verdicts import published
@@ -37,11 +37,10 @@ def covered(network: Network, objective: Objective, strategy: Strategy, reaction
 
 
 @settings(max_examples=200)
-@given(st.data(), networks(), st.sampled_from(DELAYS), st.integers(0, 2))
+@given(st.data(), networks(), random_games.objectives(Kind.SAFETY), st.sampled_from(DELAYS), st.integers(0, 2))
 def test_no_strategy_with_a_losing_play_passes(
-    data: st.DataObject, network: Network, reaction: Fraction, changes: int
+    data: st.DataObject, network: Network, objective: Objective, reaction: Fraction, changes: int
 ) -> None:
-    objective = _objective(Kind.SAFETY)
     strategy = solve(network, objective, reaction).strategy
     for _ in range(changes):
         if strategy is not None and _all_keys(strategy):

@@ -23,6 +23,7 @@ from tests.cli.test_commands import pursue
 from tests.conftest import thesis_scenario
 from tests.proof.test_checker import REACH, automaton, block, edge, moves, network
 from tests.proof.test_checker_random import networks
+from tests.synthesis.random_games import objectives
 
 NOW = Fraction(0)
 NET = network(automaton("bot", "a:x<=3 win", edge("a", "win", "x>1")))
@@ -62,9 +63,8 @@ def test_with_little_to_spend_the_margin_is_at_least_what_is_known() -> None:
 
 
 @settings(max_examples=40)
-@given(networks(), st.sampled_from(list(Kind)))
-def test_it_wins_at_the_margin_and_not_beyond_and_no_more_than_the_game(net: Network, kind: Kind) -> None:
-    objective = Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+@given(networks(), st.sampled_from(list(Kind)).flatmap(objectives))
+def test_it_wins_at_the_margin_and_not_beyond_and_no_more_than_the_game(net: Network, objective: Objective) -> None:
     strategy = solve(net, objective).strategy
     if strategy is None or not verify(net, objective, strategy).ok:
         return

@@ -24,7 +24,7 @@ from pursue_gen.tga.network import (
 )
 
 ALWAYS: Zone = ()
-REACH = Objective(Kind.REACH, goal=("A", "done"))
+REACH = Objective(Kind.REACH, goal=(("A", "done"),))
 GO = Edge("start", "done", Guard((ClockBound("x", ">=", 7),)))
 LOSS = Edge("start", "lost")
 BOT = Automaton("A", (Location("start"), Location("done"), Location("lost")), "start", (GO, LOSS))
@@ -110,7 +110,7 @@ def test_a_clock_that_nobody_looks_at_any_more_may_say_how_others_start() -> Non
     reader = Edge("here", "here", Guard((ClockBound("x", ">", 1),)), controllable=False)
     network = Network(("x", "y"), (), (), (bot, Automaton("O", (Location("here"),), "here", (reader,))), started)
     late = Strategy((block({"A": "start"}, ((Constraint(None, "y", Fraction(0), True),),)),))
-    assert verify(network, Objective(Kind.SAFETY, bad=("A", "lost")), late).ok
+    assert verify(network, Objective(Kind.SAFETY, bad=(("A", "lost"),)), late).ok
 
 
 # Stages ---------------------------------------------------------------------------------------------------------------

@@ -20,19 +20,15 @@ from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Edge, Guard, Kind, Network, Objective, Test
+from pursue_gen.tga.network import Edge, Guard, Network, Objective, Test
 from tests.conftest import thesis_scenario
 from tests.proof.test_checker import automaton, block, edge, moves, network
-from tests.proof.test_checker_random import networks
+from tests.proof.test_checker_random import OBJECTIVES, networks
 from tests.synthesis.play_by_play import PlayByPlay, inside
 from tests.synthesis.test_verdicts import published
 
 NOW, HALF = Fraction(0), Fraction(1, 2)
 needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-
-
-def objective_of(kind: Kind) -> Objective:
-    return Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
 
 
 def zones(strategy: Strategy) -> Iterator[Zone]:
@@ -88,9 +84,9 @@ def test_zones_of_a_command_that_time_leads_from_one_to_the_other_become_one_onl
 
 
 @settings(max_examples=120)
-@given(networks(), st.sampled_from(list(Kind)), st.sampled_from((NOW, HALF)), st.booleans())
-def test_in_fewer_zones_it_still_wins(net: Network, kind: Kind, reaction: Fraction, ranked: bool) -> None:
-    objective, verdict = objective_of(kind), solve(net, objective_of(kind), reaction)
+@given(networks(), OBJECTIVES, st.sampled_from((NOW, HALF)), st.booleans())
+def test_in_fewer_zones_it_still_wins(net: Network, objective: Objective, reaction: Fraction, ranked: bool) -> None:
+    verdict = solve(net, objective, reaction)
     if verdict.strategy is None:
         return
     report = verify(net, objective, verdict.strategy, reaction, prompt=False)
@@ -105,11 +101,13 @@ def test_in_fewer_zones_it_still_wins(net: Network, kind: Kind, reaction: Fracti
 @settings(max_examples=60)
 @given(
     networks(),
-    st.sampled_from(list(Kind)),
+    OBJECTIVES,
     st.lists(st.tuples(st.integers(0, 20), st.integers(0, 20)), min_size=1, max_size=8),
 )
-def test_no_zone_shrinks_and_no_point_gets_a_second_action(net: Network, kind: Kind, points: object) -> None:
-    strategy = solve(net, objective_of(kind), NOW).strategy
+def test_no_zone_shrinks_and_no_point_gets_a_second_action(
+    net: Network, objective: Objective, points: object
+) -> None:
+    strategy = solve(net, objective, NOW).strategy
     if strategy is None:
         return
     for before, after in zip(strategy.blocks, simplified(net, strategy, NOW).blocks):
@@ -123,9 +121,8 @@ def test_no_zone_shrinks_and_no_point_gets_a_second_action(net: Network, kind: K
 
 
 @settings(max_examples=60)
-@given(networks(), st.sampled_from(list(Kind)))
-def test_ranks_follow_their_zones_when_others_go(net: Network, kind: Kind) -> None:
-    objective = objective_of(kind)
+@given(networks(), OBJECTIVES)
+def test_ranks_follow_their_zones_when_others_go(net: Network, objective: Objective) -> None:
     verdict = solve(net, objective, NOW)
     if verdict.strategy is None or not verdict.ranks:
         return

@@ -29,7 +29,7 @@ from pursue_gen.tga.network import Automaton, ClockBound, Kind, Network, Objecti
 from tests.conftest import thesis_scenario
 from tests.proof.conftest import built
 from tests.proof.test_checker import REACH, STRAIGHT, automaton, block, edge, moves, network
-from tests.proof.test_checker_random import _all_keys, _changed, _objective, networks
+from tests.proof.test_checker_random import NEVER_L2, OBJECTIVES, _all_keys, _changed, networks
 from tests.synthesis import random_games
 from tests.synthesis.test_verdicts import published
 
@@ -76,7 +76,7 @@ def looks(draw: st.DrawFn) -> Look:
     if draw(st.booleans()):
         net, objective = draw(random_games.started(KINDS))
     else:
-        net, objective = draw(networks()), _objective(draw(st.sampled_from(KINDS)))
+        net, objective = draw(networks()), draw(OBJECTIVES)
     reaction = draw(REACTIONS)
     verdict = solve(net, objective, draw(st.sampled_from((Fraction(0), reaction))))
     strategy = verdict.strategy or Strategy(())
@@ -96,11 +96,10 @@ def test_they_agree_on_strategies_that_win_or_lose(look: Look, limit: int, many:
 
 
 @RANDOM
-@given(networks(), st.sampled_from(KINDS), REACTIONS, st.booleans())
+@given(networks(), OBJECTIVES, REACTIONS, st.booleans())
 def test_they_agree_with_the_solver_s_ranks_and_on_fewer_zones(
-    net: Network, kind: Kind, reaction: Fraction, ranked: bool
+    net: Network, objective: Objective, reaction: Fraction, ranked: bool
 ) -> None:
-    objective = _objective(kind)
     verdict = solve(net, objective, reaction)
     if verdict.strategy is None:
         return
@@ -116,7 +115,7 @@ def test_they_agree_with_the_solver_s_ranks_and_on_fewer_zones(
 def test_they_agree_on_what_covers_itself(look: Look) -> None:
     net, _, strategy, reaction, _, _ = look
     with mock.patch.object(checker, "_LARGE", 0):
-        both(lambda: verify(net, _objective(Kind.SAFETY), strategy, reaction, prompt=False))
+        both(lambda: verify(net, NEVER_L2, strategy, reaction, prompt=False))
 
 
 @RANDOM
@@ -127,11 +126,11 @@ def test_they_agree_on_the_worst_time(look: Look) -> None:
 
 
 @settings(RANDOM, max_examples=40)
-@given(networks(), st.sampled_from(KINDS), st.sampled_from((10, 300_000)))
-def test_they_agree_on_the_margin(net: Network, kind: Kind, states: int) -> None:
-    strategy = solve(net, _objective(kind)).strategy
+@given(networks(), OBJECTIVES, st.sampled_from((10, 300_000)))
+def test_they_agree_on_the_margin(net: Network, objective: Objective, states: int) -> None:
+    strategy = solve(net, objective).strategy
     if strategy is not None:
-        both(lambda: strategy_margin(net, _objective(kind), strategy, Fraction(0), states))
+        both(lambda: strategy_margin(net, objective, strategy, Fraction(0), states))
 
 
 def slower(net: Network, strategy: Strategy, factor: int) -> Tuple[Network, Strategy]:

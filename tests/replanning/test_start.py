@@ -28,7 +28,7 @@ POINTS = st.tuples(*[TIMES | st.integers(0, 70).map(lambda n: Fraction(n, 10)) f
 def zone(point, grid: int):
     bounds = region(dict(zip(CLOCKS, point)), BEYOND, grid)
     spot = Automaton("A", (Location("there"),), "there", ())
-    game = compile_game(Network(CLOCKS, (), (), (spot,), bounds), replace(GOAL, goal=("A", "there")))
+    game = compile_game(Network(CLOCKS, (), (), (spot,), bounds), replace(GOAL, goal=(("A", "there"),)))
     return game.scale, start_zone(game)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
@@ -66,7 +67,18 @@ def test_names_that_yaml_takes_for_something_else_come_back() -> None:
     scenario = parse(MEETING.format("bot never_with dog"), "meeting.pur")
     read = model_of(scenario, network_of(scenario))
     assert read.automaton("bot").initial == "yes"
-    assert (read.objective, read.goal, read.bad) == ("safety", None, ("obj", "lose"))
+    assert (read.objective, read.goal, read.bad) == ("safety", (), (("obj", "lose"),))
+
+
+def test_several_places_need_a_newer_format() -> None:
+    scenario = parse(MEETING.format("bot never_with dog"), "meeting.pur")
+    network, alone = network_of(scenario), scenario_objective(scenario)
+    both = replace(alone, bad=(*alone.bad, ("dog", "b")))
+    for objective, newest in ((alone, 1), (both, 2)):
+        data = yaml.safe_load(render(network, objective, scenario, Fraction(1, 10), "0"))
+        assert data["format"] == newest
+        assert Model(data).bad == objective.bad
+    assert data["objective"]["bad"] == [["obj", "lose"], ["dog", "b"]]
 
 
 # The semantics, once more: a naive evaluation of the network's own edges, to hold the model against.

@@ -99,7 +99,7 @@ def test_published_scenario_with_reported_ends_and_delay(reference_dir: Path) ->
 
 # Small games by hand.
 
-REACH = Objective(Kind.REACH, goal=("A", "goal"))
+REACH = Objective(Kind.REACH, goal=(("A", "goal"),))
 
 
 def _race(*edges: Edge, invariant: Tuple[ClockBound, ...] = ()) -> Network:
@@ -129,6 +129,19 @@ def test_the_least_time_of_small_games() -> None:
     assert _least(_race(Edge("start", "goal"))) == 0
 
 
+def test_the_time_to_several_locations_is_that_to_the_last_of_them() -> None:
+    both = Objective(Kind.REACH, goal=(("A", "goal"), ("B", "goal")))
+    mine = Automaton("A", (Location("start"), Location("goal")), "start", (_edge("start", "goal", ">", 3),))
+    within = (Location("start", (ClockBound("x", "<=", 9),)), Location("goal"))
+    theirs = Automaton("B", within, "start", (_edge("start", "goal", ">=", 5, controllable=False),))
+    network = Network(("x",), (), (), (mine, theirs))
+    guarantee, _ = fastest(network, both, Fraction(0), None, PLENTY)
+    assert guarantee.exact and guarantee.least == 9, "nobody is forced to come sooner because somebody waits"
+    found = fastest_solution(network, both, IDEAL, PLENTY)
+    assert found.guarantee is not None and found.guarantee.worst == 9
+    assert verify(found.network, both, found.strategy).ok
+
+
 def test_a_strategy_may_use_the_whole_tolerance() -> None:
     network = _race(_edge("start", "half", ">", 2, reset=True), _edge("half", "goal", ">=", 3))
     for reaction in (Fraction(0), Fraction(1, 10), Fraction(1, 4)):
@@ -149,7 +162,7 @@ def test_the_strategy_of_a_network_without_a_counting_clock_brings_one() -> None
 def test_a_safety_objective_has_no_time() -> None:
     network = _race(_edge("start", "goal", ">", 7))
     with pytest.raises(PursueError, match="no time to the goal") as problem:
-        fastest_solution(network, Objective(Kind.SAFETY, bad=("A", "half")), IDEAL)
+        fastest_solution(network, Objective(Kind.SAFETY, bad=(("A", "half"),)), IDEAL)
     assert problem.value.exit_status == 2
 
 

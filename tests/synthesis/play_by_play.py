@@ -98,15 +98,25 @@ class PlayByPlay:
             return str(broken)
         return "cycle" if self.objective.kind is not Kind.SAFETY and _has_cycle(after) else None
 
-    def at(self, entry: Entry, place: Optional[Tuple[str, str]]) -> bool:
+    def at(self, entry: Entry, place: Tuple[str, str]) -> bool:
         """True if the automaton is at that location."""
-        return place is not None and place in zip((a.name for a in self.network.automata), entry[0])
+        return place in zip((a.name for a in self.network.automata), entry[0])
+
+    def won(self, entry: Entry) -> bool:
+        """True where the goal is reached: at all of its locations."""
+        goal = () if self.objective.kind is Kind.SAFETY else self.objective.goal
+        return bool(goal) and not [place for place in goal if not self.at(entry, place)]
+
+    def lost(self, entry: Entry) -> bool:
+        """True where something is to be avoided: at any of its locations."""
+        bad = () if self.objective.kind is Kind.REACH else self.objective.bad
+        return bool([place for place in bad if self.at(entry, place)])
 
     def followers(self, entry: Entry) -> Iterator[Entry]:
         """The entries after one step. Raises Broken."""
-        if self.objective.kind is not Kind.SAFETY and self.at(entry, self.objective.goal):
+        if self.won(entry):
             return
-        if self.objective.kind is not Kind.REACH and self.at(entry, self.objective.bad):
+        if self.lost(entry):
             raise Broken("bad")
         block = self.blocks.get((tuple(entry[0][k] for k in self._places), tuple(entry[1][k] for k in self._values)))
         if block is None:

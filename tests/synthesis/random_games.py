@@ -38,7 +38,19 @@ def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> 
     clocks = ("x", "y")[: draw(st.integers(1, most_clocks))]
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
     kind = draw(st.sampled_from(kinds))
-    return network, Objective(kind, goal=("A0", "l2"), bad=("A0" if kind is Kind.SAFETY else "A1", "l2"))
+    return network, draw(objectives(kind))
+
+
+@st.composite
+def objectives(draw: st.DrawFn, kind: Kind) -> Objective:
+    """What is wanted of two automata: for a good part of the games several locations to reach at once, or to avoid."""
+    goal, bad = (("A0", "l2"),), (("A0" if kind is Kind.SAFETY else "A1", "l2"),)
+    more = draw(st.sampled_from(("", "", "", "goal", "bad", "both")))
+    if more in ("goal", "both"):
+        goal += (("A1", draw(st.sampled_from(("l0", "l1")))),)
+    if more in ("bad", "both"):
+        bad += ((("A1" if kind is Kind.SAFETY else "A0"), "l1"),)
+    return Objective(kind, goal, bad)
 
 
 @st.composite

@@ -126,7 +126,7 @@ def test_a_move_that_changes_nothing_makes_no_command_stale(engine: str) -> None
 
 SOON_OVER = (Location("here", (ClockBound("x", "<=", 1),)), Location("there"), Location("bad"))
 AWAY = Edge("here", "there", Guard((ClockBound("x", "<", 1),)), controllable=False)
-NEVER_BAD = Objective(Kind.SAFETY, bad=("A", "bad"))
+NEVER_BAD = Objective(Kind.SAFETY, bad=(("A", "bad"),))
 
 IDLE = Edge("here", "here")
 GO, BACK = Edge("here", "there"), Edge("there", "here")
@@ -204,7 +204,7 @@ def _walker(*edges: Edge, bound: int = 5, initial: str = "here") -> Automaton:
 IN = Edge("here", "there", resets=("z",), controllable=False)
 OUT = Edge("there", "here", Guard((ClockBound("z", ">", 2),)), resets=("z",), controllable=False)
 GOAL = Automaton("A", (Location("start"), Location("goal")), "start", (Edge("start", "goal"),))
-REACH = Objective(Kind.REACH, goal=("A", "goal"))
+REACH = Objective(Kind.REACH, goal=(("A", "goal"),))
 
 
 @pytest.mark.parametrize(
@@ -330,7 +330,7 @@ def test_the_checker_passes_no_part_in_which_something_is_missing(
     data: st.DataObject, game: Tuple[Network, Objective]
 ) -> None:
     network, objective = game
-    keep = {place[0] for place in (objective.goal, objective.bad) if place is not None}
+    keep = {name for name, _ in (*objective.goal, *objective.bad)}
     keep |= data.draw(st.sets(st.sampled_from(("A0", "A1", "B"))))
     part = part_of(network, keep, data.draw(st.sets(st.sampled_from(("v", "w")))))
     strategy = solve(part, objective, whole=True).strategy

@@ -5,6 +5,7 @@ Against brute force on regions for small random games; by hand, a game for each 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Tuple
@@ -22,7 +23,7 @@ from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
 from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation
@@ -85,6 +86,9 @@ def _network(*automata: Automaton, channels: Tuple[str, ...] = (), clocks: Tuple
     return Network(clocks, (), channels, automata)
 
 
+PLACES = (Location("start"), Location("goal"), Location("bad"))
+
+
 def _automaton(name: str, invariant: int, *edges: Edge) -> Automaton:
     places = (
         Location("start", (ClockBound("x", "<=", invariant),) if invariant else ()),
@@ -98,9 +102,9 @@ def _edge(target: str, op: str, bound: int, controllable: bool) -> Edge:
     return Edge("start", target, Guard((ClockBound("x", op, bound),)), controllable=controllable)
 
 
-REACH = Objective(Kind.REACH, goal=("A", "goal"))
-SAFETY = Objective(Kind.SAFETY, bad=("A", "bad"))
-BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=("A", "goal"), bad=("A", "bad"))
+REACH = Objective(Kind.REACH, goal=(("A", "goal"),))
+SAFETY = Objective(Kind.SAFETY, bad=(("A", "bad"),))
+BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=(("A", "goal"),), bad=(("A", "bad"),))
 
 
 def _won(engine: Engine, objective: Objective, *automata: Automaton, reaction: Fraction = Fraction(0)) -> bool:
@@ -181,6 +185,34 @@ class TestEngine:
         assert not _won(engine, BOTH, _automaton("A", 0, _edge("bad", ">", 1, True), detour))
         assert _won(engine, BOTH, _automaton("A", 0, _edge("bad", ">", 1, True), detour, _edge("goal", ">", 3, True)))
 
+    def test_a_goal_of_several_locations_is_reached_where_all_hold_at_once(self, engine: Engine) -> None:
+        both = Objective(Kind.REACH, goal=(("A", "goal"), ("B", "goal")))
+        go, stay = _edge("goal", ">=", 1, True), _edge("bad", ">=", 1, True)
+        assert _won(engine, both, _automaton("A", 0, go), _automaton("B", 0, go))
+        assert not _won(engine, both, _automaton("A", 0, go), _automaton("B", 0, stay))
+        # Each is reached in turn, and never both.
+        back = Edge("goal", "start")
+        a = Automaton("A", PLACES, "start", (replace(go, sync=Sync("a", True)), replace(back, sync=Sync("b", False))))
+        b = Automaton("B", PLACES, "start", (replace(go, sync=Sync("b", True)), replace(back, sync=Sync("a", False))))
+        turns = _network(a, b, channels=("a", "b"))
+        assert not engine.solve(compile_game(turns, both)).won
+        for place in both.goal:
+            assert engine.solve(compile_game(turns, replace(both, goal=(place,)))).won
+
+    def test_any_of_several_bad_locations_is_avoided(self, engine: Engine) -> None:
+        neither = Objective(Kind.SAFETY, bad=(("A", "bad"), ("B", "bad")))
+        away, loss = _edge("goal", ">=", 1, True), _edge("bad", ">=", 2, False)
+        assert _won(engine, neither, _automaton("A", 0, away, loss), _automaton("B", 0, away, loss))
+        assert not _won(engine, neither, _automaton("A", 0, away, loss), _automaton("B", 0, loss))
+        assert not _won(engine, neither, _automaton("A", 0, loss), _automaton("B", 0, away, loss))
+
+    def test_what_is_bad_counts_until_the_last_location_of_the_goal_is_reached(self, engine: Engine) -> None:
+        both = Objective(Kind.REACH_WHILE_SAFE, goal=(("A", "goal"), ("B", "goal")), bad=(("C", "bad"),))
+        fast, slow = _edge("goal", ">=", 1, True), _edge("goal", ">=", 5, True)
+        for late, won in ((6, True), (3, False)):
+            danger = _automaton("C", 0, _edge("bad", ">=", late, False))
+            assert _won(engine, both, _automaton("A", 0, fast), _automaton("B", 0, slow), danger) is won
+
     def test_a_late_command_needs_room(self, engine: Engine) -> None:
         window = Edge("start", "goal", Guard((ClockBound("x", ">=", 1), ClockBound("x", "<=", 2))))
         assert _won(engine, REACH, _automaton("A", 0, window), reaction=Fraction(1))
@@ -191,7 +223,7 @@ class TestEngine:
         assert not _won(engine, REACH, _automaton("A", 0, window, loss), reaction=Fraction(1))
 
     def test_a_game_that_starts_at_the_goal(self, engine: Engine) -> None:
-        here = Objective(Kind.REACH, goal=("A", "start"))
+        here = Objective(Kind.REACH, goal=(("A", "start"),))
         outcome = engine.solve(compile_game(_network(_automaton("A", 0)), here))
         assert outcome.won
         assert not outcome.blocks, "nothing is left to do"

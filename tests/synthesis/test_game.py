@@ -23,7 +23,7 @@ from pursue_gen.tga.network import (
 )
 from pursue_gen.zones.dbm import raw
 
-REACH = Objective(Kind.REACH, goal=("S", "b"))
+REACH = Objective(Kind.REACH, goal=(("S", "b"),))
 
 
 def _receiver(name: str, *edges: Edge) -> Automaton:
@@ -94,12 +94,12 @@ def test_one_uncontrollable_edge_makes_the_move_uncontrollable() -> None:
 
 
 def test_goal_and_bad_count_only_where_the_objective_asks_for_them() -> None:
-    both = Objective(Kind.REACH, goal=("S", "b"), bad=("S", "a"))
+    both = Objective(Kind.REACH, goal=(("S", "b"),), bad=(("S", "a"),))
     reach = compile_game(_network(), both)
     (move,) = joint_moves(reach, initial_state(reach))
     assert is_goal(reach, move.target)
     assert not is_bad(reach, initial_state(reach))
-    safe = compile_game(_network(), Objective(Kind.SAFETY, goal=("S", "b"), bad=("S", "a")))
+    safe = compile_game(_network(), Objective(Kind.SAFETY, goal=(("S", "b"),), bad=(("S", "a"),)))
     assert is_bad(safe, initial_state(safe))
     assert not is_goal(safe, move.target)
 
@@ -124,8 +124,8 @@ def test_goal_and_bad_count_only_where_the_objective_asks_for_them() -> None:
             "invariant x >= 1 of R.a",
         ),
         (_network(_receiver("R", Edge("a", "nowhere"))), REACH, "SYN004", "location of R 'nowhere'"),
-        (_network(), Objective(Kind.REACH, goal=("S", "z")), "SYN004", "location of S 'z'"),
-        (_network(), Objective(Kind.REACH, goal=("T", "b")), "SYN004", "automaton 'T'"),
+        (_network(), Objective(Kind.REACH, goal=(("S", "z"),)), "SYN004", "location of S 'z'"),
+        (_network(), Objective(Kind.REACH, goal=(("T", "b"),)), "SYN004", "automaton 'T'"),
         (_network(), Objective(Kind.REACH), "SYN002", "no location to reach"),
         (_network(), Objective(Kind.SAFETY), "SYN003", "no location to avoid"),
         (_network(guard=(ClockBound("z", ">", 1),)), REACH, "SYN004", "clock 'z'"),

@@ -53,7 +53,7 @@ def chase(again_by: str) -> Network:
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("again_by", ["bot", "mate"])
 def test_a_command_that_gains_is_not_overtaken_by_one_that_starts_over(engine: str, again_by: str) -> None:
-    network, objective = chase(again_by), Objective(Kind.REACH, goal=("bot", "win"))
+    network, objective = chase(again_by), Objective(Kind.REACH, goal=(("bot", "win"),))
     verdict = solve(network, objective, HALF, engine)
     assert verdict.strategy is not None
     assert verify(network, objective, verdict.strategy, HALF).ok

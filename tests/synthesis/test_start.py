@@ -108,7 +108,7 @@ def _wait_for(bound: int, deadline: int) -> Network:
     return Network(("x", "y"), (), (), (Automaton("A", (location, Location("there")), "here", (go,)),))
 
 
-GOAL = Objective(Kind.REACH, goal=("A", "there"))
+GOAL = Objective(Kind.REACH, goal=(("A", "there"),))
 
 
 def _between(clock: str, low: Fraction, high: Fraction) -> Tuple[Constraint, ...]:

@@ -23,7 +23,7 @@ def _game(reaction: Fraction = Fraction(1, 2)) -> Game:
     places = tuple(Location(name) for name in "abc")
     robot = Automaton("robot", places, "a", (GO, BACK, END))
     network = Network(("x", "y"), (("v", 7),), (), (robot,))
-    return compile_game(network, Objective(Kind.REACH, goal=("robot", "c")), reaction)
+    return compile_game(network, Objective(Kind.REACH, goal=(("robot", "c"),)), reaction)
 
 
 def _zone(*constraints: Tuple[int, int, int]) -> Dbm:

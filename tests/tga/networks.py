@@ -13,9 +13,9 @@ from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Loc
 REFERENCES = ("CT1", "CT2a", "CT3a", "CT3b", "CT4", "CT5", "EB1", "EB2", "EB2x", "EB3", "EB4", "WC1", "WC2a")
 """The published scenarios."""
 
-REACH = Objective(Kind.REACH, goal=("reachObj", "win"))
-SAFETY = Objective(Kind.SAFETY, bad=("obj", "lose"))
-BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=("reachObj", "win"), bad=("obj", "lose"))
+REACH = Objective(Kind.REACH, goal=(("reachObj", "win"),))
+SAFETY = Objective(Kind.SAFETY, bad=(("obj", "lose"),))
+BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=(("reachObj", "win"),), bad=(("obj", "lose"),))
 
 CLOCKS = ("x", "y")
 VARIABLES = ("p", "q")

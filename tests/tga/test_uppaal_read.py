@@ -292,7 +292,10 @@ def test_damaged_files_never_end_in_a_traceback(network: Network, data: st.DataO
         ("control: A[] not obj.lose", SAFETY),
         ("control: A[] !obj.lose", SAFETY),
         ("control: A[ not(obj.lose) U reachObj.win]", BOTH),
-        ("control: A<> m.x_1", Objective(Kind.REACH, goal=("m", "x_1"))),
+        ("control: A<> a.x and b.y", Objective(Kind.REACH, goal=(("a", "x"), ("b", "y")))),
+        ("control: A<> ( a.x&&b.y )", Objective(Kind.REACH, goal=(("a", "x"), ("b", "y")))),
+        ("control: A[] !(a.x || b.y)", Objective(Kind.SAFETY, bad=(("a", "x"), ("b", "y")))),
+        ("control: A<> m.x_1", Objective(Kind.REACH, goal=(("m", "x_1"),))),
     ],
 )
 def test_queries(text: str, objective: Objective) -> None:
@@ -309,6 +312,9 @@ def test_queries(text: str, objective: Objective) -> None:
         "control: A[] x.y",
         "control: A<> x.y\ncontrol: A<> x.z",
         "control: A<> x",
+        "control: A<> x.y or x.z",
+        "control: A[] not(x.y and x.z)",
+        "control: A[] not x.y or x.z",
     ],
 )
 def test_other_queries_are_reported(text: str) -> None:

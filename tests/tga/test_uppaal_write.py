@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 from typing import List
 
@@ -102,7 +103,31 @@ def test_our_scenarios_read_back_equal(path: Path) -> None:
     assert read_network(text, "TGA.xml") == network
 
 
-@pytest.mark.parametrize("objective", [REACH, SAFETY, BOTH, Objective(Kind.SAFETY, bad=("o", "x"))])
+SEVERAL = Objective(
+    Kind.REACH_WHILE_SAFE, goal=(("reachObj", "win"), ("reachObj2", "win")), bad=(("obj", "lose"), ("obj2", "lose"))
+)
+
+
+def test_several_locations_stand_in_one_query() -> None:
+    query = "control: A[ not(obj.lose or obj2.lose) U (reachObj.win and reachObj2.win) ]\n"
+    assert write_query(SEVERAL) == query
+    assert write_query(replace(SEVERAL, kind=Kind.REACH)) == "control: A<> (reachObj.win and reachObj2.win)\n"
+    assert write_query(replace(SEVERAL, kind=Kind.SAFETY)) == "control: A[] not(obj.lose or obj2.lose)\n"
+
+
+@pytest.mark.parametrize(
+    "objective",
+    [
+        REACH,
+        SAFETY,
+        BOTH,
+        Objective(Kind.SAFETY, bad=(("o", "x"),)),
+        SEVERAL,
+        replace(SEVERAL, kind=Kind.REACH, bad=()),
+        replace(SEVERAL, kind=Kind.SAFETY, goal=()),
+        replace(SEVERAL, goal=(("reachObj", "win"),), bad=(("reachObj", "late"), ("orU", "and_"), ("obj", "lose"))),
+    ],
+)
 def test_queries_read_back_equal(objective: Objective) -> None:
     assert read_query(write_query(objective), "TCTL.q") == objective
 

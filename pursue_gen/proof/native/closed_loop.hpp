@@ -6,10 +6,12 @@
 
 namespace pursue::proof {
 
-// A location of an automaton; none: automaton -1.
+// A location of an automaton.
 struct Place {
-    int automaton = -1, location = -1;
+    int automaton, location;
 };
+
+using Places = std::vector<Place>;
 
 // A discrete state and the clocks' values just after the step into it.
 template <class Z>
@@ -30,18 +32,23 @@ class ClosedLoop {
     using R = typename Z::raw_t;
 
     // `ranks` of all zones of the strategy; none: every play is followed. The tables and ranks must outlive the loop.
-    ClosedLoop(const Tables& tables, std::int64_t factor, Rules rules, Place goal, Place bad, const Ranks* ranks,
+    ClosedLoop(const Tables& tables, std::int64_t factor, Rules rules, Places goal, Places bad, const Ranks* ranks,
                Watch& watch)
         : rules(rules), watch(watch), arena(tables.network, factor), strategy_(tables.strategy),
-          goal_(goal), bad_(bad), ranks_(ranks) {}
+          goal_(std::move(goal)), bad_(std::move(bad)), ranks_(ranks) {}
 
     Rules rules;  // between two searches `prompt` may change: nothing that is kept depends on it
     Watch& watch;
     Arena<Z> arena;
     std::vector<bool> used;  // for each zone of the strategy whether plays reach it
 
-    bool won(int state) const { return is_at(state, goal_); }
-    bool lost(int state) const { return is_at(state, bad_); }
+    // All of the goal at once; any of what is bad.
+    bool won(int state) const {
+        return !goal_.empty() && std::all_of(goal_.begin(), goal_.end(), [&](const Place& p) { return is_at(state, p); });
+    }
+    bool lost(int state) const {
+        return std::any_of(bad_.begin(), bad_.end(), [&](const Place& p) { return is_at(state, p); });
+    }
 
     // All next entries. Throws Broken where the strategy fails on the way to them.
     Steps<Z> successors(const Entry<Z>& entry) {
@@ -110,7 +117,7 @@ class ClosedLoop {
 
   private:
     bool is_at(int state, const Place& place) const {
-        return place.automaton >= 0 && arena.state(state)[place.automaton] == place.location;
+        return arena.state(state)[place.automaton] == place.location;
     }
 
     const std::vector<int>* blocks(int state) const {
@@ -237,7 +244,7 @@ class ClosedLoop {
     }
 
     const Strategy& strategy_;
-    const Place goal_, bad_;
+    const Places goal_, bad_;
     const Ranks* ranks_;
     std::unordered_map<int, std::unique_ptr<Advice<Z>>> advice_;
     std::unordered_map<int, Zones<Z>> covered_;

@@ -126,17 +126,18 @@ std::vector<std::int64_t> matrix(const Z& zone, int dim) {
     return out;
 }
 
-Place read_place(const py::handle& pair) {
-    if (pair.is_none()) return {};
-    const auto [automaton, location] = pair.cast<std::pair<int, int>>();
-    return {automaton, location};
+Places read_places(const py::handle& list) {
+    Places out;
+    for (const auto& [automaton, location] : list.cast<std::vector<std::pair<int, int>>>())
+        out.push_back({automaton, location});
+    return out;
 }
 
 // How a strategy is played, and for what.
 struct Settings {
     std::int64_t factor;
     Rules rules;
-    Place goal, bad;
+    Places goal, bad;
     std::vector<std::int64_t> start;
     std::optional<Ranks> ranks;
 };
@@ -144,8 +145,8 @@ struct Settings {
 Settings read_settings(const py::dict& in) {
     return {in["factor"].cast<std::int64_t>(),
             {in["reaction"].cast<int>(), false, in["must_end"].cast<bool>(), in["instant"].cast<int>()},
-            read_place(in["goal"]),
-            read_place(in["bad"]),
+            read_places(in["goal"]),
+            read_places(in["bad"]),
             in["start"].cast<std::vector<std::int64_t>>(),
             in["ranks"].cast<std::optional<Ranks>>()};
 }

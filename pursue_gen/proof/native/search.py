@@ -137,9 +137,9 @@ def searches_of(loop: ClosedLoop) -> Searches:
         return Searches(loop)
 
 
-def _numbered(tables: Tables, place: Optional[Tuple[int, str]]) -> Optional[Tuple[int, int]]:
-    if place is None:
-        return None
-    k, name = place
-    names: List[str] = [location.name for location in tables.network.automata[k].locations]
-    return k, len(names) - 1 - names[::-1].index(name)
+def _numbered(tables: Tables, places: Sequence[Tuple[int, str]]) -> List[Tuple[int, int]]:
+    found: List[Tuple[int, int]] = []
+    for k, name in places:
+        names = [location.name for location in tables.network.automata[k].locations]
+        found.append((k, len(names) - 1 - names[::-1].index(name)))
+    return found

@@ -1,6 +1,7 @@
 // The tables of a game, as the Python side compiles them (pursue_gen/synthesis/game.py says what each field means).
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -51,14 +52,28 @@ struct Game {
     std::vector<int> variables;
     std::vector<Bound> start;  // of the clocks at the start; none: they are 0
     std::vector<Automaton> automata;
-    Place goal, bad;
+    std::vector<Place> goal, bad;  // all of the goal at once; any of what is bad
     std::vector<int> unseen, unseen_clocks;  // of a discrete state, and clocks: what cannot matter
 };
 
 // A discrete state: a location per automaton, then a value per variable.
 using Discrete = std::vector<std::int32_t>;
 
-inline bool at(const Discrete& d, const Place& p) { return p.automaton >= 0 && d[p.automaton] == p.location; }
+inline bool at(const Discrete& d, const Place& p) { return d[p.automaton] == p.location; }
+
+inline bool at_goal(const Game& game, const Discrete& d) {
+    return !game.goal.empty() &&
+           std::all_of(game.goal.begin(), game.goal.end(), [&](const Place& p) { return at(d, p); });
+}
+
+inline bool at_bad(const Game& game, const Discrete& d) {
+    return std::any_of(game.bad.begin(), game.bad.end(), [&](const Place& p) { return at(d, p); });
+}
+
+// Whether an automaton watches what is to be avoided: the duties of the controller are done where it is at its home.
+inline bool watches(const Game& game, int automaton) {
+    return std::any_of(game.bad.begin(), game.bad.end(), [&](const Place& p) { return p.automaton == automaton; });
+}
 
 inline bool holds(const Game& game, const Discrete& d, const std::vector<Clause>& clauses) {
     const int base = static_cast<int>(game.automata.size());

@@ -26,10 +26,10 @@ std::vector<Test> tests(const py::handle& list) {
     return out;
 }
 
-Place place(const py::handle& pair) {
-    if (pair.is_none()) return {};
-    const auto p = pair.cast<std::pair<int, int>>();
-    return {p.first, p.second};
+std::vector<Place> places(const py::handle& list) {
+    std::vector<Place> out;
+    for (const auto& item : list.cast<std::vector<std::pair<int, int>>>()) out.push_back({item.first, item.second});
+    return out;
 }
 
 Game read_game(const py::dict& in) {
@@ -42,8 +42,8 @@ Game read_game(const py::dict& in) {
     game.start = bounds(in["start"]);
     game.unseen = in["unseen"].cast<std::vector<int>>();
     game.unseen_clocks = in["unseen_clocks"].cast<std::vector<int>>();
-    game.goal = place(in["goal"]);
-    game.bad = place(in["bad"]);
+    game.goal = places(in["goal"]);
+    game.bad = places(in["bad"]);
     for (const auto& a : in["automata"]) {
         Automaton automaton;
         for (const auto& location : a["invariants"]) automaton.invariants.push_back(bounds(location));

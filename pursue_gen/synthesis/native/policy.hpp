@@ -11,11 +11,13 @@ class Policy {
   public:
     explicit Policy(const Game& game) : game_(game), pessimistic_(game), optimistic_(game, true) {
         for (int a = 0; a < static_cast<int>(game.automata.size()); ++a)
-            if (a != game.bad.automaton && game.automata[a].invariants.size() > 1 && only_receives(a)) {
+            if (!watches(game, a) && game.automata[a].invariants.size() > 1 && only_receives(a)) {
                 event_orders_.push_back(a);
                 if (begun_by_controller(a)) controller_orders_.push_back(a);
             }
         const int count = static_cast<int>(game.automata.size());
+        for (int a = 0; a < count; ++a)
+            if (watches(game, a)) duties_done_.push_back({a, game.automata[a].home});
         changed_by_.resize(count + game.variables.size());
         for (int a = 0; a < count; ++a)
             for (const Edge& e : game.automata[a].edges) {
@@ -32,7 +34,7 @@ class Policy {
         return first;
     }
 
-    // Safety: what to do for the first subgoal to which the controller can contribute. First the duty, then to bring to
+    // Safety: what to do for the first subgoal to which the controller can contribute. First the duties, then to bring to
     // their beginnings the orders of events (rules) that were begun, then to have done another duty later.
     std::vector<int> towards_subgoals(const Discrete& d) const {
         std::vector<int> first;
@@ -60,7 +62,8 @@ class Policy {
     // Safety: what the environment does at first: what brings it nearer to the controller's loss or to one more duty,
     // and all that agents can do on whose state the controller's plans for its subgoals build.
     std::vector<int> towards_loss(const Discrete& d) const {
-        std::vector<int> first = optimistic_.plan(d, game_.bad).first[false];
+        std::vector<int> first;
+        for (const Place& bad : game_.bad) append(first, optimistic_.plan(d, bad).first[false]);
         append(first, optimistic_.plan(d, RelaxedPlanner::DUTY_COME).first[false]);
         for (const Place& subgoal : subgoals(d))
             for (int what : optimistic_.plan(d, subgoal).uses) append(first, changed_by_[what]);
@@ -69,13 +72,13 @@ class Policy {
 
     // The end of something that an invariant bounds: it has to come some time.
     bool ends(const Discrete& d, const Joint& joint) const {
-        return joint.owner != game_.bad.automaton && !game_.automata[joint.owner].invariants[d[joint.owner]].empty();
+        return !watches(game_, joint.owner) && !game_.automata[joint.owner].invariants[d[joint.owner]].empty();
     }
 
     // Whether states in which an automaton is at such a location come after others. In a reach game the controller's
     // agents do not count: they would be won for one after the other, and not be under way together.
     bool is_deferred(int a, int location) const {
-        if (a == game_.bad.automaton) return false;
+        if (watches(game_, a)) return false;
         const auto& edges = game_.automata[a].edges;
         return std::none_of(edges.begin(), edges.end(), [&](const Edge& e) {
             return e.controllable && (game_.kind != Kind::safety || e.source == location);
@@ -83,18 +86,21 @@ class Policy {
     }
 
     // What the controller of a safety game prefers to do, best first.
-    std::vector<int> preferred(const Discrete& d) const { return pessimistic_.plan(d, duty_done()).first[true]; }
+    std::vector<int> preferred(const Discrete& d) const {
+        std::vector<int> first;
+        for (const Place& duty : duties_done_) append(first, pessimistic_.plan(d, duty).first[true]);
+        return first;
+    }
 
   private:
     std::vector<Place> subgoals(const Discrete& d) const {
         std::vector<Place> out;
-        if (!at(d, duty_done())) out.push_back(duty_done());
+        for (const Place& duty : duties_done_)
+            if (!at(d, duty)) out.push_back(duty);
         for (int a : event_orders_)
             if (d[a] != game_.automata[a].home) out.push_back({a, game_.automata[a].home});
         return out;
     }
-
-    Place duty_done() const { return {game_.bad.automaton, game_.automata[game_.bad.automaton].home}; }
 
     static void append(std::vector<int>& a, const std::vector<int>& b) { a.insert(a.end(), b.begin(), b.end()); }
 
@@ -115,6 +121,7 @@ class Policy {
 
     const Game& game_;
     RelaxedPlanner pessimistic_, optimistic_;
+    std::vector<Place> duties_done_;            // the homes of the automata that watch what is to be avoided
     std::vector<int> event_orders_;             // automata that only receive: they follow an order of events
     std::vector<int> controller_orders_;        // those of them that only the controller begins
     std::vector<std::vector<int>> changed_by_;  // the environment's sender edges that change an automaton or a variable

@@ -36,9 +36,14 @@ class RelaxedPlanner {
     };
 
     // A relaxed plan from d to a place; an empty one where there is none.
-    Plan plan(const Discrete& d, Place to) const {
-        const int goal = known(to.automaton, to.location);
-        if (goal < 0) return {};
+    Plan plan(const Discrete& d, Place to) const { return plan(d, std::vector<Place>{to}); }
+
+    // A relaxed plan from d to all of the places; its first edges are for the first of them that is not reached.
+    Plan plan(const Discrete& d, const std::vector<Place>& to) const {
+        std::vector<int> goals;
+        for (const Place& place : to) goals.push_back(known(place.automaton, place.location));
+        if (goals.empty() || std::find(goals.begin(), goals.end(), -1) != goals.end()) return {};
+        std::reverse(goals.begin(), goals.end());  // what comes last is taken first
         std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1), missing(missing_), ready, fresh;
         std::vector<bool> met(preconditions_.size(), false);
         for (std::size_t k = 0; k < d.size(); ++k) {
@@ -47,7 +52,8 @@ class RelaxedPlanner {
             layer[fact] = 0;
             fresh.push_back(fact);
         }
-        for (int depth = 0; layer[goal] < 0; ++depth) {
+        const auto missed = [&] { return std::any_of(goals.begin(), goals.end(), [&](int g) { return layer[g] < 0; }); };
+        for (int depth = 0; missed(); ++depth) {
             ready.clear();
             for (int fact : fresh)
                 for (int need : met_by_[fact]) {
@@ -66,7 +72,7 @@ class RelaxedPlanner {
                     }
             if (fresh.empty()) return {};
         }
-        return extract(goal, layer, achiever);
+        return extract(std::move(goals), layer, achiever);
     }
 
   private:
@@ -97,7 +103,7 @@ class RelaxedPlanner {
             op.preconditions.push_back(any);
         }
         op.effects.push_back(fact(automaton, edge.target));
-        if (automaton == game_.bad.automaton && edge.source != edge.target) {
+        if (edge.source != edge.target && watches(game_, automaton)) {
             const int rest = game_.automata[automaton].home;
             if (edge.target == rest) op.effects.push_back(fact(DUTY_DONE.automaton, DUTY_DONE.location));
             if (edge.source == rest) op.effects.push_back(fact(DUTY_COME.automaton, DUTY_COME.location));
@@ -126,9 +132,8 @@ class RelaxedPlanner {
         return -1;
     }
 
-    Plan extract(int goal, const std::vector<int>& layer, const std::vector<int>& achiever) const {
+    Plan extract(std::vector<int> open, const std::vector<int>& layer, const std::vector<int>& achiever) const {
         Plan plan;
-        std::vector<int> open{goal};
         std::vector<bool> seen(facts_.size(), false);
         while (!open.empty()) {
             const int fact = open.back();

@@ -88,8 +88,8 @@ class ZoneGraph {
         if (k < static_cast<int>(nodes_.size())) return k;
         monitor_.admit(nodes_.size(), queue_.size());
         Node<Z>& n = nodes_.emplace_back();
-        n.won = game_.kind != Kind::safety && at(d, game_.goal);
-        n.lost = !n.won && at(d, game_.bad);
+        n.won = game_.kind != Kind::safety && at_goal(game_, d);
+        n.lost = !n.won && at_bad(game_, d);
         n.max = max_constants_.at(d, Z::size);
         for (std::size_t a = 0; a < game_.automata.size(); ++a) {
             const auto& bounds = game_.automata[a].invariants[d[a]];

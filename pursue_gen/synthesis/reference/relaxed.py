@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from typing import Dict, FrozenSet, List, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, List, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.game import NO_CHANNEL, Game, JointMove, State
 
@@ -56,12 +56,10 @@ class RelaxedPlanner:
 
     def _plan(self, state: State) -> Set[int]:
         """The edges of a relaxed plan from the state to the goal; empty if there is none."""
-        goal = self._game.goal
-        if goal is None:
-            return set()
-        achiever, support = self._achievers(state, ("at", *goal))
+        goals: List[Fact] = [("at", automaton, location) for automaton, location in self._game.goal]
+        achiever, support = self._achievers(state, set(goals))
         plan: Set[int] = set()
-        wanted: List[Fact] = [("at", *goal)]
+        wanted = goals if all(goal in achiever for goal in goals) else []
         while wanted:
             operator = achiever.get(wanted.pop(), -1)
             if operator >= 0 and operator not in plan:
@@ -69,10 +67,11 @@ class RelaxedPlanner:
                 wanted += support[operator]
         return plan
 
-    def _achievers(self, state: State, goal: Fact) -> Tuple[Dict[Fact, int], Dict[int, List[Fact]]]:
+    def _achievers(self, state: State, goals: AbstractSet[Fact]) -> Tuple[Dict[Fact, int], Dict[int, List[Fact]]]:
         """The cheapest edge to each fact (-1: it holds), and the facts that made each edge possible.
 
-        Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold. Stops at the goal.
+        Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold. Stops with the last
+        of the goals.
         """
         now: List[Fact] = [("at", k, location) for k, location in enumerate(state.locations)]
         now += [("is", k, value) for k, value in enumerate(state.values)]
@@ -80,7 +79,7 @@ class RelaxedPlanner:
         heapq.heapify(queue)
         achiever: Dict[Fact, int] = {}
         met: Dict[int, Dict[int, Fact]] = {}
-        while queue and goal not in achiever:
+        while queue and not goals <= achiever.keys():
             cost, by, fact = heapq.heappop(queue)
             if fact in achiever:
                 continue

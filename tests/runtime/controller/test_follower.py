@@ -115,6 +115,16 @@ def test_it_begins_with_the_current_mission() -> None:
     assert (bot.mission, bot.follower.part.robots, list(bot.follower.part.poses.places)) == (B, ["bot"], ["y"])
 
 
+def test_a_strategy_names_the_objectives_among_its_agents_where_their_names_do_not_tell() -> None:
+    data = {**strategy("a"), "commands_agents": ["bot", "reachObj", "reachObj2"]}
+    for named, robots in ({}, ["bot", "reachObj2"]), ({"objectives": ["reachObj", "reachObj2"]}, ["bot"]):
+        shelf = Shelf()
+        shelf.first = Source(A, strategy={**data, **named}, poses={"poses": POSES})
+        bot = Controller(shelf)
+        bot.follower.load_current()
+        assert bot.follower.part is not None and bot.follower.part.robots == robots
+
+
 def test_it_plays_the_mission_of_the_states_with_all_that_belongs_to_it() -> None:
     bot = begun(SECOND)
     assert bot.see(3, 10.0, A) == "ours" and bot.says(10.0) == "bot:a@3"

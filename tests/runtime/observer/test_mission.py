@@ -293,6 +293,76 @@ def test_agents_that_must_never_meet_lose_as_soon_as_they_do() -> None:
     assert [(state.seq, state.agent, state.status) for state in states] == [(2, "bot", "running"), (3, "obj", "lost")]
 
 
+# Several objectives ---------------------------------------------------------------------------------------------------
+
+SEVERAL = """
+format: 2
+scenario: several
+clocks: [Cbot, Creach, Creach2, Cobj]
+variables: {Pbot: 1}
+automata:
+- name: bot
+  kind: robot
+  initial: a
+  locations: {a: []}
+  edges:
+  - {from: a, to: a, word: load, sync: send, controllable: true}
+  - {from: a, to: a, word: wave, sync: send, controllable: true}
+  - {from: a, to: a, word: fall, sync: send, controllable: true}
+- name: obj
+  kind: safety
+  initial: idle
+  locations: {idle: [], lose: []}
+  edges:
+  - {from: idle, to: lose, word: fall, sync: receive, controllable: true}
+- name: reachObj
+  kind: reach
+  initial: initial_location
+  locations: {initial_location: [Creach <= 9], unlocked: [Creach <= 9], win: [], late: []}
+  edges:
+  - {from: initial_location, to: unlocked, word: reachObj_going_initial_location2unlocked, sync: own, controllable: true}
+  - {from: initial_location, to: late, word: reachObj_going_initial_location2late, sync: own, controllable: true}
+  - {from: unlocked, to: win, word: load, sync: receive, controllable: true}
+  - {from: unlocked, to: late, word: reachObj_going_unlocked2late, sync: own, controllable: true}
+- name: reachObj2
+  kind: reach
+  initial: initial_location
+  locations: {initial_location: [], win: []}
+  edges:
+  - {from: initial_location, to: win, word: wave, sync: receive, controllable: true}
+objective: {kind: reach-while-safe, goal: [[reachObj, win], [reachObj2, win]], bad: [[obj, lose], [reachObj, late]]}
+"""
+UNLOCK = "reachObj_going_initial_location2unlocked"
+
+
+@pytest.mark.parametrize("order", [("load", "wave"), ("wave", "load")])
+def test_it_is_won_where_all_goals_are_reached_in_any_order(order: Tuple[str, str]) -> None:
+    journey = Journey(SEVERAL)
+    for word, now in (("_start_", 0.0), (UNLOCK, 1.0), (order[0], 2.0)):
+        assert journey.hear(word, now).status == "running"
+    assert journey.hear("Finish!", 2.5) is None, "a goal is left"
+    assert journey.hear(order[1], 3.0).status == "won"
+
+
+def test_any_of_several_bad_locations_loses() -> None:
+    journey = Journey(SEVERAL)
+    journey.hear("_start_", 0.0)
+    journey.hear("wave", 1.0)
+    assert journey.hear("fall", 2.0).status == "lost"
+
+
+@pytest.mark.parametrize("unlocked", [False, True])
+def test_the_deadline_of_a_goal_passes_wherever_it_waits(unlocked: bool) -> None:
+    journey = Journey(SEVERAL)
+    journey.hear("_start_", 0.0)
+    if unlocked:
+        journey.hear(UNLOCK, 1.0)
+    moment = journey.mission.next_moment(1.0)
+    assert moment == pytest.approx(9.1)
+    state = journey.mission.on_time(moment)[-1]
+    assert (state.status, state.locations["reachObj"]) == ("lost", "late") and "deadline of reachObj" in state.reason
+
+
 # Cover ----------------------------------------------------------------------------------------------------------------
 
 COVER = """
