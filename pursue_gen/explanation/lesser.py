@@ -8,6 +8,7 @@ from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
 from pursue_gen.language.scenario import (
     Agent,
     Avoid,
+    Both,
     Choice,
     NeverWith,
     Ref,
@@ -65,7 +66,7 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
     return replace(
         scenario,
         events=tuple(event for event in scenario.events if event.name not in gone),
-        rules=tuple(replace(rule, body=body) for rule, body in bodies if isinstance(body, (Sequence, Choice))),
+        rules=tuple(replace(rule, body=body) for rule, body in bodies if isinstance(body, (Sequence, Choice, Both))),
         states=tuple(state for state in states if state.name in kept),
         dependencies=tuple(d for d in scenario.dependencies if d.event.name not in gone and d.state.name in kept),
         agents=tuple(

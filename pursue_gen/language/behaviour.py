@@ -3,13 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import events_used, refs_of
-from pursue_gen.language.scenario import Agent, Choice, Dependency, Event, Ref, Rule, RuleBody, Scenario
+from pursue_gen.language.scenario import (
+    Agent,
+    Both,
+    Choice,
+    Dependency,
+    Event,
+    Ref,
+    Rule,
+    RuleBody,
+    Scenario,
+    Sequence,
+)
 
 _SOME = 5  # events that a message lists
+_MOST_EARLIER = 1000  # sets of events
+
+MOST_LOCATIONS = 600
+"""Of the automaton of a rule: `and` of nine events has 511, and the guard of each event tests half of them."""
 
 
 def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
@@ -185,7 +200,7 @@ class _Course:
 
     def __init__(self, scenario: Scenario) -> None:
         self.able = {ref.name for agent in scenario.agents for ref in agent.can_do}
-        self.waits: Dict[str, List[Tuple[Rule, FrozenSet[str]]]] = {}
+        self.waits: Dict[str, List[Tuple[Rule, Earlier]]] = {}
         """For each event the rules that name it, with the events after which it is its turn; none: at the start."""
         for rule in scenario.rules:
             for name, before in predecessors(rule).items():
@@ -205,7 +220,9 @@ class _Course:
     def conditions(self, name: str) -> List[FrozenSet[str]]:
         """Of each of these sets, one event has to happen before this one can."""
         needed = [self.setters(dependency) for dependency in self.needs.get(name, ())]
-        return [before for _, before in self.waits.get(name, ()) if before] + [s for s in needed if s is not None]
+        return [some for _, earlier in self.waits.get(name, ()) for some in earlier] + [
+            some for some in needed if some is not None
+        ]
 
     def possible(self) -> FrozenSet[str]:
         """The events that may happen if whatever once was possible stays possible: those missing never can."""
@@ -227,9 +244,10 @@ class _Course:
         """Why an event is not possible, in half a sentence."""
         if name not in self.able:
             return f"nobody can do {name}"
-        for rule, before in self.waits.get(name, ()):
-            if before and before.isdisjoint(possible):
-                names = " or ".join(sorted(before)[:_SOME])
+        for rule, earlier in self.waits.get(name, ()):
+            missing = next((some for some in earlier if some.isdisjoint(possible)), None)
+            if missing is not None:
+                names = " or ".join(sorted(missing)[:_SOME])
                 return f"{name} waits for {names} in the rule {rule.name}, and that can never happen before it"
         return f"{name} waits for a state that never has the value it needs"
 
@@ -237,7 +255,14 @@ class _Course:
 def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     """Rules that name an event twice or can never turn, and dependencies that can never hold."""
     sound = True
+    lasting = {event.name for event in scenario.events if event.duration is not None}
     for rule in scenario.rules:
+        count = locations_of(rule.body, lasting) + 1
+        if count > MOST_LOCATIONS and _has_both(rule.body):
+            number = f"{count:,}" if count < 10**9 else "more than a billion"
+            why = f"has {number} positions, because its parts come in any order"
+            hint = "join fewer events with and, or put some of them in order with before"
+            yield error("PML203", f"the rule {rule.name} {why}: expected at most {MOST_LOCATIONS}", rule.span, hint)
         seen: Set[str] = set()
         for ref in refs_of(rule.body):
             if ref.name in seen:
@@ -263,24 +288,53 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML162", message, dependency.span, hint)
 
 
-def predecessors(rule: Rule) -> Dict[str, FrozenSet[str]]:
-    """For each event of a rule those after which it is its turn; the empty set: it is its turn at the start."""
-    before: Dict[str, Set[str]] = {ref.name: set() for ref in refs_of(rule.body)}
+Earlier = Tuple[FrozenSet[str], ...]
+"""What has to have happened: of each of these sets one event. Empty: nothing."""
 
-    def visit(body: RuleBody) -> Tuple[Set[str], Set[str]]:
-        """Notes who follows whom in the body; its first and its last events."""
+
+def predecessors(rule: Rule) -> Dict[str, Earlier]:
+    """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
+    before: Dict[str, Earlier] = {ref.name: () for ref in refs_of(rule.body)}
+
+    def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
+        """Notes who follows whom in the body; its first events, and what has happened when it is over."""
         if isinstance(body, Ref):
-            return {body.name}, {body.name}
-        first, last = visit(body.first)
-        first_then, last_then = visit(body.second)
+            return {body.name}, (frozenset({body.name}),)
+        first, over = visit(body.first)
+        first_then, over_then = visit(body.second)
         if isinstance(body, Choice):
-            return first | first_then, last | last_then
+            return first | first_then, _either(over, over_then)
+        if isinstance(body, Both):
+            return first | first_then, over + over_then
         for name in first_then:
-            before[name] |= last
-        return first, last_then
+            before[name] = over
+        return first, over_then
 
     starts, _ = visit(rule.body)
-    return {name: frozenset() if name in starts else frozenset(names) for name, names in before.items()}
+    return {name: () if name in starts else earlier for name, earlier in before.items()}
+
+
+def _either(a: Earlier, b: Earlier) -> Earlier:
+    """What has happened if one of these has; where that would be long, something that is less."""
+    if len(a) * len(b) > _MOST_EARLIER:
+        return (frozenset().union(*a, *b),)
+    return tuple(dict.fromkeys(one | other for one in a for other in b))
+
+
+def locations_of(body: RuleBody, lasting: AbstractSet[str]) -> int:
+    """How many locations the automaton of a rule has between the first and the last one of that part of it."""
+    if isinstance(body, Ref):
+        return int(body.name in lasting)
+    first, second = locations_of(body.first, lasting), locations_of(body.second, lasting)
+    if isinstance(body, Both):
+        return (first + 2) * (second + 2) - 2
+    return first + second + isinstance(body, Sequence)
+
+
+def _has_both(body: RuleBody) -> bool:
+    if isinstance(body, Ref):
+        return False
+    return isinstance(body, Both) or _has_both(body.first) or _has_both(body.second)
 
 
 def _can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:

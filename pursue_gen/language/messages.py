@@ -14,7 +14,7 @@ FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
     "CONNECT": "connect a and b distance 3 one_way (one_way is optional)",
     "EVENT": 'event "work" collaborative together location a duration 6 (or: 6 to 9; all but the name is optional)',
-    "RULE": 'rule "order": first before second (or: first or second; use brackets to nest)',
+    "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
@@ -153,7 +153,7 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return f"{text} is a word of the language and cannot be a name; choose another name"
     if token.type == "NUMBER" and "WORD" in expected:
         return "a name begins with a letter"
-    if token.type in ("BEFORE", "OR") and statement == "RULE":
+    if token.type in ("BEFORE", "OR", "AND") and statement == "RULE":
         return "put brackets around what belongs together: (first before second) before third"
     if token.type == "RPAR":
         return "this `)` has no `(`"

@@ -215,6 +215,8 @@ class _Builder:
         if tree.data == "ref":
             return self._ref(tree)
         first, second = (self._body(child) for child in tree.children)
+        if tree.data == "both":
+            return pml.Both(first, second, self._span(tree))
         kind = pml.Sequence if tree.data == "sequence" else pml.Choice
         return kind(first, second, self._span(tree))
 

@@ -124,7 +124,16 @@ class Choice:
     span: Span
 
 
-RuleBody = Union[Ref, Sequence, Choice]
+@dataclass(frozen=True)
+class Both:
+    """`first and second` in a rule: in any order, and while the other one goes on."""
+
+    first: RuleBody
+    second: RuleBody
+    span: Span
+
+
+RuleBody = Union[Ref, Sequence, Choice, Both]
 
 
 @dataclass(frozen=True)

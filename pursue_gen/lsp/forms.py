@@ -28,7 +28,7 @@ MEANINGS: Dict[str, str] = {
     "LEAVES": "The place that it leaves in time.",
     "NEVER": "It never sets off to that place.",
     "AT": "The place.",
-    "AND": "The other end of the way.",
+    "AND": "The other end of the way; in a rule: both of the two, in any order.",
     "DISTANCE": "How long the way is, in the unit of distance that you chose.",
     "ONE_WAY": "From the first place to the second only. Without it, the way goes in both directions.",
     "LOCATION": "Where it happens (events), or where it starts (agents).",
@@ -87,6 +87,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     "RULE": (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
         Form("either of two events", 'rule "{=choice}": {event} or {event}'),
+        Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),
     ),
     "STATE": (
         Form("true or false, changed by events", 'state "{=open}": initially false, true_if {event} false_if {event}'),

@@ -12,6 +12,7 @@ from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
     Avoid,
+    Both,
     Choice,
     Event,
     NeverWith,
@@ -129,7 +130,7 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     for rule in scenario.rules:
         turns = predecessors(rule)
         if event.name in turns:
-            after = " or ".join(sorted(turns[event.name]))
+            after = " and ".join(" or ".join(sorted(some)) for some in turns[event.name])
             turn = f"its turn comes after {after}" if after else "its turn comes first in each round"
             lines.append(f"- rule {rule.name}: {turn}")
     for dependency in scenario.dependencies:
@@ -168,6 +169,8 @@ def _in_words(body: RuleBody) -> str:
         return body.name
     if isinstance(body, Choice):
         return " or ".join(_bracketed(side) for side in (body.first, body.second))
+    if isinstance(body, Both):
+        return " and ".join(_bracketed(side) for side in (body.first, body.second)) + ", in any order"
     return ", then ".join(_bracketed(side) for side in _steps(body))
 
 

@@ -24,6 +24,7 @@ _USED: Dict[Tuple[str, str], str] = {
     ("RULE", "RULE"): "event",
     ("RULE", "BEFORE"): "event",
     ("RULE", "OR"): "event",
+    ("RULE", "AND"): "event",
     ("STATE", "TRUE_IF"): "event",
     ("STATE", "FALSE_IF"): "event",
     ("STATEDEPENDENCY", "STATEDEPENDENCY"): "event",

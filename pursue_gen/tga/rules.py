@@ -1,17 +1,22 @@
-"""Rules: from nested `before` and `or` to a cyclic automaton that listens to its events.
+"""Rules: from nested `before`, `or` and `and` to a cyclic automaton that listens to its events.
 
 Names as the original has them. A part of a rule is known by its way down from the top, f(irst) or s(econd) at each
 level: `fs` is the second part of the first part. A `before` has one location between its two parts, called
 `<rule><depth><way>`; an event that lasts has one while it is done, called after the part that it belongs to. Locations
 are listed, and numbered, in the order in which the rule text passes them.
+
+The original has no `and`. Its automaton is the product of those of its two parts, each of which goes on by itself:
+the location in which the first one has passed i of its locations and the second one j is called
+`<rule><depth><way>_<i>_<j>`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import AbstractSet, Dict, List, Mapping, Tuple
 
-from pursue_gen.language.scenario import Choice, Ref, Rule, RuleBody, Sequence
+from pursue_gen.language.scenario import Both, Choice, Ref, Rule, RuleBody, Sequence
 from pursue_gen.tga.names import done, rule_turn
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 
@@ -58,6 +63,8 @@ class _Layout:
         elif isinstance(body, Choice):
             self.lay(body.first, way + "f", source, target)
             self.lay(body.second, way + "s", source, target)
+        elif isinstance(body, Both):
+            self._both(body, way, source, target)
         else:
             self._sequence(body, way, source, target)
 
@@ -66,6 +73,37 @@ class _Layout:
         self.lay(body.first, way + "f", source, between)
         self.locations.append(between)
         self.lay(body.second, way + "s", between, target)
+
+    def _both(self, body: Both, way: str, source: str, target: str) -> None:
+        first, second = (self._apart(part, way + side) for part, side in ((body.first, "f"), (body.second, "s")))
+        last = len(first.locations) - 1, len(second.locations) - 1
+        corners = {(0, 0): source, last: target}
+
+        def at(i: int, j: int) -> str:
+            return corners.get((i, j), f"{self._part(way)}_{i}_{j}")
+
+        places = list(product(range(last[0] + 1), range(last[1] + 1)))
+        self.locations += [at(*place) for place in places if place not in corners]
+        rows, columns = first.onward(), second.onward()
+        for i, j in places:
+            self.steps += [(at(i, j), at(k, j), channel) for k, channel in rows[i]]
+            self.steps += [(at(i, j), at(i, k), channel) for k, channel in columns[j]]
+
+    def _apart(self, body: RuleBody, way: str) -> _Layout:
+        """That part of the rule alone: its first location is the first one of its list, its last one the last one."""
+        source, target = f"{self._part(way)}_first", f"{self._part(way)}_last"
+        part = _Layout(self.rule, self.lasting, [source], [])
+        part.lay(body, way, source, target)
+        part.locations.append(target)
+        return part
+
+    def onward(self) -> List[List[Tuple[int, str]]]:
+        """For each location, by number, where it leads and on which channel."""
+        numbers = {name: number for number, name in enumerate(self.locations)}
+        result: List[List[Tuple[int, str]]] = [[] for _ in self.locations]
+        for source, target, channel in self.steps:
+            result[numbers[source]].append((numbers[target], channel))
+        return result
 
     def _event(self, event: str, way: str, source: str, target: str) -> None:
         if event not in self.lasting:

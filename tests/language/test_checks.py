@@ -15,6 +15,11 @@ from .texts import findings, text
 BOT = 'agent "bot" controllable mobile 2 location a can_do work, hand'
 MAN = 'agent "man" location b can_do rest reacts_to hand'
 
+EVENTS = [f'event "e{k}"' for k in range(10)]
+TEN = ", ".join(f"e{k}" for k in range(10))
+ALL = "(" * 8 + "e0 and e1" + "".join(f") and e{k}" for k in range(2, 10))
+"""Ten events in any order."""
+
 # what is changed in the sample; then the findings: code, line, a part of the message, a part of the hint
 FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     # names that are used
@@ -59,6 +64,20 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"more": "travel bot from a to b takes 5\ntravel bot from a to b takes 6"}, [("PML202", 15, "line 14", "delete")]),
     ({"more": "travel boot from a to b takes 5"}, [("PML110", 14, "there is no agent boot", "did you mean bot?")]),
     ({"more": "travel bot from a to x takes 5"}, [("PML110", 14, "there is no POI x", "declare it")]),
+    # rules
+    ({"rule": 'rule "order": (work and rest) before hand'}, []),
+    (
+        {"more": " ".join([*EVENTS, 'rule "all": ' + ALL, f'agent "x" location a can_do {TEN}'])},
+        [("PML190", 14, "only before", ""), ("PML203", 14, "has 1,023 positions", "fewer events")],
+    ),
+    (
+        {"event_rest": 'event "rest" event "nap"', "rule": 'rule "order": (work and nap) before hand'},
+        [("PML150", 6, "nobody can do nap", ""), ("PML161", 7, "nobody can do nap", "")],
+    ),
+    (
+        {"rule": 'rule "order": (work and rest) before hand rule "more": hand before rest'},
+        [("PML161", 7, "rest waits for hand in the rule more", ""), ("PML161", 7, "hand waits for rest", "")],
+    ),
     # connections
     ({"connect": "connect a and b distance 3\nconnect a and a distance 1"}, [("PML145", 4, "a with itself", "two")]),
     ({"connect": "connect a and b distance 3\nconnect b and a distance 4"}, [("PML146", 4, "line 3", "delete")]),

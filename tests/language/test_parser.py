@@ -14,7 +14,7 @@ from pursue_gen.diagnostics import PursueError, Span, render
 from pursue_gen.language import check, load, parse
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.parser import read
-from pursue_gen.language.scenario import Avoid, Choice, Connection, NeverWith, Reach, Ref, Respond, Sequence
+from pursue_gen.language.scenario import Avoid, Both, Choice, Connection, NeverWith, Reach, Ref, Respond, Sequence
 
 from .texts import STATEMENTS, text
 
@@ -70,6 +70,14 @@ def test_layout_comments_and_a_query_behind_the_objective_change_nothing(source:
     assert [poi.name for poi in scenario.pois] == ["a"]
     assert [agent.name for agent in scenario.agents] == ["bot"]
     assert isinstance(scenario.safety, Avoid)
+
+
+def test_and_joins_parts_of_a_rule() -> None:
+    (rule,) = parse(text(rule='rule "order": (work and rest) before hand'), "test.pur").rules
+    assert isinstance(rule.body, Sequence) and isinstance(rule.body.first, Both)
+    assert [part.name for part in (rule.body.first.first, rule.body.first.second) if isinstance(part, Ref)] == [
+        "work", "rest",
+    ]  # fmt: skip
 
 
 def test_rules_nest() -> None:

@@ -51,6 +51,12 @@ def test_in_which_direction_a_way_goes() -> None:
     assert "to the second only" in told("one_w", one_way)
 
 
+def test_what_a_rule_with_and_says() -> None:
+    both = SMALL.replace('"order": work before hand', '"order": (work and rest) before hand')
+    assert "(work and rest, in any order), then hand" in told('rule "', both)
+    assert "its turn comes after work and rest" in told('event "ha', both)
+
+
 def test_windows_and_travel_times() -> None:
     more = SMALL.replace("duration 3", "duration 3 to 5") + "travel bot from a to b takes 5 to 8\n"
     assert "takes 3 to 5 units of time" in told('event "wo', more)

@@ -28,7 +28,8 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
         deeds = [f"a{k}", f"b{k}"][: draw(st.integers(1, 2))]
         for deed in deeds:
             events.append(f'event "{deed}"{_where(draw, places)}{_long(draw)}')
-        body = deeds[0] if len(deeds) == 1 else f"({deeds[0]} {draw(st.sampled_from(('before', 'before', 'or')))} b{k})"
+        word = draw(st.sampled_from(("before", "before", "or", "and")))
+        body = deeds[0] if len(deeds) == 1 else f"({deeds[0]} {word} b{k})"
         if draw(st.integers(0, 4)):
             rules += [f"{body} before report"] * draw(st.sampled_from((1, 1, 1, 2)))
         meets = [f"meet{n}" for n in range(met) if n % robots == k]

@@ -46,6 +46,8 @@ TRAVEL = "travel visitor from gallery to hall takes 12 to 20\n"
         ("airport/roundabout", " one_way", "", False),
         ("museum/slow_visitor", TRAVEL, "", True),
         ("hotel/early_breakfast", " to 9", "", False),
+        ("airport/turnaround", "fuel and load", "fuel before load", True),
+        ("hotel/room_service", "takeTowels and takeSoap", "takeTowels or takeSoap", False),
     ],
 )
 def test_what_the_words_decide(name: str, words: str, instead: str, won: bool, engine: str) -> None:
@@ -58,6 +60,8 @@ WON = [
     text("airport/roundabout").replace("within 14", "within 20"),
     text("museum/slow_visitor").replace("duration 2", "duration 1 to 4"),
     text("hotel/early_breakfast").replace("within 17", "within 20"),
+    text("airport/turnaround"),
+    text("hotel/room_service").replace("within 22", "within 24"),
 ]
 
 

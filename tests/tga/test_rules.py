@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.scenario import Choice, Ref, Rule, RuleBody, Sequence
+from pursue_gen.language.behaviour import locations_of
+from pursue_gen.language.scenario import Both, Choice, Ref, Rule, RuleBody, Sequence
 from pursue_gen.tga.network import Automaton
 from pursue_gen.tga.rules import rule_automaton
 
@@ -30,6 +31,10 @@ def before(first: RuleBody, second: RuleBody) -> Sequence:
 
 def either(first: RuleBody, second: RuleBody) -> Choice:
     return Choice(first, second, NOWHERE)
+
+
+def both(first: RuleBody, second: RuleBody) -> Both:
+    return Both(first, second, NOWHERE)
 
 
 def rule(body: RuleBody, name: str = "rule1") -> Rule:
@@ -93,6 +98,36 @@ def test_locations_have_no_name_and_edges_only_listen(lasting: FrozenSet[str]) -
     assert all(edge.sync and not edge.sync.sends and edge.controllable for edge in automaton.edges)
 
 
+def test_both_in_any_order() -> None:
+    automaton, turns = rule_automaton(rule(before(both(e("a"), e("work")), e("c"))), LASTING)
+    assert rounds_of(automaton) == {
+        ("a", "work", "workDONE", "c"), ("work", "a", "workDONE", "c"), ("work", "workDONE", "a", "c"),
+    }  # fmt: skip
+    between = [f"rule11f_{place}" for place in ("0_1", "0_2", "1_0", "1_1")]
+    assert names(automaton) == ["rule1_initial_location", *between, "rule10"]
+    assert turns == {"a": (0, 1, 2), "work": (0, 3), "workDONE": (1, 4), "c": (5,)}
+
+
+def test_both_of_two_that_last_go_on_at_the_same_time() -> None:
+    automaton, _ = rule_automaton(rule(both(e("go"), e("come"))), frozenset(["go", "come"]))
+    assert ("go", "come", "comeDONE", "goDONE") in rounds_of(automaton)
+    assert len(rounds_of(automaton)) == 6 and len(names(automaton)) == 8
+
+
+BODIES_WITH_AND = st.recursive(
+    st.sampled_from(EVENTS).map(e),
+    lambda inner: st.builds(before, inner, inner) | st.builds(either, inner, inner) | st.builds(both, inner, inner),
+    max_leaves=5,
+)
+
+
+@given(BODIES_WITH_AND)
+def test_the_automaton_of_a_rule_with_and_allows_the_rounds_of_the_text(body: RuleBody) -> None:
+    automaton, _ = rule_automaton(rule(body), LASTING)
+    assert rounds_of(automaton) == words_of(body)
+    assert len(set(names(automaton))) == len(automaton.locations) == locations_of(body, LASTING) + 1
+
+
 BODIES = st.recursive(
     st.sampled_from(EVENTS).map(e),
     lambda inner: st.builds(before, inner, inner) | st.builds(either, inner, inner),
@@ -105,7 +140,16 @@ def words_of(body: RuleBody) -> Words:
     if isinstance(body, Ref):
         return {(body.name, "workDONE") if body.name in LASTING else (body.name,)}
     first, second = words_of(body.first), words_of(body.second)
+    if isinstance(body, Both):
+        return {word for one in first for two in second for word in shuffles(one, two)}
     return first | second if isinstance(body, Choice) else {one + two for one in first for two in second}
+
+
+def shuffles(one: Tuple[str, ...], two: Tuple[str, ...]) -> Words:
+    """All words in which the letters of both stand in their order."""
+    if not one or not two:
+        return {one + two}
+    return {(one[0], *rest) for rest in shuffles(one[1:], two)} | {(two[0], *rest) for rest in shuffles(one, two[1:])}
 
 
 def rounds_of(automaton: Automaton) -> Words:
