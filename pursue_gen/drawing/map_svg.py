@@ -187,8 +187,9 @@ def _anywhere(scenario: Scenario) -> str:
 
 
 def _lasts(event: Event) -> str:
-    """How long an event takes, in brackets; nothing where it takes no time."""
-    return "" if event.window is None else f" ({window_words(*event.window)})"
+    """How long an event takes, in brackets; nothing where it takes no time. Then how often it can happen."""
+    times = "" if event.at_most is None else f" at most {event.at_most}"
+    return ("" if event.window is None else f" ({window_words(*event.window)})") + times
 
 
 def _wrapped(words: str, room: float) -> List[str]:

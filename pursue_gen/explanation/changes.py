@@ -11,13 +11,14 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.windows import SLOWER, WindowEnd, event_windows, travel_windows
+from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.counts import counted
 
 _SHARE = 0.5
 """The part of what is left that one attempt may take."""
@@ -33,10 +34,12 @@ Variant = Tuple[Scenario, Rules]
 
 @dataclass(frozen=True)
 class Change:
-    """A change that wins. `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or
-    earliest (an end of an event's window), travel, distance, direction, rule, dependency or control; `name` whose;
-    `before` and `after` its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is now,
-    that does not win: the next smaller one, where the change is known to be the `least`.
+    """A change that wins.
+
+    `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or earliest (an end of an
+    event's window), times, travel, distance, direction, rule, dependency or control; `name` whose; `before` and `after`
+    its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is now, that does not win: the
+    next smaller one, where the change is known to be the `least`.
     """
 
     what: str
@@ -187,7 +190,7 @@ def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
     for connection in scenario.connections:
         yield from _distance_knobs(scenario, rules, connection)
     for travel in scenario.travels:
-        yield from _window_knobs(scenario, rules, travel_windows(scenario, travel))
+        yield from _number_knobs(rules, travel_changes(scenario, travel))
     yield from _order_knobs(scenario, rules)
     for agent in scenario.agents:
         yield from _control_knobs(scenario, rules, agent)
@@ -271,7 +274,7 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Kn
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
     duration = event.duration or 0
     if event.latest is not None:
-        yield from _window_knobs(scenario, rules, event_windows(scenario, event))
+        yield from _number_knobs(rules, event_changes(scenario, event))
         return
 
     def make(k: int) -> Variant:
@@ -294,13 +297,13 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
 
 
-def _window_knobs(scenario: Scenario, rules: Rules, ends: Iterable[WindowEnd]) -> Iterator[_Knob]:
-    for end in ends:
+def _number_knobs(rules: Rules, changes: Iterable[NumberChange]) -> Iterator[_Knob]:
+    for one in changes:
 
-        def make(k: int, end: WindowEnd = end) -> Variant:
-            return end.make(k), rules
+        def make(k: int, one: NumberChange = one) -> Variant:
+            return one.make(k), rules
 
-        yield _number(end.what, end.name, end.label, end.before, end.values, make, end.say, end.span, 2)
+        yield _number(one.what, one.name, one.label, one.before, one.values, make, one.say, one.span, 2)
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
@@ -335,6 +338,8 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
     for rule in scenario.rules:
         fewer = replace(scenario, rules=tuple(r for r in scenario.rules if r != rule))
         yield _switch("rule", rule.name, f"without rule {rule.name}", rule.name, (fewer, rules), rule.span)
+    for event, most in counted(scenario):
+        yield from _number_knobs(rules, count_changes(scenario, event, most))
     for need in scenario.dependencies:
         freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"

@@ -34,6 +34,7 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
     """The parts that the scenario can do without, and the scenario without each of them alone."""
     found = [Part(agent.name, _agent(agent.name)) for agent in scenario.agents]
     found += [Part(f"rule {rule.name}", _rule(rule.name)) for rule in scenario.rules]
+    found += [Part(f"at_most of {event.name}", _limit(event.name)) for event in scenario.events if event.at_most]
     for need in scenario.dependencies:
         value = "true" if need.value else "false"
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
@@ -83,6 +84,14 @@ def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
 def _rule(name: str) -> Callable[[Scenario], Scenario]:
     def left_out(scenario: Scenario) -> Scenario:
         return replace(scenario, rules=tuple(rule for rule in scenario.rules if rule.name != name))
+
+    return left_out
+
+
+def _limit(name: str) -> Callable[[Scenario], Scenario]:
+    def left_out(scenario: Scenario) -> Scenario:
+        events = (replace(event, at_most=None) if event.name == name else event for event in scenario.events)
+        return replace(scenario, events=tuple(events))
 
     return left_out
 

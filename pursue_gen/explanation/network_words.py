@@ -10,6 +10,7 @@ from pursue_gen.language.wording import units
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
+from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Edge, Network
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
@@ -99,6 +100,10 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         automaton = network.automaton(rule.name)
         for location in automaton.locations:
             turns[rule.name, location.name] = _turn(automaton, location.name)
+    for event, most in counted(scenario):
+        automaton = network.automaton(names.count(event.name))
+        for number, location in enumerate(automaton.locations):
+            turns[automaton.name, location.name] = f"{number} of {most} {event.name}"
     places, moves = {}, {}
     parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}
     for a, b in (way for connection in scenario.connections for way in connection.directions):

@@ -19,6 +19,9 @@ from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
 
+MOST_TIMES = 100
+"""How often an event can happen at most that is counted: each count is a location of an automaton."""
+
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
 
@@ -100,6 +103,10 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if event.duration is not None and event.duration < 1 and event.latest is None:
             hint = "write duration 1 or more, or delete duration: then it takes no time"
             yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
+        if event.at_most is not None and not 1 <= event.at_most <= MOST_TIMES:
+            message = f"{event.name} can happen at_most {event.at_most} times: expected 1 to {MOST_TIMES}"
+            never = f"; what must never happen is an objective: avoid {event.name}" if event.at_most < 1 else ""
+            yield error("PML204", message, event.span, f"write a number in these limits, or delete it{never}")
         if event.latest is not None and event.duration is not None:
             yield from _window(event.name, event.duration, event.latest, "duration", event.span)
     longest = max((way.distance for way in scenario.connections), default=0)

@@ -86,6 +86,9 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
         yield event.name + "DONE", f"the end of {event.name}", event.span
         if event.is_shared:
             yield "B" + event.name, f"that {event.name} goes on", event.span
+        if event.at_most is not None:
+            yield event.name + "_count", f"the count of {event.name}", event.span
+            yield "P" + event.name + "_count", f"how often {event.name} has happened", event.span
     for rule in scenario.rules:
         yield rule.name, f"the rule {rule.name}", rule.span
         yield "P" + rule.name, f"the position of the rule {rule.name}", rule.span

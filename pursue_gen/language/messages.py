@@ -13,7 +13,8 @@ from pursue_gen.language.usable import proposal
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
     "CONNECT": "connect a and b distance 3 one_way (one_way is optional)",
-    "EVENT": 'event "work" collaborative together location a duration 6 (or: 6 to 9; all but the name is optional)',
+    "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times '
+             "(all but the name is optional; or: duration 6 to 9)",
     "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
@@ -32,13 +33,15 @@ KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
     "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
     "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to",
-    "TAKES": "takes", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location",
-    "DURATION": "duration", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
+    "TAKES": "takes", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way",
+    "LOCATION": "location",
+    "DURATION": "duration", "AT_MOST": "at_most", "TIMES": "times",
+    "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
     "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
-    "ASSUME": "assume", "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
+    "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between",
     "LEAVES": "leaves", "NEVER": "never", "AT": "at",
 }  # fmt: skip
 """The words of the language, by token."""

@@ -185,7 +185,8 @@ class _Builder:
         return pml.Connection(first.name, second.name, self._number(distance), span, ends, one_way is not None)
 
     def _event(
-        self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, span: Span
+        self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, _: Any, most: Any,
+        _times: Any, span: Span,
     ) -> pml.Event:
         earliest, latest = (None, None) if duration is None else self._window(duration)
         return pml.Event(
@@ -196,6 +197,7 @@ class _Builder:
             span_of(name, self.file),
             together is not None,
             latest,
+            None if most is None else self._number(most),
         )
 
     def _window(self, tree: Any) -> Tuple[int, Optional[int]]:

@@ -83,7 +83,8 @@ def _window(low: int, high: Optional[int]) -> Window:
 class Event:
     """Something that agents do. `duration` is in time units, None: instantaneous; `location` None: anywhere.
 
-    It ends later than `duration`, and at `latest` at the latest; None: within one time unit more.
+    It ends later than `duration`, and at `latest` at the latest; None: within one time unit more. `at_most`: so often
+    it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     """
 
@@ -94,6 +95,7 @@ class Event:
     span: Span
     together: bool = False
     latest: Optional[int] = None
+    at_most: Optional[int] = None
 
     @property
     def is_shared(self) -> bool:

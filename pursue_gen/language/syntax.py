@@ -28,7 +28,10 @@ MOST_FINDINGS = 1000
 
 _OPENS = frozenset(("HUMAN", "CONTROLLABLE", "MOBILE"))
 _ENDS = frozenset(
-    "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE COLLABORATIVE TOGETHER ONE_WAY CONTROLLABLE HUMAN".split()
+    (
+        "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
+        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN"
+    ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
 

@@ -177,7 +177,8 @@ def without_together(
         return
     if _token(part, "COLLABORATIVE") is not None:
         yield "Delete together", (_cut(document, together, together),)
-        yield "Add a duration", (_behind(part.tokens[-1], " duration 1"),)
+        last = next((k for k, token in enumerate(part.tokens) if token.type == "AT_MOST"), len(part.tokens)) - 1
+        yield "Add a duration", (_behind(part.tokens[last], " duration 1"),)
     else:
         yield "Delete together", (_cut(document, together, together),)
         yield f"Make {_bare(part.name)} collaborative", (_behind(part.name, " collaborative"),)

@@ -21,8 +21,6 @@ MEANINGS: Dict[str, str] = {
     "REACH_OBJECTIVE": "What is to be achieved once.",
     "ASSUME": "What an agent that is not controlled is assumed to do, or not to do. A mission watches it.",
     "DOES": "The event that it does at most so many times.",
-    "AT_MOST": "How many times it does that in the whole mission.",
-    "TIMES": "In the whole mission.",
     "WAITS": "How many units of time it waits at least.",
     "BETWEEN": "The event: from the end of one to the beginning of the next.",
     "LEAVES": "The place that it leaves in time.",
@@ -35,6 +33,8 @@ MEANINGS: Dict[str, str] = {
     "DURATION": "How long it takes, in the unit of time that you chose: 3 is up to 4. Without it, it takes no time.",
     "COLLABORATIVE": "It takes two at one place: one who can do it, and one who reacts to it.",
     "TOGETHER": "Whoever takes part is busy until it ends. Without it, only the one who does it is.",
+    "AT_MOST": "How many times it happens in the whole mission, and no more.",
+    "TIMES": "In the whole mission.",
     "BEFORE": "First this, then that, and then the first again.",
     "OR": "Either of the two, round after round.",
     "INITIALLY": "The value at the start, true or false.",
@@ -78,6 +78,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     "EVENT": (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
         Form("something that takes more or less time", 'event "{=work}" location {POI} duration {=3} to {=5}'),
+        Form("something that happens so many times only", 'event "{=call}" at_most {=2} times'),
         Form("something that two do at once", 'event "{=handOver}" collaborative'),
         Form(
             "something that two do together for a while",

@@ -120,6 +120,8 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
     lines = [f"**{event.name}**: an event", "", f"- happens {where}"]
     lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
+    if event.at_most is not None:
+        lines.append(f"- happens at most {event.at_most} times")
     lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
     if event.collaborative:
         partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
@@ -238,8 +240,10 @@ def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str
         return f"It has set off {units(number)} of time after it came, or after the start."
     if word == "WAITS":
         return f"The next one begins {units(number)} of time after the end of the last, or later."
-    if word == "AT_MOST":
+    if word == "AT_MOST" and part.kind == "ASSUME":
         return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
+    if word == "AT_MOST":
+        return f"It can happen {'once' if number == 1 else f'{number} times'} in all."
     if word == "WITHIN":
         return f"The answer must have come {units(number)} of time later at most."
     if word == "AFTER":

@@ -13,6 +13,7 @@ from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
+from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 
 
@@ -60,6 +61,8 @@ def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]
         yield f"  {state.name} is {'true' if value else 'false'}"
     for rule in setup.scenario.rules:
         yield f"  rule {rule.name}: {_place(setup, words, play, rule.name)}"
+    for event, _ in counted(setup.scenario):
+        yield f"  so far {_place(setup, words, play, names.count(event.name))}"
     yield from (f"  {line}" for line in _objective(setup, play, where))
 
 

@@ -11,6 +11,7 @@ from pursue_gen.language.scenario import Respond
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tga import names
+from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
@@ -116,7 +117,8 @@ def _bar_label(words: Words, location: str) -> str:
 
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
-    return [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules), "deadline"]
+    lanes = [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules)]
+    return [*lanes, *(names.count(event.name) for event, _ in counted(scenario)), "deadline"]
 
 
 def _heading(recording: Recording, title: str, description: str) -> Iterator[str]:
@@ -164,6 +166,10 @@ def _lanes(
         found = list(stays(recording, rule.name))
         turns = (words.place(rule.name, stay.what).replace("next: the end of ", "during ") for stay in found)
         lanes.append(Lane(rule.name, tuple(_line(scale, stay, turn) for stay, turn in zip(found, turns))))
+    for event, _ in counted(recording.scenario):
+        name = names.count(event.name)
+        counts = tuple(_line(scale, stay, words.place(name, stay.what)) for stay in stays(recording, name))
+        lanes.append(Lane(name, counts))
     lanes += _deadlines(recording, scale)
     lanes += _course(recording, scale)
     return lanes

@@ -109,6 +109,11 @@ def assumption_clock(number: int) -> str:
     return f"Cassume{number}"
 
 
+def count(event: str) -> str:
+    """The automaton that counts how often an event has begun that can happen so many times only."""
+    return f"{event}_count"
+
+
 def has_happened(event: Event) -> str:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
     return event.name if event.duration is None else done(event.name)

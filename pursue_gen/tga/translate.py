@@ -10,6 +10,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
+from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
 from pursue_gen.tga.positions import positions
@@ -26,6 +27,7 @@ def translate(scenario: Scenario) -> Network:
     codes = positions(scenario.pois, scenario.connections)
     lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
     rules = [rule_automaton(rule, lasting) for rule in scenario.rules]
+    rules += [count_automaton(event, most) for event, most in counted(scenario)]
     turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
     around = Surroundings(scenario, codes, turns)
     happened = {event.name: names.has_happened(event) for event in scenario.events}
@@ -65,6 +67,7 @@ def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, 
     variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules]
     variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
     variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
+    variables += [(names.rule_turn(names.count(event.name)), 0) for event, _ in counted(scenario)]
     return tuple(variables)
 
 

@@ -10,6 +10,7 @@ from pursue_gen.language.wording import assumption_words
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga import names
+from pursue_gen.tga.counts import counted
 from pursue_gen.tga.names import STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
@@ -61,6 +62,7 @@ def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:
     """automaton → kind, for all but the safety objectives'."""
     kinds = {STATES: "states", **{name: "reach" for name, _ in objective.goal}}
     kinds.update((rule.name, "rule") for rule in scenario.rules)
+    kinds.update((names.count(event.name), "rule") for event, _ in counted(scenario))
     for agent in scenario.agents:
         kinds[agent.name] = "robot" if agent.is_robot else "human" if agent.controllable else "agent"
     return kinds

@@ -107,6 +107,15 @@ agent "guest" location desk can_do call
 objective: if call then give within 9
 """
 
+CALLS = """poi "desk"
+event "call" at_most 2 times
+event "serve" at_most 1 times
+rule "order": call before serve
+agent "bot" controllable location desk can_do serve
+agent "guest" location desk can_do call
+objective: if call then serve within 5
+"""
+
 WINDOWS = CALLED.format(deadline=12).replace("mobile 1", "mobile 2").replace(
     "objective", "travel bot from desk to shelf takes 4 to 11\nobjective"
 )
@@ -143,6 +152,9 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
         word = words[change.what]
         assert f"{word} {change.before}" in lines[at]
         lines[at] = lines[at].replace(f"{word} {change.before}", f"{word} {value}")
+    elif change.what == "times":
+        assert f"at_most {change.before} times" in lines[at]
+        lines[at] = lines[at].replace(f"at_most {change.before} times", f"at_most {value} times")
     elif change.what == "direction":
         lines[at] = lines[at].replace(" one_way", "")
     elif change.what == "control":
@@ -177,6 +189,7 @@ SMALL = {
     "ideal, deadline 3": (CALLED.format(deadline=3), IDEAL),
     "one way": (ROUND, DEFAULT),
     "windows": (WINDOWS, DEFAULT),
+    "two calls": (CALLS, DEFAULT),
     "slow": (SLOW, DEFAULT),
     "shy": (SHY, DEFAULT),
     "shy, ideal": (SHY, IDEAL),

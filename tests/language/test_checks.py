@@ -64,6 +64,9 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"more": "travel bot from a to b takes 5\ntravel bot from a to b takes 6"}, [("PML202", 15, "line 14", "delete")]),
     ({"more": "travel boot from a to b takes 5"}, [("PML110", 14, "there is no agent boot", "did you mean bot?")]),
     ({"more": "travel bot from a to x takes 5"}, [("PML110", 14, "there is no POI x", "declare it")]),
+    ({"event_rest": 'event "rest" at_most 2 times'}, []),
+    ({"event_rest": 'event "rest" at_most 0 times'}, [("PML204", 6, "expected 1 to 100", "avoid rest")]),
+    ({"event_rest": 'event "rest" at_most 101 times'}, [("PML204", 6, "at_most 101 times", "or delete it")]),
     # rules
     ({"rule": 'rule "order": (work and rest) before hand'}, []),
     (

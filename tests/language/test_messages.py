@@ -36,13 +36,17 @@ SLIPS = [
     ("event catch", "PML010", 7, "expected a name in quotes", 'event "catch"'),
     ('event "e" duration', "PML010", 19, "expected a whole number after `duration`", "the form is"),
     ('event "e" duration 3 to', "PML010", 24, "expected a whole number after `to`", "the form is"),
-    ('event "e" duration to 3', "PML010", 20, "expected a whole number after `duration`", "or: 6 to 9"),
+    ('event "e" duration to 3', "PML010", 20, "expected a whole number after `duration`", "or: duration 6 to 9"),
     ("travel bot from a to b", "PML010", 23, "expected `takes` after `b`, but the", "from a to b takes 5 to 8"),
     ("travel bot a to b takes 5", "PML010", 12, "expected `from` after `bot`, found `a`", "the form is"),
     ("travel bot from a b takes 5", "PML010", 19, "expected `to` after `a`, found `b`", "the form is"),
     ("travel bot from a to b takes", "PML010", 29, "expected a whole number after `takes`", "the form is"),
     ("travel 3 from a to b takes 5", "PML010", 8, "expected a name after `travel`", "a name begins with a letter"),
-    ('event "e" duration 3 location a', "PML010", 22, "expected `to` or the end", "location a duration 6"),
+    ('event "e" duration 3 location a', "PML010", 22, "expected `to`, `at_most` or the end", "location a duration 6"),
+    ('event "e" at_most 2', "PML010", 20, "expected `times` after `2`", "at_most 2 times"),
+    ('event "e" at_most times', "PML010", 19, "expected a whole number after `at_most`", "come in this order"),
+    ('event "e" at_most 1 time', "PML010", 21, "expected `times` after `1`, found `time`", "did you mean times?"),
+    ('event "e" at_most 2 times duration 3', "PML010", 27, "the end of the statement", "come in this order"),
     ('event "e" together collaborative', "PML010", 20, "found `collaborative`", "parts come in this order"),
     ('event "e" collaborative togehter', "PML010", 25, "`together`", "did you mean together?"),
     ('event "e" colaborative', "PML010", 11, "`collaborative`", "did you mean collaborative?"),
@@ -119,4 +123,4 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    assert "expected `location`, `duration`, `collaborative` or the end of the statement after" in finding.message
+    assert "expected `location`, `duration`, `at_most`, `collaborative` or the end of the statement" in finding.message

@@ -125,6 +125,11 @@ def test_a_window_has_one_number_or_two() -> None:
     assert (two.duration, two.latest, two.window) == (3, 5, (3, 5))
 
 
+def test_how_often_an_event_can_happen() -> None:
+    often, twice = parse('event "a" duration 3 event "b" duration 3 to 5 at_most 2 times', "test.pur").events
+    assert (often.at_most, twice.at_most, twice.window) == (None, 2, (3, 5))
+
+
 @pytest.mark.parametrize("agent", ["bot", '"bot"'])
 def test_an_agent_has_its_own_time_for_a_way(agent: str) -> None:
     scenario = parse(text(more=f"travel {agent} from a to b takes 5 to 8"), "test.pur")

@@ -51,6 +51,11 @@ def test_in_which_direction_a_way_goes() -> None:
     assert "to the second only" in told("one_w", one_way)
 
 
+def test_how_often_an_event_can_happen() -> None:
+    rare = SMALL.replace('event "rest"', 'event "rest" at_most 2 times')
+    assert "happens at most 2 times" in told('event "re', rare) and "2 times in all" in told("at_most ", rare)
+
+
 def test_what_a_rule_with_and_says() -> None:
     both = SMALL.replace('"order": work before hand', '"order": (work and rest) before hand')
     assert "(work and rest, in any order), then hand" in told('rule "', both)

@@ -39,7 +39,7 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
         agents.append(f'agent "bot{k}" controllable mobile 1 location {draw(st.sampled_from(places))} can_do {can_do}')
     for n in range(people):
         calls = [f"call{n}"] if draw(st.booleans()) else []
-        events += [f'event "{call}"' for call in calls]
+        events += [f'event "{call}"{_rarely(draw)}' for call in calls]
         parts = f" mobile {draw(st.integers(2, 4))}" if draw(st.integers(0, 3)) else ""
         parts += f" location {draw(st.sampled_from(places))}"
         parts += f" can_do {calls[0]}" if calls else ""
@@ -77,6 +77,10 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
 
 def _where(draw: st.DrawFn, places: List[str]) -> str:
     return f" location {draw(st.sampled_from(places))}" if draw(st.integers(0, 3)) else ""
+
+
+def _rarely(draw: st.DrawFn) -> str:
+    return f" at_most {draw(st.integers(1, 2))} times" if draw(st.integers(0, 3)) == 0 else ""
 
 
 def _one_way(draw: st.DrawFn) -> str:

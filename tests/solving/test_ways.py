@@ -46,6 +46,8 @@ TRAVEL = "travel visitor from gallery to hall takes 12 to 20\n"
         ("airport/roundabout", " one_way", "", False),
         ("museum/slow_visitor", TRAVEL, "", True),
         ("hotel/early_breakfast", " to 9", "", False),
+        ("hotel/one_call", " at_most 1 times", "", True),
+        ("museum/extinguisher", " at_most 2 times", "", False),
         ("airport/turnaround", "fuel and load", "fuel before load", True),
         ("hotel/room_service", "takeTowels and takeSoap", "takeTowels or takeSoap", False),
     ],
@@ -61,6 +63,8 @@ WON = [
     text("museum/slow_visitor").replace("duration 2", "duration 1 to 4"),
     text("hotel/early_breakfast").replace("within 17", "within 20"),
     text("airport/turnaround"),
+    text("hotel/one_call"),
+    text("museum/extinguisher").replace('"fire"', '"fire" at_most 2 times'),
     text("hotel/room_service").replace("within 22", "within 24"),
 ]
 

@@ -1,4 +1,4 @@
-"""How the windows that an author wrote could change: of events that take `3 to 5`, and of an agent's travel times."""
+"""How numbers that an author wrote could change: windows (`3 to 5`), an agent's travel times, `at_most 2 times`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Sequence
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.scenario import Event, Scenario, Travel
 
 SLOWER = 32
@@ -13,10 +14,10 @@ SLOWER = 32
 
 
 @dataclass(frozen=True)
-class WindowEnd:
-    """An end of a window that may be another one of `values`, the smallest change first; times are in time units.
+class NumberChange:
+    """A number that may be another one of `values`, the smallest change first; times are in time units.
 
-    `make` is the scenario with that value, `say` describes it. `what`: latest, earliest or travel; `name`: whose.
+    `make` is the scenario with that value, `say` describes it. `what` is latest, earliest, travel or times.
     """
 
     what: str
@@ -29,7 +30,7 @@ class WindowEnd:
     span: Span
 
 
-def event_windows(scenario: Scenario, event: Event) -> Iterator[WindowEnd]:
+def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
     """An event that ends earlier at the latest; one of the environment that ends later at the earliest."""
     if event.window is None:
         return
@@ -44,18 +45,18 @@ def event_windows(scenario: Scenario, event: Event) -> Iterator[WindowEnd]:
 
     doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
     if high - low > 1:
-        yield WindowEnd(
+        yield NumberChange(
             "latest", name, f"a {name} that ends earlier", high, range(high - 1, low, -1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
-        yield WindowEnd(
+        yield NumberChange(
             "earliest", name, f"a {name} that ends later", low, range(low + 1, high),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
 
-def travel_windows(scenario: Scenario, travel: Travel) -> Iterator[WindowEnd]:
+def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]:
     """A way that an agent takes in less time; one that is not controllable: in more."""
     low, high = travel.window
     name, (a, b), span = travel.agent.name, travel.way, travel.span
@@ -69,12 +70,30 @@ def travel_windows(scenario: Scenario, travel: Travel) -> Iterator[WindowEnd]:
 
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
-            yield WindowEnd(
+            yield NumberChange(
                 "travel", name, f"{name} going faster from {a} to {b}", high, range(high - 1, 0, -1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
-        yield WindowEnd(
+        yield NumberChange(
             "travel", name, f"{name} going slower from {a} to {b}", low, range(low + 1, SLOWER * max(low, 1) + 1),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
+
+
+def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[NumberChange]:
+    """An event that can happen more often where robots do it, less often where the environment does."""
+
+    def make(k: int) -> Scenario:
+        changed = replace(event, at_most=k)
+        return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
+
+    def say(k: int) -> str:
+        return f"{event.name} at_most {k} times instead of {most}"
+
+    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+    ours = any(agent.controllable for agent in doers)
+    values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
+    if values:
+        label = f"{event.name} {'more' if ours else 'less'} often"
+        yield NumberChange("times", event.name, label, most, values, make, say, event.span)
