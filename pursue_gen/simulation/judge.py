@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
-from pursue_gen.tga.names import is_doing, is_under_way
+from pursue_gen.tga.names import is_assumption, is_doing, is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
@@ -81,7 +81,7 @@ class Judge:
             self._problem(f"state {state.seq} follows state {before.seq}")
         elif state.event:
             self._check_step(before, state, now)
-        elif (state.locations, state.values) != (before.locations, before.values):
+        elif (state.locations, state.values) != (before.locations, self._with_broken(before, state)):
             self._problem(f"state {state.seq} differs from the one before, but nothing has happened")
         if state.status != "waiting":
             self._check_clocks(state, now)
@@ -111,7 +111,7 @@ class Judge:
         what = f"{state.event} by {state.agent} (state {state.seq})"
         matching = [
             move
-            for move in self._arena.situation(self._key(before)).moves
+            for move in self._arena.situation(self._key(before._replace(values=self._with_broken(before, state)))).moves
             if (move.moves[0].automaton, _word(move)) == (state.agent, state.event) and move.target == self._key(state)
         ]
         if not matching:
@@ -159,6 +159,13 @@ class Judge:
         self.off_model += 1
         if not self._is_deadline(move):
             self.overdue.append(what)
+
+    def _with_broken(self, before: SystemState, state: SystemState) -> Dict[str, int]:
+        """The values before, with 0 for the assumptions that are broken now."""
+        broken = [name for name, value in before.values.items() if is_assumption(name) and state.values[name] < value]
+        if broken and not self._faults:
+            self._problem(f"state {state.seq}: {' and '.join(broken)} broken, but everybody keeps to what is assumed")
+        return {**before.values, **dict.fromkeys(broken, 0)}
 
     def _is_deadline(self, move: JointMove) -> bool:
         """True for the step that marks a passed deadline: it is no command, though no other agent owns it."""

@@ -19,6 +19,7 @@ from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
 from pursue_gen.tga.network import Kind
 from pursue_runtime.controller.scheduler import StartedActivity
+from pursue_runtime.observer.assumptions import without
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.state import (
@@ -349,8 +350,9 @@ class SimulatedMission:
         mission = self._observer.mission
         words = [*JUNK, "x" * 3000]
         words += [text for text in self._published if not text.endswith(f"@{mission.seq}")]
-        possible = set(mission.model.possible(mission.position(self.events.now), timed=False))
-        words += [e.word for a in mission.model.automata for e in a.edges if e.word not in possible]
+        model, here = mission.model, mission.position(self.events.now)
+        possible = {*model.possible(here, timed=False), *model.possible(without(here, model.assumptions), timed=False)}
+        words += [e.word for a in model.automata for e in a.edges if e.word not in possible]
         text = draw.choice(words)
         word = parse_word(text)
         if word is not None and word.seq == mission.seq:

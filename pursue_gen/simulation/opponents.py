@@ -9,6 +9,7 @@ from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
+from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
@@ -86,14 +87,30 @@ class Opponent:
 
     def next(self, state: State, point: Tuple[float, ...]) -> Optional[OpponentMove]:
         """What is done next, if no other event comes first; asked anew in each state."""
-        if self.kind == "still":
-            return None
         able = options(self._stage, state, point)
         if not able:
             return None
-        if self.kind == "worst" and self._draw.random() < 0.8:
-            return self._worst(able, point)
-        return self._any(able)
+        obliged = self._obliged(able, state, point)
+        if self.kind == "still":
+            return obliged
+        worst = self.kind == "worst" and self._draw.random() < 0.8
+        chosen = self._worst(able, point) if worst else self._any(able)
+        return obliged if obliged is not None and obliged.delay < chosen.delay else chosen
+
+    def _obliged(self, able: List[Option], state: State, point: Tuple[float, ...]) -> Optional[OpponentMove]:
+        """How the one goes away that must leave its place first, as is assumed of it; None where nobody must."""
+        network, clock = self._stage.arena.network, self._stage.arena.clock
+        latest: List[Tuple[float, str]] = []
+        for automaton, here in zip(network.automata, state[0]):
+            if automaton.name in self._stage.opponents and not is_under_way(here):
+                bounds = next(place.invariant for place in automaton.locations if place.name == here)
+                latest += [(bound.bound - point[clock[bound.clock]], automaton.name) for bound in bounds]
+        if not latest:
+            return None
+        moment, agent = min(latest)
+        leaving = [o for o in able if o.agent == agent and is_under_way(o.move.moves[0].edge.target)]
+        leaving = [option for option in leaving if option.first <= moment]
+        return self._deed(self._draw.choice(leaving), max(0.0, moment)) if leaving else None
 
     def _any(self, able: List[Option]) -> OpponentMove:
         if self._draw.random() > self._zeal:

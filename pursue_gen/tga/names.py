@@ -99,6 +99,11 @@ def assumption(number: int) -> str:
     return f"assume{number}"
 
 
+def is_assumption(variable: str) -> bool:
+    """True for the variable of an assumption."""
+    return variable.startswith("assume") and variable[len("assume") :].isdigit()
+
+
 def assumption_count(number: int) -> str:
     """The variable that counts what the assumption limits."""
     return f"assume{number}count"
