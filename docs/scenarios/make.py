@@ -52,7 +52,7 @@ UNTIL = 120.0
 _PART = re.compile(r"(<!-- made: (\w+)(?: (\d+))? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _WHAT_IF = re.compile(r"^(\| [^|\n]+ \| ([^|\n]*`[^|\n]*) \|)([^|\n]*)\|$", re.MULTILINE)
 _STATEMENT = re.compile(r"(without )?`([^`]+)`")
-_SAME = {"connect": 4, "travel": 6, "objective:": 1, "reach_objective:": 1}
+_SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 1, "reach_objective:": 1}
 """So many words of a statement tell what it is on; of all others two."""
 
 

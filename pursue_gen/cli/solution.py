@@ -9,6 +9,7 @@ from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import condition_of_promise
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.solving.rules import rules_text
@@ -34,9 +35,17 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) ->
     show(won.warnings)
     if request.plan is None:
         info(verdict_text(won))
+        show_assumptions(scenario)
     elif not won.warnings:
         info(f"{request.plan} wins: {rules_text(won.rules)}")
     return won
+
+
+def show_assumptions(scenario: Scenario) -> None:
+    """Prints what the verdict assumes of others, if anything."""
+    assumed = condition_of_promise(scenario)
+    if assumed:
+        info(f"This holds {assumed}.")
 
 
 def explained(

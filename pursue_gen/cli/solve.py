@@ -42,7 +42,7 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained
+    from pursue_gen.cli.solution import explained, show_assumptions
     from pursue_gen.files import write_texts
     from pursue_gen.language import load
     from pursue_gen.solving.inputs import are_scenario
@@ -77,6 +77,8 @@ def solve(
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
+    if are_scenario(files):
+        show_assumptions(load(files[0]))
     info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple
 
-from pursue_gen.language.scenario import Respond, Scenario
+from pursue_gen.language.scenario import Leaves, Respond, Scenario, Waits
 from pursue_gen.language.wording import units
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -94,6 +94,11 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     clocks = {names.agent_clock(agent.name): f"{agent.name}'s last step" for agent in scenario.agents}
     if isinstance(scenario.safety, Respond):
         clocks[names.CLOCK_OBJECTIVE] = f"the last {scenario.safety.trigger.name} or {scenario.safety.response.name}"
+    for number, assumption in enumerate(scenario.assumptions, start=1):
+        if isinstance(assumption, Waits):
+            clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s last {assumption.event.name}"
+        elif isinstance(assumption, Leaves):
+            clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s arrival at {assumption.place.name}"
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     turns = {}
     for rule in scenario.rules:

@@ -45,6 +45,12 @@ def assumption_words(assumption: Assumption) -> str:
     return f"{name} is never at {assumption.place.name}"
 
 
+def condition_of_promise(scenario: Scenario) -> str:
+    """All that is assumed of agents that are not controlled, in one clause; "" where nothing is."""
+    says = [assumption_words(assumption) for assumption in scenario.assumptions]
+    return f"as long as {', and '.join(says)}" if says else ""
+
+
 def speed_words(agent: Agent, scenario: Scenario) -> str:
     """How fast an agent is, in words."""
     if agent.mobile is None:

@@ -15,6 +15,7 @@ from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
 from pursue_gen.language.scenario import Connection, Scenario
+from pursue_gen.language.wording import condition_of_promise
 from pursue_gen.partition import SubStrategy, partition, strategy_file
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
@@ -252,7 +253,8 @@ def _promise(scenario: Scenario) -> str:
         goal += f" after {scenario.reach.after} time units"
     safe = f"keeps `{_source(scenario)}`" if scenario.safety else ""
     what = " and ".join(part for part in (goal, safe) if part)
-    return f"The mission {what}, whatever the agents do that nobody controls."
+    assumed = condition_of_promise(scenario)
+    return f"The mission {what}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
 
 
 def _source(scenario: Scenario) -> str:
