@@ -22,6 +22,7 @@ from std_msgs.msg import String
 from pursue_runtime.bounded import read_json
 from pursue_runtime.data import Package
 from pursue_runtime.model import places_of
+from pursue_runtime.nodes.node import init_node
 
 CONNECTED = 60.0  # seconds of the wall clock for all nodes to come up
 
@@ -141,7 +142,7 @@ class MissionTest(unittest.TestCase):
     def setUpClass(cls) -> None:
         with open(os.path.join(cls.folder, "expected.json"), "rb") as file:
             cls.expected = read_json(file.read())
-        rospy.init_node("mission_test")
+        init_node("mission_test")
         cls.record = Record(cls.expected["robots"])
         cls.events = rospy.Publisher("pursue/events", String, queue_size=10)
         nodes = set(cls.expected["nodes"])

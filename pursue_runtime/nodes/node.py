@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import math
 import os
 import queue
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoRetur
 import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rosgraph.xmlrpc import ThreadingXMLRPCServer
 from rosgraph_msgs.msg import Clock
 
 from pursue_runtime.data import DataError
@@ -331,13 +333,29 @@ def restart_process() -> NoReturn:
     os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes"})
 
 
+def init_node(name: str, **options: Any) -> None:
+    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node)."""
+    ThreadingXMLRPCServer.service_actions = _end_if_closed
+    rospy.init_node(name, **options)
+
+
+def _end_if_closed(server: Any) -> None:
+    """Ends an XML-RPC server whose socket is closed. Raises OSError, which rospy takes for its end.
+
+    rospy only closes the socket when a node shuts down. Without this the server would call accept again and again until
+    the process ends: most of a second in which each node of a mission that is over uses a whole processor.
+    """
+    if server.fileno() < 0:
+        raise OSError(errno.EBADF, "the server is closed")
+
+
 def run_node(name: str, run: Callable[[], int], *refusals: Type[Exception]) -> int:
     """Connects the process to ROS as the node `name`, and runs it until it ends; returns its exit status.
 
     Where `run` raises DataError, or one of `refusals`, the message is logged and the exit status is 3.
     """
     expected: Tuple[Type[Exception], ...] = (DataError, *refusals)
-    rospy.init_node(name)
+    init_node(name)
     try:
         return run()
     except expected as problem:

@@ -26,6 +26,7 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     Report,
+    init_node,
     lower_priority,
     restart_process,
     start_thread,
@@ -383,7 +384,7 @@ def main(package: Package) -> int:
     if {"-h", "--help"} & set(arguments):
         read_options(arguments, {}, False, ())  # ends here, and needs no roscore
     lower_priority()
-    rospy.init_node("UI")
+    init_node("UI")
     try:
         ending = Ending()
         membership = Membership(package, ending)

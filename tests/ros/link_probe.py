@@ -15,11 +15,11 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, init_node
 
 
 def main(role: str) -> None:
-    rospy.init_node(role)
+    init_node(role)
     pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
     ending = Ending()
     Diagnostics(lambda: Report(True, OK, "fine", {}), ending, Links(pulses, ending=ending))

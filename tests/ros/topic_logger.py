@@ -25,6 +25,7 @@ from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.links import ask_master, connect_missing
+from pursue_runtime.nodes.node import init_node
 
 
 class Bytes(String):
@@ -98,7 +99,7 @@ def stay_connected() -> None:
 
 
 def main() -> None:
-    rospy.init_node("topic_logger", disable_rosout=True)
+    init_node("topic_logger", disable_rosout=True)
     logger = TopicLogger(sys.argv[1:])
     threading.Thread(target=stay_connected, daemon=True).start()
     logger.write({"topic": "here", "from": "topic_logger", "robot": "", "data": ""})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import List
 
 import pytest
@@ -9,9 +10,11 @@ import pytest
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 import rospy
+from rosgraph.xmlrpc import XmlRpcHandler, XmlRpcNode
 
 from pursue_runtime.data import DataError
-from pursue_runtime.nodes.node import run_node
+from pursue_runtime.nodes.node import init_node, run_node
+from tests.waiting import PATIENCE, until
 
 
 @pytest.fixture
@@ -44,3 +47,14 @@ def test_another_exception_is_raised(log: List[str]) -> None:
     with pytest.raises(KeyError):
         run_node("observer", run)
     assert log == ["observer"]
+
+
+def test_the_server_of_a_node_ends_when_rospy_closes_its_socket(log: List[str]) -> None:
+    init_node("observer")
+    node = XmlRpcNode(0, XmlRpcHandler())
+    serving = threading.Thread(target=node.run, daemon=True)
+    serving.start()
+    until(lambda: node.uri, "the server is ready")
+    node.shutdown("the mission is over")
+    serving.join(PATIENCE)
+    assert not serving.is_alive()
