@@ -9,7 +9,7 @@ from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.tga.names import is_under_way
+from pursue_gen.tga.names import is_going, is_under_way
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
@@ -22,7 +22,7 @@ OPPONENTS = {
 }
 
 FIRST = 1e-3
-"""Time units by which the first moment is inside a window that opens with a strict bound."""
+"""Time units by which the first or last moment is inside a window that begins or ends with a strict bound."""
 
 SPANS = (0.5, 3.0, 10.0, 40.0)
 """Where an agent may wait for ever, it waits up to one of these, in time units."""
@@ -69,10 +69,10 @@ def _window(zone: Dbm, point: Tuple[float, ...]) -> Optional[Tuple[float, float]
         if i == 0:
             first = max(first, -room + (FIRST if is_strict(bound) and room <= 0 else 0.0))
         elif j == 0:
-            last = min(last, room)
+            last = min(last, room - (FIRST if is_strict(bound) else 0.0))
         elif room < -EPSILON:
             return None
-    return (first, last) if first <= last else None
+    return (first, max(first, last)) if first <= last + EPSILON else None
 
 
 class Opponent:
@@ -108,9 +108,12 @@ class Opponent:
         if not latest:
             return None
         moment, agent = min(latest)
-        leaving = [o for o in able if o.agent == agent and is_under_way(o.move.moves[0].edge.target)]
-        leaving = [option for option in leaving if option.first <= moment]
-        return self._deed(self._draw.choice(leaving), max(0.0, moment)) if leaving else None
+        leaving = [o for o in able if o.agent == agent and is_going(o.move.moves[0].edge.target)]
+        leaving = [option for option in leaving if option.first <= moment + EPSILON]
+        if not leaving:
+            return None
+        option = self._draw.choice(leaving)
+        return self._deed(option, max(option.first, min(option.last, moment)))
 
     def _any(self, able: List[Option]) -> OpponentMove:
         if self._draw.random() > self._zeal:
