@@ -7,6 +7,7 @@ from typing import Dict, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
+from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
 from pursue_gen.language.wording import kind_words, speed_words, window_words
 
@@ -51,6 +52,7 @@ def draw(
         body += _legend(agent, looks[agent.name], lines, below)
         below += _LINE * len(lines) + 8
     notes = [_anywhere(scenario)] if _anywhere(scenario) else []
+    notes += list(_conditions(scenario))
     notes += ["positions computed from the distances"] if computed else []
     for note in notes:
         for line in _wrapped(note, width - 40):
@@ -90,14 +92,18 @@ class Paper:
 
 
 def _connection(a: Point, b: Point, way: Connection) -> Iterator[str]:
-    """A line with its length in the middle; one that goes one way has its length, and an arrow, nearer to its end."""
-    yield tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1])
+    """A line with its length in the middle; one that goes one way has its length, and an arrow, nearer to its end.
+
+    Where it is not always open, the line is dashed and a question mark is behind the length.
+    """
+    dash = None if way.only_if is None else "7 5"
+    yield tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1], stroke_dasharray=dash)
     part = 0.5
     if way.one_way:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
         yield _arrow(a, b)
     x, y = a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])
-    yield text(x, y + 5, way.distance, "pg-small pg-halo")
+    yield text(x, y + 5, f"{way.distance} ?" if dash else way.distance, "pg-small pg-halo")
 
 
 def _arrow(a: Point, b: Point) -> str:
@@ -190,6 +196,16 @@ def _lasts(event: Event) -> str:
     """How long an event takes, in brackets; nothing where it takes no time. Then how often it can happen."""
     times = "" if event.at_most is None else f" at most {event.at_most}"
     return ("" if event.window is None else f" ({window_words(*event.window)})") + times
+
+
+def _conditions(scenario: Scenario) -> Iterator[str]:
+    """The ways and events that are not always open, and while what."""
+    for way in scenario.connections:
+        if way.only_if is not None:
+            yield f"Between {way.a} and {way.b} only while {condition_words(way.only_if)}"
+    for event in scenario.events:
+        if event.only_if is not None:
+            yield f"{event.name} only while {condition_words(event.only_if)}"
 
 
 def _wrapped(words: str, room: float) -> List[str]:

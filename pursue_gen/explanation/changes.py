@@ -11,7 +11,9 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
+from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
@@ -345,6 +347,10 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
         label = f"without stateDependency {text}"
         yield _switch("dependency", need.event.name, label, text, (freer, rules), need.span, 1)
+    spans = [span for _, span in conditions_of(scenario)]
+    for (what, text, left_out), span in zip(without_conditions(scenario), spans):
+        label = f"{what} without only_if {text}"
+        yield _switch("condition", what, label, text, (left_out(scenario), rules), span, 1)
 
 
 def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:

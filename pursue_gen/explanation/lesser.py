@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
 
+from pursue_gen.language.conditions import condition_text, conditions_of, names_in
 from pursue_gen.language.scenario import (
     Agent,
     Avoid,
@@ -39,6 +40,7 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
         value = "true" if need.value else "false"
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
         found.append(Part(name, _dependency(need.event.name, need.state.name)))
+    found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if scenario.safety is not None and scenario.reach is not None:
         reach = scenario.reach
         found.append(Part(f"objective {_safety_text(scenario.safety)}", _safety))
@@ -52,7 +54,7 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
 def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
     """The scenario without the agent and without the events that only it can do or, if they need another, react to.
 
-    None where no controllable agent would be left, or where an objective names the agent or such an event.
+    None where no controllable agent would be left, or where an objective or a condition names it or such an event.
     """
     agents = tuple(agent for agent in scenario.agents if agent.name != name)
     gone = _events(scenario, scenario.agents) - _events(scenario, agents)
@@ -62,7 +64,8 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
         replace(state, true_if=_others(state.true_if, gone), false_if=_others(state.false_if, gone))
         for state in scenario.states
     )
-    kept = {state.name for state in states if state.true_if or state.false_if}
+    named = {ref.name for condition, _ in conditions_of(scenario) for _, ref in names_in(condition)}
+    kept = {state.name for state in states if state.true_if or state.false_if or state.name in named}
     bodies = [(rule, _body(rule.body, gone)) for rule in scenario.rules]
     return replace(
         scenario,
@@ -75,6 +78,28 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
         ),
         travels=tuple(travel for travel in scenario.travels if travel.agent.name != name),
     )
+
+
+def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[[Scenario], Scenario]]]:
+    """For each event or way with `only_if` its name, the condition as a text, and what makes a scenario without it."""
+
+    def free_event(name: str) -> Callable[[Scenario], Scenario]:
+        return lambda whole: replace(
+            whole, events=tuple(replace(e, only_if=None) if e.name == name else e for e in whole.events)
+        )
+
+    def free_way(a: str, b: str) -> Callable[[Scenario], Scenario]:
+        return lambda whole: replace(
+            whole,
+            connections=tuple(replace(c, only_if=None) if (c.a, c.b) == (a, b) else c for c in whole.connections),
+        )
+
+    for way in scenario.connections:
+        if way.only_if is not None:
+            yield f"the way between {way.a} and {way.b}", condition_text(way.only_if), free_way(way.a, way.b)
+    for event in scenario.events:
+        if event.only_if is not None:
+            yield event.name, condition_text(event.only_if), free_event(event.name)
 
 
 def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
@@ -121,9 +146,11 @@ def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
 
 
 def _wanted(scenario: Scenario) -> Set[str]:
-    """The events and agents that the objectives name."""
+    """The events and agents that the objectives and conditions name."""
     safety = scenario.safety
-    names = set() if scenario.reach is None else {scenario.reach.event.name}
+    names = {ref.name for condition, _ in conditions_of(scenario) for _, ref in names_in(condition)}
+    if scenario.reach is not None:
+        names.add(scenario.reach.event.name)
     if isinstance(safety, Respond):
         names |= {safety.trigger.name, safety.response.name}
     elif isinstance(safety, Avoid):

@@ -9,6 +9,7 @@ from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, U
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
 from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.behaviour import check_events, check_rules, components
+from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
@@ -62,6 +63,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
         if "PML110" not in codes:
             findings += check_rules(scenario)
+            findings += check_conditions(scenario)
             findings += check_poses(scenario)
             findings += check_assumptions(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.scenario import Scenario
 
 Word = Tuple[str, str, Span]
@@ -79,6 +80,7 @@ def _in_network(scenario: Scenario) -> Optional[_Clash]:
 
 
 def _plain_words(scenario: Scenario) -> Iterator[Word]:
+    has_conditions = any(conditions_of(scenario))
     for poi in scenario.pois:
         yield poi.name, f"the POI {poi.name}", poi.span
     for event in scenario.events:
@@ -100,6 +102,8 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
         yield agent.name, f"the agent {agent.name}", agent.span
         yield "P" + agent.name, f"the position of {agent.name}", agent.span
         yield "C" + agent.name, f"the clock of {agent.name}", agent.span
+        if has_conditions:
+            yield "W" + agent.name, f"with what {agent.name} is busy", agent.span
     end = scenario.agents[-1].span if scenario.agents else Span(scenario.file, 1, 1, 1, 1)
     for word in ("Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"):
         yield word, "a part of the objective", end

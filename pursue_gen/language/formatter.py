@@ -15,7 +15,7 @@ WIDTH = 100
 """A statement that is longer goes on in the next line, where it can be broken; a comment is as long as it is."""
 
 INDENT = "    "
-_BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", "OR", "AND"})
+_BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", "OR", "AND", "ONLY_IF"})
 """A line may be broken before these words, and behind every comma."""
 
 _CLOSE = frozenset({"COMMA", "COLON", "RPAR"})

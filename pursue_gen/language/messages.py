@@ -12,8 +12,8 @@ from pursue_gen.language.usable import proposal
 
 FORMS: Dict[str, str] = {
     "POI": 'poi "a"',
-    "CONNECT": "connect a and b distance 3 one_way (one_way is optional)",
-    "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times '
+    "CONNECT": "connect a and b distance 3 one_way only_if open is_true (one_way and only_if are optional)",
+    "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times only_if open is_true '
              "(all but the name is optional; or: duration 6 to 9)",
     "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
@@ -43,13 +43,15 @@ KEYWORDS: Dict[str, str] = {
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
     "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between",
     "LEAVES": "leaves", "NEVER": "never", "AT": "at",
+    "NOT": "not", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
 }  # fmt: skip
 """The words of the language, by token."""
 
 MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
-    "LEAVES": "leaves", "NEVER": "never", "AT": "at",
+    "LEAVES": "leaves", "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
+    "ROBOT": "robot",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
@@ -61,7 +63,9 @@ _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole numb
 QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
 """Quotation marks that word processors and other languages put in place of straight ones."""
 _STARTERS = tuple(KEYWORDS[kind] for kind in FORMS)
-_INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in FORMS)
+_SHORT = frozenset(("any", "at", "no", "not", "robot"))
+"""Words of conditions that too many other words resemble."""
+_INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in FORMS and word not in _SHORT)
 _MEANT = {
     "place": "poi", "room": "poi", "point": "poi", "robot": "agent", "person": "agent", "path": "connect",
     "way": "connect", "road": "connect", "action": "event", "task": "event", "order": "rule", "goal": "reach_objective",
@@ -93,7 +97,7 @@ def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:
         return _unseen(token, span)
     if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE"):
         hint = f"it belongs to an agent: {FORMS['AGENT']}"
-    elif token.type in KEYWORDS:
+    elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
     else:
         close = _near(str(token), _STARTERS)
@@ -156,6 +160,8 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return f"{text} is a word of the language and cannot be a name; choose another name"
     if token.type == "NUMBER" and "WORD" in expected:
         return "a name begins with a letter"
+    if token.type in ("AND", "OR") and expected & {"AND", "OR"} and statement != "RULE":
+        return "put brackets around what belongs together: (bot1 at a and bot2 at b) or open is_true"
     if token.type in ("BEFORE", "OR", "AND") and statement == "RULE":
         return "put brackets around what belongs together: (first before second) before third"
     if token.type == "RPAR":

@@ -6,6 +6,7 @@ from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Ma
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
+from pursue_gen.language.conditions import conditions_of, names_in
 from pursue_gen.language.messages import RESERVED, shown
 from pursue_gen.language.scenario import Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
@@ -116,7 +117,7 @@ def refs_of(body: RuleBody) -> List[Ref]:
 
 
 def events_used(scenario: Scenario) -> FrozenSet[str]:
-    """The events that a rule, a state, a stateDependency, an agent or an objective names."""
+    """The events that a rule, a state, a condition, an agent or an objective names."""
     return frozenset(name for kind, name, _ in _uses(scenario) if kind == "event")
 
 
@@ -141,6 +142,9 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for way in scenario.connections:
         yield "POI", way.a, way.ends[0]
         yield "POI", way.b, way.ends[1]
+    for condition, _ in conditions_of(scenario):
+        for kind, ref in names_in(condition):
+            yield kind, ref.name, ref.span
     for rule in scenario.rules:
         yield from all_of("event", refs_of(rule.body))
     yield from all_of("POI", [event.location for event in scenario.events])

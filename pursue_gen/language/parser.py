@@ -12,6 +12,8 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
+from pursue_gen.language.condition_trees import condition_of
+from pursue_gen.language.conditions import Condition
 from pursue_gen.language.messages import shown
 from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
@@ -179,14 +181,15 @@ class _Builder:
         self.findings += found.findings
         return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots)
 
-    def _connection(self, a: Any, b: Any, distance: Token, one_way: Any, span: Span) -> pml.Connection:
+    def _connection(self, a: Any, b: Any, distance: Token, one_way: Any, only_if: Any, span: Span) -> pml.Connection:
         first, second = self._ref(a), self._ref(b)
-        ends = first.span, second.span
-        return pml.Connection(first.name, second.name, self._number(distance), span, ends, one_way is not None)
+        ends, condition = (first.span, second.span), self._condition(only_if)
+        length = self._number(distance)
+        return pml.Connection(first.name, second.name, length, span, ends, one_way is not None, condition)
 
     def _event(
         self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, _: Any, most: Any,
-        _times: Any, span: Span,
+        _times: Any, only_if: Any, span: Span,
     ) -> pml.Event:
         earliest, latest = (None, None) if duration is None else self._window(duration)
         return pml.Event(
@@ -198,7 +201,11 @@ class _Builder:
             together is not None,
             latest,
             None if most is None else self._number(most),
+            self._condition(only_if),
         )
+
+    def _condition(self, tree: Any) -> Optional[Condition]:
+        return None if tree is None else condition_of(tree, self._ref)
 
     def _window(self, tree: Any) -> Tuple[int, Optional[int]]:
         """The numbers of `5 to 8`; one alone has no second one."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.conditions import Condition
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ class Connection:
     """A way between two POIs; `distance` is a natural number of distance units (at least 1).
 
     `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
+    Agents set off only while `only_if` holds (None: always).
     """
 
     a: str
@@ -63,6 +65,7 @@ class Connection:
     span: Span
     ends: Tuple[Span, Span]
     one_way: bool = False
+    only_if: Optional[Condition] = None
 
     @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:
@@ -86,6 +89,7 @@ class Event:
     It ends later than `duration`, and at `latest` at the latest; None: within one time unit more. `at_most`: so often
     it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
+    `only_if`: what has to hold when it begins; None: nothing.
     """
 
     name: str
@@ -96,6 +100,7 @@ class Event:
     together: bool = False
     latest: Optional[int] = None
     at_most: Optional[int] = None
+    only_if: Optional[Condition] = None
 
     @property
     def is_shared(self) -> bool:

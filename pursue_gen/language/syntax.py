@@ -12,25 +12,34 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 from lark import Lark, Token, Tree, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.messages import STATEMENTS, explain, looks_like_statement, unfinished, unknown_statement
+from pursue_gen.language.messages import (
+    MAY_BE_NAMES,
+    STATEMENTS,
+    explain,
+    looks_like_statement,
+    unfinished,
+    unknown_statement,
+)
 
 MOST_LETTERS = 1_000_000
 MOST_WORDS = 100_000
 """The largest text that is read: many times a floor with 1,000 places, and still read in seconds."""
 
 _DEEPEST = 40
-"""Brackets within brackets in a rule; beyond it is no scenario, and Python's own stack has an end."""
+"""Brackets within brackets in a rule or a condition; beyond it is no scenario, and Python's own stack has an end."""
 _WIDEST = 500
-"""Events in one rule."""
+"""Events in one rule, parts of one condition."""
 _SPLIT = "split the rule into several rules"
+_SHORTEN = "say it with fewer of them; a state that events set can stand for much"
+_ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
-_OPENS = frozenset(("HUMAN", "CONTROLLABLE", "MOBILE"))
+_OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES))
 _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
-        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN"
+        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
@@ -128,7 +137,8 @@ class _Reader:
                 depth += 1 if token.type == "LPAR" else -1
                 if depth > _DEEPEST:
                     message = f"more than {_DEEPEST} brackets within brackets"
-                    return error("PML016", message, span_of(token, self.file), _SPLIT)
+                    hint = _SPLIT if chunk[0].type == "RULE" else _SHORTEN
+                    return error("PML016", message, span_of(token, self.file), hint)
             try:
                 parser.feed_token(token)
             except UnexpectedToken:
@@ -139,6 +149,9 @@ class _Reader:
         if chunk[0].type == "RULE" and sum(token.type == "WORD" for token in chunk) > _WIDEST:
             message = f"more than {_WIDEST} events in one rule"
             return error("PML016", message, span_of(chunk[1], self.file), _SPLIT)
+        if chunk[0].type != "RULE" and sum(token.type in _ATOMS for token in chunk) > _WIDEST:
+            message = f"more than {_WIDEST} parts of one condition"
+            return error("PML016", message, span_of(chunk[0], self.file), _SHORTEN)
         self.trees.append(parser.feed_eof(chunk[-1]))
         return None
 
@@ -186,7 +199,7 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = goes_on or from_follows or (opens_line and (ended or following == "WORD"))
         elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
-        elif token.type == "WORD" and opens_line and index:
+        elif token.type in ("WORD", "ROBOT") and opens_line and index:
             begins = goes_on or (tokens[index - 1].type in _ENDS and looks_like_statement(token))
         else:
             begins = opens_line and goes_on and token.type in _OPENS

@@ -10,9 +10,10 @@ from lark import Token
 
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
 from pursue_gen.language.poses import robots_in
+from pursue_gen.lsp.condition_names import SUBJECTS, condition_start
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS, MEANINGS
-from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, are_names, kind_behind, statements
+from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, all_tokens, are_names, kinds_behind, statements
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
@@ -113,12 +114,17 @@ def _missing(document: Document, place: _Place, opens: str) -> Iterator[Completi
 
 def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
     """Declared names that fit here."""
-    kind = kind_behind(place.behind)
-    if "WORD" not in expected or kind is None:
-        return
+    kinds = kinds_behind(place.behind) if "WORD" in expected else ()
+    in_condition = condition_start(place.behind) is not None
+    for kind in kinds:
+        yield from _names_of(document, place, kind, repeated=in_condition)
+
+
+def _names_of(document: Document, place: _Place, kind: str, repeated: bool) -> Iterator[Completion]:
+    """Declared names of a kind; without `repeated` only those that the statement does not use yet."""
     used = {str(token) for token, is_name in zip(place.behind, are_names(place.behind)) if is_name}
     known = document.declared[kind]
-    fitting = [name for name in known if name not in used]
+    fitting = [name for name in known if repeated or name not in used]
     if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
         together = [name for name in fitting if document.statements[known[name].statement].has("COLLABORATIVE")]
         fitting = together or fitting
@@ -156,11 +162,14 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
     if not place.behind:
         return
     span = (place.start, place.end)
+    names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
+    if kinds_behind(place.behind) == SUBJECTS:
+        names_hide -= {"ANY", "NO"}
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:
             continue  # it says something behind collaborative only
         # an agent may be called human: then its name is offered
-        if token in expected and not (token in MAY_BE_NAMES and "WORD" in expected):
+        if token in expected and token not in names_hide:
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
         yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a whole number", snippet=True)

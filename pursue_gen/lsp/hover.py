@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from pursue_gen.language.behaviour import predecessors
+from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.names import refs_of
 from pursue_gen.language.parser import MOST
@@ -102,7 +103,8 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
         movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
         times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
-        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else ""))
+        only = f", only while {condition_words(way.only_if)}" if way.only_if is not None else ""
+        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
@@ -138,6 +140,8 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     for dependency in scenario.dependencies:
         if dependency.event.name == event.name:
             lines.append(f"- only while {dependency.state.name} is {str(dependency.value).lower()}")
+    if event.only_if is not None:
+        lines.append(f"- only while {condition_words(event.only_if)}")
     for state in scenario.states:
         for value, refs in (("true", state.true_if), ("false", state.false_if)):
             if _in(event.name, refs):
@@ -192,6 +196,12 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     for dependency in scenario.dependencies:
         if dependency.state.name == state.name:
             lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
+    for way in scenario.connections:
+        if way.only_if is not None and any(ref.name == state.name for _, ref in names_in(way.only_if)):
+            lines.append(f"- between {way.a} and {way.b} only while {condition_words(way.only_if)}")
+    for event in scenario.events:
+        if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
+            lines.append(f"- {event.name} only while {condition_words(event.only_if)}")
     return lines
 
 

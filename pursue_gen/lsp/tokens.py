@@ -11,6 +11,7 @@ from lark import Token, UnexpectedToken
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
+from pursue_gen.lsp.condition_names import condition_start, names_in_condition
 
 COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"})
 
@@ -116,13 +117,17 @@ def statements(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
     return tuple(Statement(tuple(chunk)) for chunk in chunks(kept))
 
 
-def kind_behind(tokens: Sequence[Token]) -> Optional[str]:
-    """What a name stands for that is used behind these tokens of one statement; None: no name is used there."""
+def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
+    """What a name may stand for that is used behind these tokens of one statement; (): no name is used there."""
     if not tokens:
-        return None
+        return ()
+    start = condition_start(tokens)
+    if start is not None:
+        return names_in_condition(tokens, start)[1]
     named = are_names(tokens)
     keywords = [token.type for token, is_name in zip(tokens, named) if token.type in KEYWORDS and not is_name]
-    return _USED.get((tokens[0].type, keywords[-1])) if keywords else None
+    kind = _USED.get((tokens[0].type, keywords[-1])) if keywords else None
+    return () if kind is None else (kind,)
 
 
 def are_names(tokens: Sequence[Token]) -> List[bool]:
@@ -164,7 +169,8 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
     found = []
     kind: Optional[str] = None
     named = are_names(part.tokens)
-    for index, token in enumerate(part.tokens):
+    condition = condition_start(part.tokens)
+    for index, token in enumerate(part.tokens[:condition]):
         start = token.start_pos or 0
         if index == 1 and token.type == "NAME" and part.kind in DECLARED:
             name = str(token)[1:-1]
@@ -179,4 +185,9 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
         elif token.type == "POSE":
             places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]
             found += [Occurrence(name, "agent", at, at + len(name), False, number) for name, at in places]
+    if condition is not None:
+        for index, kind in names_in_condition(part.tokens, condition)[0].items():
+            token = part.tokens[index]
+            start = token.start_pos or 0
+            found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
     return found

@@ -5,22 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Iterable, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.language.clauses import Value
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
 from pursue_gen.tga import names
+from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.rules import Turns
+
+Assign = Tuple[Tuple[str, int], ...]
+"""Variables with the values that an edge gives them."""
 
 _PAUSE = 1
 """Time units that an agent rests after an action or a movement, before it can begin the next."""
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What an agent's guards read: the scenario, its position numbers, and each rule's variable with its turns."""
+    """What an agent's guards read: the scenario, its position numbers, each rule's variable with its turns, conditions.
+    """
 
     scenario: Scenario
     positions: Positions
     rules: Tuple[Tuple[str, Turns], ...]
+    conditions: Conditions
 
     def event(self, name: str) -> Event:
         """The event of that name. Raises KeyError."""
@@ -140,18 +147,26 @@ class _Shape:
         """The invariant of something that ends in that window."""
         return ClockBound(self.clock, "<=", window[1])
 
-    def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, Edge]:
-        """Setting off from a and arriving at b."""
-        codes, on_the_way = self.around.positions, names.going(a, b)
-        start = self._edge(a, on_the_way, names.movement(self.agent.name, a, b), _PAUSE, (), codes.going(a, b))
-        return start, self._edge(on_the_way, b, None, window[0], (), codes.at(b))
+    def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, ...]:
+        """Setting off from a, as far as it ever can, and arriving at b."""
+        codes, on_the_way, name = self.around.positions, names.going(a, b), self.agent.name
+        end = self._edge(on_the_way, b, None, window[0], (), codes.at(b))
+        condition = self.around.conditions.setting_off(name, a, b)
+        if condition is None:
+            return (end,)
+        return self._edge(a, on_the_way, names.movement(name, a, b), _PAUSE, condition, codes.going(a, b)), end
 
-    def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, Edge]:
-        """Beginning and ending an event at a POI."""
+    def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, ...]:
+        """Beginning an event at a POI, as far as the agent ever can, and ending it."""
         codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
-        conditions = self._conditions(event, codes.at(poi))
-        start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
+        working = self.around.conditions
         ending = self._edge(at_work, poi, end, window[0], self.around.turn(end), codes.at(poi))
+        ending = replace(ending, assign=(*ending.assign, *working.ends(self.agent.name)))
+        conditions = self._conditions(event, codes.at(poi), Value("at", poi))
+        if conditions is None:
+            return (ending,)
+        start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
+        start = replace(start, assign=(*start.assign, *working.begins(self.agent.name, event.name, poi)))
         if not self.around.is_contested(event):
             return start, ending
         busy = names.busy(event.name)
@@ -170,29 +185,38 @@ class _Shape:
         # With several of them the event has a place, at which they are.
         here = (Test(names.agent_position(doers[0].name), codes.at(poi)),) if event.location is None else ()
 
-        def edge(source: str, target: str, channel: str, where: Clause, position: int) -> Edge:
-            assign = ((names.agent_position(self.agent.name), position),)
+        def edge(source: str, target: str, channel: str, where: Clause, position: int, work: Assign) -> Edge:
+            assign = ((names.agent_position(self.agent.name), position), *work)
             guard = Guard(integers=(where,) if where else ())
             return Edge(source, target, guard, Sync(channel, sends=False), assign, (self.clock,))
 
-        start = edge(poi, at_work, event.name, here, codes.doing(poi))
-        return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi))
+        working, name = self.around.conditions, self.agent.name
+        start = edge(poi, at_work, event.name, here, codes.doing(poi), working.begins(name, event.name, poi))
+        return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi), working.ends(name))
 
     def instantaneous(self, event: Event, ways: Iterable[Tuple[str, str]]) -> Iterator[Edge]:
         """Doing an event at POIs, and on the way where it has no location (company is then met head-on)."""
         codes = self.around.positions
         for poi in self.places(event):
-            yield self._edge(poi, poi, event.name, _PAUSE, self._conditions(event, codes.at(poi)), None)
+            conditions = self._conditions(event, codes.at(poi), Value("at", poi))
+            if conditions is not None:
+                yield self._edge(poi, poi, event.name, _PAUSE, conditions, None)
         if event.location is None:
             for a, b in ways:
                 here = names.going(a, b)
-                guard = Guard((ClockBound(self.clock, ">", 0),), self._conditions(event, codes.going(b, a)))
-                yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)
+                conditions = self._conditions(event, codes.going(b, a), Value("way", a, b))
+                if conditions is not None:
+                    guard = Guard((ClockBound(self.clock, ">", 0),), conditions)
+                    yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)
 
-    def _conditions(self, event: Event, company_at: int) -> Tuple[Clause, ...]:
+    def _conditions(self, event: Event, company_at: int, where: Value) -> Optional[Tuple[Clause, ...]]:
+        """What has to hold when the agent, which is there, does the event; None: that it cannot."""
         around = self.around
+        condition = around.conditions.beginning(event.name, self.agent.name, where)
+        if condition is None:
+            return None
         company = around.company(event, self.agent.name, company_at)
-        return company + around.turn(event.name) + around.dependencies(event.name)
+        return company + around.turn(event.name) + around.dependencies(event.name) + condition
 
     def _edge(
         self,

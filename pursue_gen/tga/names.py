@@ -119,6 +119,11 @@ def count(event: str) -> str:
     return f"{event}_count"
 
 
+def busy_with(agent: str) -> str:
+    """The variable that says with which event an agent is busy, and where."""
+    return f"W{agent}"
+
+
 def has_happened(event: Event) -> str:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
     return event.name if event.duration is None else done(event.name)

@@ -10,6 +10,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
+from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
@@ -29,7 +30,8 @@ def translate(scenario: Scenario) -> Network:
     rules = [rule_automaton(rule, lasting) for rule in scenario.rules]
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
     turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
-    around = Surroundings(scenario, codes, turns)
+    conditions = Conditions(scenario, codes)
+    around = Surroundings(scenario, codes, turns, conditions)
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
@@ -37,7 +39,8 @@ def translate(scenario: Scenario) -> Network:
     automata += [safety_automaton(scenario.safety, happened, codes)] if scenario.safety else []
     automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
     automata += [automaton for automaton, _ in rules]
-    variables = _variables(scenario, codes.pois) + _busy(around) + assumption_variables(scenario)
+    variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
+    variables += assumption_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network
@@ -46,7 +49,7 @@ def translate(scenario: Scenario) -> Network:
 def translation_notes(scenario: Scenario) -> Tuple[Diagnostic, ...]:
     """Warnings: position numbers that are not the original's, and actions that the network leaves out."""
     codes = positions(scenario.pois, scenario.connections)
-    around = Surroundings(scenario, codes, ())
+    around = Surroundings(scenario, codes, (), Conditions(scenario, codes))
     notes = [codes.note] if codes.note else []
     for agent in scenario.agents:
         for ref in agent.can_do:

@@ -50,6 +50,16 @@ def test_what_happens_where_and_who_can_do_what_is_reported() -> None:
     assert any("cat: not controlled" in words for words in said)
 
 
+def test_ways_and_events_that_are_not_always_open_are_marked() -> None:
+    limited = TEXT.replace("distance 17", "distance 17 only_if no agent at hall").replace(
+        '"meet" location hall', '"meet" location hall only_if cat on_way'
+    )
+    svg = draw(parse(limited, "house.pur", "house"), poses((0, 0), (3, 0), (3, 2)), False)
+    assert {"17 ?", "3"} <= set(texts(svg)) and svg.count('stroke-dasharray="7 5"') == 1
+    assert "Between shop and yard only while no agent is at hall" in texts(svg)
+    assert "meet only while cat is on its way" in texts(svg)
+
+
 def test_a_floor_plan_lies_under_everything_where_its_yaml_says() -> None:
     floor = Floor("data:image/png;base64,", 100, 50, 0.1, -2.0, -1.0, 0.0)
     picture = ElementTree.fromstring(draw(SCENARIO, poses((-2, -1), (8, -1), (8, 4)), False, floor))

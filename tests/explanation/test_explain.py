@@ -160,8 +160,8 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
     elif change.what == "control":
         lines[at] = re.sub(r'(agent "\w+")', r"\1 human controllable", lines[at])
     else:
-        assert change.what in ("rule", "dependency")
-        lines[at] = ""
+        assert change.what in ("rule", "dependency", "condition")
+        lines[at] = lines[at].partition(" only_if")[0] if change.what == "condition" else ""
     return "\n".join(lines), rules
 
 

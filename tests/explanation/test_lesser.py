@@ -103,6 +103,14 @@ def test_every_part_is_named_once() -> None:
     ]
 
 
+def test_what_conditions_name_stays_and_they_can_be_left_out() -> None:
+    text = MUSEUM.replace('"serve" location hall', '"serve" location hall only_if not child at hall and loud is_false')
+    names = {part.name: lesser for part, lesser in without_each(parse(text, "museum.pur"))}
+    assert "child" not in names, "the condition names it"
+    free = names["only_if not child at hall and loud is_false on serve"]
+    assert [event.only_if for event in free.events] == [None] * 4
+
+
 def test_one_of_two_objectives_stays() -> None:
     parts = {part.name: (part, lesser) for part, lesser in without_each(museum())}
     safety, lesser = parts["objective avoid ring"]

@@ -134,6 +134,31 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         },
         [("PML163", 5, "anywhere by bot and by bot2", "location")],
     ),
+    # conditions
+    ({"event_rest": 'event "rest" only_if bt at a'}, [("PML110", 6, "no agent bt", "did you mean bot?")]),
+    ({"event_rest": 'event "rest" only_if bot at c'}, [("PML110", 6, "there is no POI c", "declare it")]),
+    ({"event_rest": 'event "rest" only_if bot doing wrk'}, [("PML110", 6, "no event wrk", "did you mean work?")]),
+    ({"event_rest": 'event "rest" only_if bot is_true'}, [("PML110", 6, "bot is an agent, but a state", "write the")]),
+    ({"connect": "connect a and b distance 3 only_if tird is_true"}, [("PML110", 3, "no state tird", "mean tired?")]),
+    ({"event_rest": 'event "rest" only_if man at a'}, [("PML230", 6, "man is never at a", "make it mobile")]),
+    ({"event_rest": 'event "rest" only_if not man on_way'}, [("PML230", 6, "man is never on its way", "mobile 1")]),
+    (
+        {
+            "event_rest": 'event "rest" only_if any robot on_way',
+            "agent_bot": BOT.replace("mobile 2 location a", "location b"),
+        },
+        [("PML230", 6, "no robot is ever on its way", "mobile 1")],
+    ),
+    ({"event_rest": 'event "rest" only_if man doing work'}, [("PML231", 6, "man is never doing work", "can_do work")]),
+    ({"event_rest": 'event "rest" only_if no agent doing hand'}, [("PML231", 6, "hand takes no time", "a duration")]),
+    (
+        {"event_rest": 'event "rest" only_if bot at a and bot at b'},
+        [("PML232", 6, "this condition never holds: bot at a and bot at b", "delete it")],
+    ),
+    (
+        {"event_rest": 'event "rest" only_if not (bot at a and bot on_way)'},
+        [("PML232", 6, "this condition always holds", "delete it")],
+    ),
     # rules and dependencies
     ({"rule": 'rule "order": (work before hand) before work'}, [("PML160", 7, "names work twice", "each event once")]),
     ({"rule": 'rule "order": work before hand\nrule "back": hand before work'}, [
@@ -177,7 +202,7 @@ def test_a_fault_is_reported_with_its_place_and_a_way_out(
         assert finding.hint and hint in finding.hint
 
 
-WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML158", "PML180", "PML190"}
+WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML158", "PML180", "PML190", "PML232"}
 
 
 def test_only_what_can_be_meant_is_a_warning() -> None:

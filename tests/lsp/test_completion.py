@@ -92,9 +92,9 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     ("line", "words"),
     [
         ("connect a |", ["and"]),
-        ('event "new" |', ["location", "duration", "collaborative"]),
-        ('event "new" collaborative loc|', ["location", "duration", "together"]),
-        ('event "new" collaborative together |', ["location", "duration"]),
+        ('event "new" |', ["location", "duration", "at_most", "collaborative", "only_if"]),
+        ('event "new" collaborative loc|', ["location", "duration", "at_most", "together", "only_if"]),
+        ('event "new" collaborative together |', ["location", "duration", "at_most", "only_if"]),
         ('agent "new" |', ["location", "human", "controllable", "mobile"]),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
@@ -140,6 +140,27 @@ def test_nothing_is_offered_in_comments(text: str) -> None:
 def test_a_place_may_be_called_together() -> None:
     text = 'poi "together"\nevent "e" collaborative together location |'
     assert labels(text, "name") == ["together"] and labels(text, "word") == []
+
+
+@pytest.mark.parametrize(
+    ("condition", "names", "words"),
+    [
+        ("|", ["bot", "man", "tired"], ["not", "any", "no"]),
+        ("b|", ["bot", "man", "tired"], ["not", "any", "no"]),
+        ("bot |", [], ["is_true", "is_false", "at", "on_way", "doing"]),
+        ("bot at |", ["a", "b"], []),
+        ("not bot doing |", ["work", "hand", "rest", "new"], []),
+        ("bot at a and (|", ["bot", "man", "tired"], ["not", "any", "no"]),
+        ("bot at a and bot at |", ["a", "b"], []),
+        ("no robot at |", ["a", "b"], []),
+        ("any |", [], ["is_true", "is_false", "at", "on_way", "doing", "robot"]),
+        ("tired |", [], ["is_true", "is_false", "at", "on_way", "doing"]),
+    ],
+)
+def test_what_comes_next_in_a_condition(condition: str, names: List[str], words: List[str]) -> None:
+    line = WHOLE.format(f'event "new" only_if {condition}')
+    assert labels(line, "name") == names
+    assert [word for word in labels(line, "word") if word != "agent"] == words
 
 
 def test_an_agent_may_be_called_human() -> None:

@@ -72,6 +72,18 @@ def test_windows_and_travel_times() -> None:
     assert "a robot" in told("travel b", more) and "a place" in told("from ", more)
 
 
+def test_when_events_and_ways_are_open() -> None:
+    limited = SMALL.replace('event "work" location b duration 3', 'event "work" location b duration 3 only_if man at b')
+    limited = limited.replace("distance 3", "distance 3 only_if no robot on_way and tired is_false")
+    assert "only while man is at b" in told('event "wo', limited)
+    open_while = "only while no robot is on its way and tired is false"
+    assert f"to b: distance 3 (bot 6 to 7 units of time), {open_while}" in told('poi "', limited)
+    assert f"between a and b {open_while}" in told('state "', limited)
+    assert "**man**: nobody controls it" in told("only_if m", limited)
+    assert "**b**: a place" in told("man at ", limited)
+    assert "the agent stands there" in told("only_if man a", limited)
+
+
 def test_who_is_busy_while_an_event_of_two_lasts() -> None:
     lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
     assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)

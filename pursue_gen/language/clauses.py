@@ -1,0 +1,189 @@
+"""Conditions in conjunctive normal form, over what each agent may be at and each state may be.
+
+A variable is an agent, whose values are its positions, or a state. A clause holds if for one of its variables the value
+is among those that the clause lists. Positions of different agents are taken to be independent of each other.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+
+from pursue_gen.language.behaviour import destinations, reachable
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Atom, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.scenario import Agent, Event, Scenario
+
+MOST_CLAUSES = 200
+"""A condition with more of them is refused: guards would be as long, and nobody could read them."""
+
+
+class Value(NamedTuple):
+    """What a variable may be: ("at", POI, ""), ("doing", POI, event), ("way", from, to), ("is", "true", "")."""
+
+    kind: str
+    where: str
+    what: str = ""
+
+
+TRUE, FALSE = Value("is", "true"), Value("is", "false")
+
+Values = FrozenSet[Value]
+Clause = Mapping[str, Values]
+"""From a variable, an agent's or a state's name, to the values with which the clause holds."""
+
+Clauses = Tuple[Clause, ...]
+NEVER: Clauses = ({},)
+"""What never holds; no clause at all always holds."""
+
+
+class TooMany(Exception):
+    """A condition has more than MOST_CLAUSES clauses."""
+
+
+class Domains:
+    """The values that the variables of a scenario may have."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._agents = {agent.name: agent for agent in scenario.agents}
+        self._states = frozenset(state.name for state in scenario.states)
+        self._events = {event.name: event for event in scenario.events}
+        self._ways = [way for connection in scenario.connections for way in connection.directions]
+        self._connected = destinations(scenario)
+        self._found: Dict[str, Values] = {}
+
+    def of(self, variable: str) -> Values:
+        """All values of an agent or a state; the empty set for a name that is neither."""
+        if variable not in self._found:
+            self._found[variable] = frozenset(self._values(variable))
+        return self._found[variable]
+
+    def among(self, who: Who) -> Tuple[str, ...]:
+        """The agents that are meant, in the order of their declaration."""
+        if who.agent is not None:
+            return (who.agent.name,)
+        return tuple(name for name, agent in self._agents.items() if agent.is_robot or not who.robots)
+
+    def literals(self, atom: Atom) -> Dict[str, Values]:
+        """With which values an atom holds: one of these variables has one of its values. No empty sets."""
+        if isinstance(atom, Holds):
+            values = self.of(atom.state.name) & {TRUE if atom.value else FALSE}
+            return {atom.state.name: values} if values else {}
+        found = {}
+        for name in self.among(atom.who):
+            values = frozenset(value for value in self.of(name) if _is(value, atom))
+            if values:
+                found[name] = values
+        return found
+
+    def _values(self, variable: str) -> Iterable[Value]:
+        if variable in self._states:
+            return (TRUE, FALSE)
+        agent = self._agents.get(variable)
+        if agent is None:
+            return ()
+        places = reachable(agent, self._connected)
+        found = [Value("at", poi) for poi in places]
+        if agent.mobile is not None:
+            found += [Value("way", a, b) for a, b in self._ways if a in places]
+        for event in self._lasting(agent):
+            at = places if event.location is None else places & {event.location.name}
+            found += [Value("doing", poi, event.name) for poi in at]
+        return found
+
+    def _lasting(self, agent: Agent) -> List[Event]:
+        """The events with which the agent may be busy."""
+        able = [self._events[ref.name] for ref in agent.can_do if ref.name in self._events]
+        able += [self._events[ref.name] for ref in agent.reacts_to if ref.name in self._events]
+        doing = {ref.name for ref in agent.can_do}
+        return [event for event in able if event.duration is not None and (event.name in doing or event.is_shared)]
+
+
+def _is(value: Value, atom: Atom) -> bool:
+    """Does an atom about an agent hold with this value?"""
+    if isinstance(atom, At):
+        return value.kind in ("at", "doing") and value.where == atom.place.name
+    if isinstance(atom, OnWay):
+        return value.kind == "way"
+    return isinstance(atom, Doing) and value.kind == "doing" and value.what == atom.event.name
+
+
+def clauses_of(condition: Condition, domains: Domains, value: bool = True) -> Clauses:
+    """The clauses of a condition, or with `value` False of its negation. Raises TooMany.
+
+    Exact: no clause at all if and only if it always holds. That it never holds is seen in its negation.
+    """
+    if isinstance(condition, Not):
+        return clauses_of(condition.part, domains, not value)
+    if isinstance(condition, (AllOf, AnyOf)):
+        parts = [clauses_of(part, domains, value) for part in condition.parts]
+        return all_of(parts, domains) if isinstance(condition, AllOf) is value else any_of(parts, domains)
+    literals = domains.literals(condition)
+    if value:
+        return simplified([literals], domains)
+    return simplified([{name: domains.of(name) - values} for name, values in literals.items()], domains)
+
+
+def all_of(parts: Iterable[Clauses], domains: Domains) -> Clauses:
+    """The clauses of a conjunction. Raises TooMany."""
+    return simplified([clause for part in parts for clause in part], domains)
+
+
+def any_of(parts: Iterable[Clauses], domains: Domains) -> Clauses:
+    """The clauses of a disjunction. Raises TooMany."""
+    found: Clauses = NEVER
+    for part in parts:
+        if len(found) * len(part) > MOST_CLAUSES * MOST_CLAUSES:
+            raise TooMany
+        found = simplified([_either(one, other) for one, other in product(found, part)], domains)
+    return found
+
+
+def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
+    """What remains to be required where the variable is known to have the value; None: it cannot hold."""
+    kept = []
+    for clause in clauses:
+        if value in clause.get(variable, ()):
+            continue
+        rest = {name: values for name, values in clause.items() if name != variable}
+        if not rest:
+            return None
+        kept.append(rest)
+    return tuple(kept)
+
+
+def _either(one: Clause, other: Clause) -> Clause:
+    return {name: one.get(name, frozenset()) | other.get(name, frozenset()) for name in (*one, *other)}
+
+
+def simplified(clauses: Iterable[Clause], domains: Domains) -> Clauses:
+    """The same without clauses that always hold or follow from another one. Raises TooMany."""
+    alone: Dict[str, Values] = {}  # what single variables have to be
+    several: List[Clause] = []
+    for clause in clauses:
+        kept = {name: values for name, values in clause.items() if values}
+        if any(values == domains.of(name) for name, values in kept.items()):
+            continue
+        if not kept:
+            return NEVER
+        if len(kept) == 1:
+            ((name, values),) = kept.items()
+            alone[name] = alone.get(name, values) & values
+        elif kept not in several:
+            several.append(kept)
+    if not all(alone.values()):
+        return NEVER
+    found: List[Clause] = [{name: values} for name, values in alone.items()]
+    found += several
+    found = [clause for k, clause in enumerate(found) if not _follows(clause, k, found)]
+    if len(found) > MOST_CLAUSES:
+        raise TooMany
+    return tuple(found)
+
+
+def _follows(clause: Clause, number: int, others: List[Clause]) -> bool:
+    """Does the clause of that number follow from one of the others? Of two that are the same the first stays."""
+    return any(
+        all(name in clause and values <= clause[name] for name, values in other.items())
+        for k, other in enumerate(others)
+        if k < number or (k > number and other != clause)
+    )

@@ -1,0 +1,58 @@
+"""What is wrong with conditions: what an agent never is or does, and what says nothing or too much."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of
+from pursue_gen.language.conditions import At, Atom, Condition, Doing, Holds, atoms, condition_text, conditions_of
+from pursue_gen.language.scenario import Scenario
+
+
+def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Findings about the conditions of a scenario whose names are all declared."""
+    domains = Domains(scenario)
+    for condition, span in conditions_of(scenario):
+        impossible = [finding for atom in atoms(condition) for finding in _impossible(scenario, domains, atom, span)]
+        yield from impossible or _without_sense(condition, span, domains)
+
+
+def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) -> Iterator[Diagnostic]:
+    """An agent where it never is, or at what it never does; `span`: the statement's."""
+    if isinstance(atom, Holds) or domains.literals(atom):
+        return
+    who, kind = atom.who.agent, "robot" if atom.who.robots else "agent"
+    nobody = f"no {kind}" if who is None else who.name
+    if isinstance(atom, At):
+        message = f"{nobody} {'is ever' if who is None else 'is never'} at {atom.place.name}"
+        hint = "connect the place with where it starts, make it mobile, or name another place"
+        yield error("PML230", message, atom.place.span, hint)
+    elif isinstance(atom, Doing):
+        event = next(event for event in scenario.events if event.name == atom.event.name)
+        name = event.name
+        if event.duration is None:
+            message = f"{name} takes no time: no agent is ever doing it"
+            hint = f"give it a duration, or let {name} make a state true and name the state"
+        else:
+            message = f"{nobody} {'is ever' if who is None else 'is never'} doing {name}"
+            hint = f"give it to the agent: can_do {name}" + (f", or reacts_to {name}" if event.is_shared else "")
+        yield error("PML231", message, atom.event.span, hint)
+    else:
+        place = span if who is None else who.span
+        message = f"{nobody} {'is ever' if who is None else 'is never'} on its way: nothing there is mobile"
+        yield error("PML230", message, place, "make it mobile (mobile 1), or delete this part of the condition")
+
+
+def _without_sense(condition: Condition, span: Span, domains: Domains) -> Iterator[Diagnostic]:
+    """A condition that always holds, one that never does, and one that is too long as a guard."""
+    try:
+        always, never = not clauses_of(condition, domains), not clauses_of(condition, domains, value=False)
+    except TooMany:
+        hint = "put what belongs together into states that events set, or split it into several statements"
+        message = f"this condition, written as clauses that all have to hold, has more than {MOST_CLAUSES} of them"
+        yield error("PML233", message, span, hint)
+        return
+    if always or never:
+        message = f"this condition {'always' if always else 'never'} holds: {condition_text(condition)}"
+        yield warning("PML232", message, span, "delete it, or correct what it says")

@@ -1,0 +1,155 @@
+"""Conditions: what may hold at a moment of a mission, as `only_if` and objectives name it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Callable, Iterator, Optional, Tuple, Union
+
+if TYPE_CHECKING:
+    from pursue_gen.diagnostics import Span
+    from pursue_gen.language.scenario import Ref, Scenario
+
+
+@dataclass(frozen=True)
+class Who:
+    """The agent that is named; None: any agent, or with `robots` any robot."""
+
+    agent: Optional[Ref]
+    robots: bool = False
+
+
+@dataclass(frozen=True)
+class At:
+    """`who at place`: it stands there, idle or at work."""
+
+    who: Who
+    place: Ref
+
+
+@dataclass(frozen=True)
+class OnWay:
+    """`who on_way`: it is between two places."""
+
+    who: Who
+
+
+@dataclass(frozen=True)
+class Doing:
+    """`who doing event`: it does an event that takes time, or takes part in one until it ends."""
+
+    who: Who
+    event: Ref
+
+
+@dataclass(frozen=True)
+class Holds:
+    """`state is_true`, or `is_false`."""
+
+    state: Ref
+    value: bool
+
+
+@dataclass(frozen=True)
+class Not:
+    """`not part`; `no robot …` is `not any robot …`."""
+
+    part: Condition
+
+
+@dataclass(frozen=True)
+class AllOf:
+    """`first and second and …`."""
+
+    parts: Tuple[Condition, ...]
+
+
+@dataclass(frozen=True)
+class AnyOf:
+    """`first or second or …`."""
+
+    parts: Tuple[Condition, ...]
+
+
+Atom = Union[At, OnWay, Doing, Holds]
+Condition = Union[At, OnWay, Doing, Holds, Not, AllOf, AnyOf]
+
+
+def atoms(condition: Condition) -> Iterator[Atom]:
+    """The parts of a condition that have no parts, from left to right."""
+    if isinstance(condition, Not):
+        yield from atoms(condition.part)
+    elif isinstance(condition, (AllOf, AnyOf)):
+        for part in condition.parts:
+            yield from atoms(part)
+    else:
+        yield condition
+
+
+def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
+    """Each name in a condition behind the kind of thing that it stands for, from left to right."""
+    for atom in atoms(condition):
+        if isinstance(atom, Holds):
+            yield "state", atom.state
+            continue
+        if atom.who.agent is not None:
+            yield "agent", atom.who.agent
+        if isinstance(atom, At):
+            yield "POI", atom.place
+        elif isinstance(atom, Doing):
+            yield "event", atom.event
+
+
+def conditions_of(scenario: Scenario) -> Iterator[Tuple[Condition, Span]]:
+    """Every condition in a scenario, with the place of the statement that it stands in."""
+    for way in scenario.connections:
+        if way.only_if is not None:
+            yield way.only_if, way.span
+    for event in scenario.events:
+        if event.only_if is not None:
+            yield event.only_if, event.span
+
+
+def condition_text(condition: Condition) -> str:
+    """A condition as it is written in a scenario."""
+    if isinstance(condition, Not):
+        part = condition.part
+        if not isinstance(part, (Not, AllOf, AnyOf, Holds)) and part.who.agent is None:
+            return "no" + condition_text(part)[len("any") :]
+        return f"not {_bracketed(part, condition_text)}"
+    if isinstance(condition, (AllOf, AnyOf)):
+        return _joined(condition, condition_text)
+    if isinstance(condition, Holds):
+        return f"{condition.state.name} is_{'true' if condition.value else 'false'}"
+    who = _who(condition.who)
+    if isinstance(condition, At):
+        return f"{who} at {condition.place.name}"
+    return f"{who} on_way" if isinstance(condition, OnWay) else f"{who} doing {condition.event.name}"
+
+
+def condition_words(condition: Condition, holds: bool = True) -> str:
+    """A condition in English, as in "bot1 is at a and open is true"; with `holds` False its negation."""
+    if isinstance(condition, Not):
+        return condition_words(condition.part, not holds)
+    if isinstance(condition, (AllOf, AnyOf)):
+        return _joined(condition, condition_words) if holds else f"not ({_joined(condition, condition_words)})"
+    if isinstance(condition, Holds):
+        return f"{condition.state.name} is {'true' if condition.value is holds else 'false'}"
+    who, verb = _who(condition.who), "is" if holds else "is not"
+    if condition.who.agent is None and not holds:
+        who, verb = "no" + who[len("any") :], "is"
+    if isinstance(condition, At):
+        return f"{who} {verb} at {condition.place.name}"
+    return f"{who} {verb} {'on its way' if isinstance(condition, OnWay) else f'doing {condition.event.name}'}"
+
+
+def _joined(condition: Union[AllOf, AnyOf], say: Callable[[Condition], str]) -> str:
+    sign = " and " if isinstance(condition, AllOf) else " or "
+    return sign.join(_bracketed(part, say) for part in condition.parts)
+
+
+def _bracketed(part: Condition, say: Callable[[Condition], str]) -> str:
+    return f"({say(part)})" if isinstance(part, (AllOf, AnyOf)) else say(part)
+
+
+def _who(who: Who) -> str:
+    return who.agent.name if who.agent is not None else f"any {'robot' if who.robots else 'agent'}"

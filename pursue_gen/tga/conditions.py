@@ -1,0 +1,103 @@
+"""Conditions as guards: tests of agents' positions, of what they are busy with, and of states."""
+
+from __future__ import annotations
+
+from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
+
+from pursue_gen.language.clauses import TRUE, Clause, Clauses, Domains, Value, clauses_of, given
+from pursue_gen.language.conditions import Doing, atoms, conditions_of
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.tga import names
+from pursue_gen.tga.network import Clause as Tests
+from pursue_gen.tga.network import Test
+from pursue_gen.tga.positions import Positions
+
+
+class Conditions:
+    """The conditions of a scenario as guards over the variables of its network.
+
+    An agent's position says where it is at work, not at what. Where a condition has to tell two events apart that the
+    agent can do at one place, one more variable says what it is busy with: 0, or the number of event and place.
+    """
+
+    def __init__(self, scenario: Scenario, positions: Positions) -> None:
+        self.domains = Domains(scenario)
+        self._positions = positions
+        self._states = frozenset(state.name for state in scenario.states)
+        self._work = dict(self._numbers(scenario))
+        self._ways = {
+            way: clauses_of(connection.only_if, self.domains)
+            for connection in scenario.connections
+            if connection.only_if is not None
+            for way in connection.directions
+        }
+        self._events = {
+            event.name: clauses_of(event.only_if, self.domains)
+            for event in scenario.events
+            if event.only_if is not None
+        }
+
+    def setting_off(self, agent: str, a: str, b: str) -> Optional[Tuple[Tests, ...]]:
+        """What has to hold when the agent sets off from a to b; None: that it cannot."""
+        return self._guard(self._ways.get((a, b), ()), agent, Value("at", a))
+
+    def beginning(self, event: str, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
+        """What has to hold when the agent, which is there, does or begins the event; None: that it cannot."""
+        return self._guard(self._events.get(event, ()), agent, where)
+
+    def _guard(self, clauses: Clauses, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
+        rest = given(clauses, agent, where)
+        return None if rest is None else self.tests(rest)
+
+    def tests(self, clauses: Clauses) -> Tuple[Tests, ...]:
+        """Clauses as the guards of edges have them. What never holds is an empty clause."""
+        return tuple(self._test(clause) for clause in clauses)
+
+    def variables(self) -> Tuple[Tuple[str, int], ...]:
+        """The variables that say what agents are busy with, in the order of the agents."""
+        return tuple((names.busy_with(agent), 0) for agent in self._work)
+
+    def begins(self, agent: str, event: str, poi: str) -> Tuple[Tuple[str, int], ...]:
+        """What is set when the agent begins to be busy with an event at a POI."""
+        number = self._work.get(agent, {}).get(Value("doing", poi, event))
+        return () if number is None else ((names.busy_with(agent), number),)
+
+    def ends(self, agent: str) -> Tuple[Tuple[str, int], ...]:
+        """What is set when it no longer is."""
+        return ((names.busy_with(agent), 0),) if agent in self._work else ()
+
+    def _numbers(self, scenario: Scenario) -> List[Tuple[str, Mapping[Value, int]]]:
+        wanted: Dict[str, FrozenSet[str]] = {}
+        for condition, _ in conditions_of(scenario):
+            for atom in atoms(condition):
+                if isinstance(atom, Doing):
+                    for name in self.domains.literals(atom):
+                        wanted[name] = wanted.get(name, frozenset()) | {atom.event.name}
+        found: List[Tuple[str, Mapping[Value, int]]] = []
+        for agent in scenario.agents:
+            events = wanted.get(agent.name, frozenset())
+            work = [value for value in sorted(self.domains.of(agent.name)) if value.kind == "doing"]
+            if any(one.where == two.where and one.what in events and one != two for one in work for two in work):
+                found.append((agent.name, {value: number for number, value in enumerate(work, start=1)}))
+        return found
+
+    def _test(self, clause: Clause) -> Tests:
+        return tuple(test for variable, values in clause.items() for test in self._tests_of(variable, values))
+
+    def _tests_of(self, variable: str, values: FrozenSet[Value]) -> List[Test]:
+        if variable in self._states:
+            return [Test(names.state_value(variable), int(value == TRUE)) for value in sorted(values)]
+        domain, position = self.domains.of(variable), names.agent_position(variable)
+        tests: Dict[Test, None] = {}
+        for value in sorted(values):
+            alike = {other for other in domain if other[:2] == value[:2]} if value.kind == "doing" else {value}
+            if alike <= values:
+                tests[Test(position, self._code(value))] = None
+            else:
+                tests[Test(names.busy_with(variable), self._work[variable][value])] = None
+        return list(tests)
+
+    def _code(self, value: Value) -> int:
+        if value.kind == "way":
+            return self._positions.going(value.where, value.what)
+        return self._positions.at(value.where) if value.kind == "at" else self._positions.doing(value.where)

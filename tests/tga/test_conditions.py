@@ -1,0 +1,82 @@
+"""Conditions in guards: they hold in a state of the network exactly where they hold of the agents' places."""
+
+from __future__ import annotations
+
+from typing import Dict, Set
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.language import parse
+from pursue_gen.language.conditions import Condition, condition_text
+from pursue_gen.proof.moves import Arena, State
+from pursue_gen.simulation.meaning import holds
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network
+from pursue_gen.tga.uppaal import read_network, write_network
+from tests.conditions import CONDITIONS, SCENARIO, with_only_if
+
+OBJECTIVE = scenario_objective(parse(SCENARIO, "x.pur"))
+
+_MOST = 150
+"""States that are looked at in one network."""
+
+
+def states_of(network: Network) -> "Dict[State, Set[str]]":
+    """The first discrete states that moves lead to, whatever the clocks are, each with the channels sent in it."""
+    arena = Arena(network, 1, idle_moves=True)
+    found: Dict[State, Set[str]] = {}
+    pending = [arena.initial]
+    while pending and len(found) < _MOST:
+        state = pending.pop(0)
+        if state in found:
+            continue
+        found[state] = set()
+        for move in arena.situation(state).moves:
+            sync = move.moves[0].edge.sync
+            found[state].add(sync.channel if sync else "")
+            pending.append(move.target)
+    return found
+
+
+@given(CONDITIONS, st.sampled_from(["close", "open", "paint", "carry", "way"]))
+@settings(max_examples=40)
+def test_an_event_or_a_way_is_open_exactly_while_its_condition_holds(condition: Condition, what: str) -> None:
+    scenario = parse(with_only_if({what: condition_text(condition)}), "x.pur")
+    network, free = translate(scenario), Arena(translate(parse(SCENARIO, "x.pur")), 1, idle_moves=True)
+    variables = [name for name, _ in network.variables]
+    kept = [variables.index(name) for name, _ in free.network.variables]
+    names = [automaton.name for automaton in network.automata]
+    limited = {"anna_hall2shop", "anna_shop2hall", "dora_hall2shop", "dora_shop2hall", "bert_hall2shop"}
+    limited = (limited | {"bert_shop2hall"}) if what == "way" else {what}
+    for state, sent in states_of(network).items():
+        locations, values = dict(zip(names, state[0])), dict(zip(variables, state[1]))
+        told = holds(condition, scenario, locations, values)
+        without = free.situation((state[0], tuple(state[1][k] for k in kept)))
+        possible = {m.moves[0].edge.sync.channel if m.moves[0].edge.sync else "" for m in without.moves}
+        assert sent == {channel for channel in possible if told or channel not in limited}
+
+
+def test_networks_without_conditions_have_no_more_variables() -> None:
+    plain = translate(parse(SCENARIO, "x.pur"))
+    assert not any(name.startswith("W") for name, _ in plain.variables)
+    at_place = translate(parse(with_only_if({"open": "anna at shop"}), "x.pur"))
+    assert at_place.variables == plain.variables
+    telling = translate(parse(with_only_if({"open": "anna doing clean"}), "x.pur"))
+    assert telling.variables == (*plain.variables, ("Wanna", 0))
+    assert translate(parse(with_only_if({"open": "bert doing carry"}), "x.pur")).variables == plain.variables
+
+
+def test_a_way_that_an_agent_alone_can_never_take_has_no_edge() -> None:
+    network = translate(parse(with_only_if({"way": "anna on_way"}), "x.pur"))
+    sent = {edge.sync.channel for edge in network.automaton("anna").edges if edge.sync}
+    assert "anna_hall2shop" not in sent and "anna_shop2yard" in sent
+    assert "bert_shop2hall" in {edge.sync.channel for edge in network.automaton("bert").edges if edge.sync}
+
+
+@given(CONDITIONS)
+@settings(max_examples=10)
+def test_the_network_survives_uppaals_format(condition: Condition) -> None:
+    network = translate(parse(with_only_if({"open": condition_text(condition), "way": "light is_true"}), "x.pur"))
+    read = read_network(write_network(network, OBJECTIVE), "TGA.xml")
+    assert (read.automata, read.variables) == (network.automata, network.variables)
