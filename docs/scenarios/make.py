@@ -27,7 +27,8 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
-from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.conditions import condition_text
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
@@ -222,8 +223,11 @@ def _wanted(scenario: Scenario) -> List[str]:
         found.append(f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}")
     elif isinstance(safety, Avoid):
         found.append(f"avoid {safety.event.name}")
+    elif isinstance(safety, Always):
+        found.append(f"{'always' if safety.holds else 'avoid'} {condition_text(safety.condition)}")
     elif isinstance(safety, NeverWith):
-        found.append(f"{safety.first.name} never_with {safety.second.name}")
+        place = "" if safety.place is None else f" at {safety.place.name}"
+        found.append(f"{safety.first.name} never_with {safety.second.name}{place}")
     if scenario.reach is not None:
         found.append(f"do {scenario.reach.event.name}")
     return found

@@ -8,6 +8,7 @@ from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
 from pursue_gen.language.conditions import condition_text, conditions_of, names_in
 from pursue_gen.language.scenario import (
     Agent,
+    Always,
     Avoid,
     Both,
     Choice,
@@ -179,4 +180,7 @@ def _safety_text(safety: Safety) -> str:
         return f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}"
     if isinstance(safety, Avoid):
         return f"avoid {safety.event.name}"
-    return f"{safety.first.name} never_with {safety.second.name}"
+    if isinstance(safety, Always):
+        return f"{'always' if safety.holds else 'avoid'} {condition_text(safety.condition)}"
+    place = "" if safety.place is None else f" at {safety.place.name}"
+    return f"{safety.first.name} never_with {safety.second.name}{place}"

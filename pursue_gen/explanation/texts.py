@@ -8,7 +8,8 @@ from typing import Callable, Dict, Iterator, List, Tuple
 
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
-from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
@@ -159,6 +160,8 @@ def _bad(scenario: Scenario, play: Play) -> str:
     safety = scenario.safety
     if isinstance(safety, Avoid):
         return f"{safety.event.name} has happened, which was to be avoided"
+    if isinstance(safety, Always):
+        return f"{condition_words(safety.broken_if)}, which must never be"
     if isinstance(safety, NeverWith):
         return f"{safety.first.name} and {safety.second.name} are together: both {_place(play, safety.first.name)}"
     return _late(scenario)

@@ -211,9 +211,14 @@ def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
         first, second = safety.first.name, safety.second.name
         if first == second:
             yield error("PML173", f"{first} is always with itself", safety.span, "name two different agents")
-        elif first in start and start[first] == start.get(second):
+        elif first in start and start[first] == start.get(second) and _counts(safety, start[first]):
             message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
             yield error("PML174", message, safety.span, "let one of them start somewhere else")
+
+
+def _counts(safety: NeverWith, place: str) -> bool:
+    """True if the objective forbids that both are there."""
+    return safety.place is None or safety.place.name == place
 
 
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:

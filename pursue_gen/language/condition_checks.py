@@ -5,9 +5,20 @@ from __future__ import annotations
 from typing import Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of
-from pursue_gen.language.conditions import At, Atom, Condition, Doing, Holds, atoms, condition_text, conditions_of
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.clauses import FALSE, MOST_CLAUSES, TRUE, Domains, TooMany, Value, clauses_of
+from pursue_gen.language.conditions import (
+    At,
+    Atom,
+    Condition,
+    Doing,
+    Holds,
+    Who,
+    atoms,
+    condition_text,
+    condition_words,
+    conditions_of,
+)
+from pursue_gen.language.scenario import Always, NeverWith, Scenario
 
 
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -15,7 +26,26 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
     domains = Domains(scenario)
     for condition, span in conditions_of(scenario):
         impossible = [finding for atom in atoms(condition) for finding in _impossible(scenario, domains, atom, span)]
-        yield from impossible or _without_sense(condition, span, domains)
+        senseless = [] if impossible else list(_without_sense(condition, span, domains))
+        yield from impossible or senseless
+        safety = scenario.safety
+        if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
+            yield from _lost_at_start(scenario, safety, domains)
+    if isinstance(scenario.safety, NeverWith) and scenario.safety.place is not None:
+        for who in (scenario.safety.first, scenario.safety.second):
+            at = At(Who(who), scenario.safety.place)
+            yield from _impossible(scenario, domains, at, scenario.safety.span)
+
+
+def _lost_at_start(scenario: Scenario, safety: Always, domains: Domains) -> Iterator[Diagnostic]:
+    """An objective that is broken before anything has happened."""
+    first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
+    first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
+    broken = clauses_of(safety.broken_if, domains)
+    if all(any(first[name] in values for name, values in clause.items()) for clause in broken):
+        message = f"the objective is lost before anything moves: {condition_words(safety.broken_if)}"
+        hint = "let agents start somewhere else, start the states with other values, or correct the condition"
+        yield error("PML234", message, safety.span, hint)
 
 
 def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) -> Iterator[Diagnostic]:

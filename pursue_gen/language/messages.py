@@ -22,7 +22,8 @@ FORMS: Dict[str, str] = {
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
-    "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e · objective: bot1 never_with bot2",
+    "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e (or a condition: avoid open is_true) · "
+    "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional)",
     "REACH_OBJECTIVE": "reach_objective: do e after 0 (after is optional)",
 }
 """What each statement looks like, by the token that begins it."""
@@ -43,7 +44,7 @@ KEYWORDS: Dict[str, str] = {
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
     "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between",
     "LEAVES": "leaves", "NEVER": "never", "AT": "at",
-    "NOT": "not", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
+    "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
 }  # fmt: skip
 """The words of the language, by token."""
 
@@ -51,7 +52,7 @@ MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
     "LEAVES": "leaves", "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
-    "ROBOT": "robot",
+    "ROBOT": "robot", "ALWAYS": "always",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 

@@ -168,6 +168,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
             yield from all_of("event", [getattr(objective, field, None)])
         for field in ("first", "second"):
             yield from all_of("agent", [getattr(objective, field, None)])
+        yield from all_of("POI", [getattr(objective, "place", None)])
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:

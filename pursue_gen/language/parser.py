@@ -97,7 +97,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     builder = _Builder(file)
     parts = [part for part in (builder.part(tree) for tree in statements.trees) if part is not None]
     findings = statements.findings + builder.findings
-    safety = [part for part in parts if isinstance(part, (pml.Respond, pml.Avoid, pml.NeverWith))]
+    safety = [part for part in parts if isinstance(part, (pml.Respond, pml.Avoid, pml.NeverWith, pml.Always))]
     reach = [part for part in parts if isinstance(part, pml.Reach)]
     for extra in safety[1:] + reach[1:]:
         findings.append(_second_objective(extra, (reach if isinstance(extra, pml.Reach) else safety)[0]))
@@ -270,9 +270,12 @@ class _Builder:
         children = objective.children
         if objective.data == "respond":
             return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)
-        if objective.data == "avoid":
+        if objective.data == "avoid" and children[0].data == "ref":
             return pml.Avoid(self._ref(children[0]), span)
-        return pml.NeverWith(self._ref(children[0]), self._ref(children[1]), span)
+        if objective.data in ("avoid", "always"):
+            return pml.Always(condition_of(children[0], self._ref), objective.data == "always", span)
+        place = None if children[2] is None else self._ref(children[2])
+        return pml.NeverWith(self._ref(children[0]), self._ref(children[1]), span, place)
 
     def _reach(self, event: Any, after: Optional[Token], span: Span) -> pml.Reach:
         return pml.Reach(self._ref(event), 0 if after is None else self._number(after), span)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import Condition, Not
 
 
 @dataclass(frozen=True)
@@ -239,14 +239,29 @@ class Avoid:
 
 @dataclass(frozen=True)
 class NeverWith:
-    """`first never_with second`: two agents that never share a POI nor a connection."""
+    """`first never_with second`: two agents that never share a POI nor a connection; with `place` not this POI."""
 
     first: Ref
     second: Ref
     span: Span
+    place: Optional[Ref] = None
 
 
-Safety = Union[Respond, Avoid, NeverWith]
+@dataclass(frozen=True)
+class Always:
+    """`always condition`, or with `holds` False `avoid condition`: it holds at every moment, or at none."""
+
+    condition: Condition
+    holds: bool
+    span: Span
+
+    @property
+    def broken_if(self) -> Condition:
+        """The condition with which the objective is lost."""
+        return Not(self.condition) if self.holds else self.condition
+
+
+Safety = Union[Respond, Avoid, NeverWith, Always]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 from typing import List
 
-from pursue_gen.language.scenario import Agent, Assumption, AtMost, Avoid, Leaves, NeverWith, Respond, Scenario, Waits
+from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.scenario import (
+    Agent,
+    Always,
+    Assumption,
+    AtMost,
+    Avoid,
+    Leaves,
+    NeverWith,
+    Respond,
+    Scenario,
+    Waits,
+)
 
 
 def units(amount: str) -> str:
@@ -21,7 +33,10 @@ def objective_words(scenario: Scenario) -> List[str]:
     elif isinstance(safety, Avoid):
         result.append(f"{safety.event.name} never happens.")
     elif isinstance(safety, NeverWith):
-        result.append(f"{safety.first.name} and {safety.second.name} are never at one place or on one connection.")
+        where = "at one place or on one connection" if safety.place is None else f"both at {safety.place.name}"
+        result.append(f"{safety.first.name} and {safety.second.name} are never {where}.")
+    elif isinstance(safety, Always):
+        result.append(f"It {'always' if safety.holds else 'never'} holds that {condition_words(safety.condition)}.")
     if reach:
         after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
         result.append(f"{reach.event.name} happens{after}.")

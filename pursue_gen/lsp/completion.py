@@ -163,8 +163,10 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
         return
     span = (place.start, place.end)
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
-    if kinds_behind(place.behind) == SUBJECTS:
+    if set(SUBJECTS) <= set(kinds_behind(place.behind)):
         names_hide -= {"ANY", "NO"}
+    if [token.type for token in place.behind] == ["OBJECTIVE", "COLON"]:
+        names_hide.discard("ALWAYS")
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:
             continue  # it says something behind collaborative only

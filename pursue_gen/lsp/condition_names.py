@@ -11,7 +11,7 @@ from pursue_gen.language.messages import MAY_BE_NAMES
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
-_OPENS = {("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF")}
+_OPENS = {("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS")}
 """The statements with a condition in them, and the word behind which it begins."""
 
 _OBJECT = {"AT": "POI", "DOING": "event"}
@@ -23,7 +23,8 @@ def condition_start(tokens: Sequence[Token]) -> Optional[int]:
     """The number of the first token of the condition in a statement, be it there or missing; None: it has none."""
     for number, token in enumerate(tokens):
         if (tokens[0].type, token.type) in _OPENS:
-            return number + 1
+            following = tokens[number + 1].type if number + 1 < len(tokens) else ""
+            return None if following == "NEVER_WITH" else number + 1  # always may be an agent's name
     return None
 
 
@@ -31,19 +32,21 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
     """By the number of its token the kind of thing that each name from `start` on stands for; and the kinds of names
     that may follow the last token."""
     found: Dict[int, str] = {}
-    expected: Tuple[str, ...] = SUBJECTS
+    # an event may stand there alone
+    subjects = ("event", *SUBJECTS) if tokens[start - 1].type == "AVOID" else SUBJECTS
+    expected: Tuple[str, ...] = subjects
     number = start
     while number < len(tokens):
         kind = tokens[number].type
         following = tokens[number + 1].type if number + 1 < len(tokens) else ""
-        if expected == SUBJECTS and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
+        if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
             number, expected = number + 1, ()
         elif expected and kind in _NAMES:
-            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, "agent")
+            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, subjects[0])
             expected = ()
         elif kind in _OBJECT:
             expected = (_OBJECT[kind],)
         elif kind in ("AND", "OR", "NOT", "LPAR"):
-            expected = SUBJECTS
+            expected = subjects = SUBJECTS
         number += 1
     return found, expected

@@ -53,7 +53,8 @@ MEANINGS: Dict[str, str] = {
     "IF": "After this event there has to be an answer.",
     "THEN": "The event that has to follow.",
     "WITHIN": "How many units of time later the answer must have come.",
-    "AVOID": "This event must never happen.",
+    "AVOID": "This event must never happen, or this condition must never hold.",
+    "ALWAYS": "This condition must hold at every moment.",
     "NEVER_WITH": "These two agents must never be at one place, nor meet on a way.",
     "NOT": "What follows does not hold.",
     "ON_WAY": "The agent is between two places.",
@@ -120,7 +121,10 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     "OBJECTIVE": (
         Form("an answer in time", "objective: if {event} then {event} within {=20}"),
         Form("never", "objective: avoid {event}"),
+        Form("never while …", "objective: avoid {agent} at {POI} and {agent} on_way"),
+        Form("what always holds", "objective: always any robot at {POI}"),
         Form("two who never meet", "objective: {agent} never_with {agent}"),
+        Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
     ),
     "REACH_OBJECTIVE": (Form("achieve something once", "reach_objective: do {event}"),),
 }

@@ -12,6 +12,7 @@ from pursue_gen.language.names import refs_of
 from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
+    Always,
     Avoid,
     Both,
     Choice,
@@ -202,6 +203,10 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     for event in scenario.events:
         if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
             lines.append(f"- {event.name} only while {condition_words(event.only_if)}")
+    if isinstance(scenario.safety, Always) and any(
+        ref.name == state.name for _, ref in names_in(scenario.safety.condition)
+    ):
+        lines.append(f"- must never be: {condition_words(scenario.safety.broken_if)}")
     return lines
 
 
@@ -224,7 +229,10 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     safety = scenario.safety
     if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
         other = safety.second.name if safety.first.name == agent.name else safety.first.name
-        lines.append(f"- must never be where {other} is")
+        where = "be where" if safety.place is None else f"be at {safety.place.name} while"
+        lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
+    if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
+        lines.append(f"- must never be: {condition_words(safety.broken_if)}")
     return lines
 
 

@@ -43,6 +43,7 @@ _USED: Dict[Tuple[str, str], str] = {
     ("ASSUME", "AT"): "POI",
     ("OBJECTIVE", "OBJECTIVE"): "agent",
     ("OBJECTIVE", "NEVER_WITH"): "agent",
+    ("OBJECTIVE", "AT"): "POI",
     ("OBJECTIVE", "IF"): "event",
     ("OBJECTIVE", "THEN"): "event",
     ("OBJECTIVE", "AVOID"): "event",
@@ -141,7 +142,10 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         behind = before is not None and not named[-1] and (
             before.type in _BEFORE_NAMES or (tokens[0].type, before.type) in _USED
         )  # fmt: skip
-        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind))
+        following = tokens[index + 1].type if index + 1 < len(tokens) else ""
+        opens = index == 2 and tokens[0].type == "OBJECTIVE"
+        begins = opens and token.type == "ALWAYS" and following != "NEVER_WITH"
+        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named
 
 

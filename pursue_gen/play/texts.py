@@ -9,7 +9,8 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
-from pursue_gen.language.scenario import Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
@@ -150,6 +151,8 @@ def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
         return f"{doing} ought to be done by now and cannot be, so nothing goes on"
     if isinstance(safety, Avoid):
         return f"{safety.event.name} has happened, which was to be avoided"
+    if isinstance(safety, Always):
+        return f"{condition_words(safety.broken_if)}, which must never be"
     if isinstance(safety, NeverWith):
         place = _place(setup, words, play, safety.first.name)
         return f"{safety.first.name} and {safety.second.name} are together, both {place}"

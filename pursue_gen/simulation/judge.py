@@ -12,6 +12,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
+from pursue_gen.simulation.meaning import Broken
 from pursue_gen.tga.names import is_assumption, is_doing, is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
@@ -34,8 +35,9 @@ class Judge:
     """Checks one mission. `problems`: what must never be; `off_model`: how often the world left the model."""
 
     def __init__(self, arena: Arena, commands: Commands, bad: Sequence[Tuple[str, str]], reaction: float,
-                 faults: bool = False, offset: float = 0.0) -> None:
-        """`reaction` in time units; `offset`: by how much (time units) the clock of a controller may be wrong."""
+                 faults: bool = False, offset: float = 0.0, broken: Optional[Broken] = None) -> None:
+        """`reaction` in time units; `offset`: by how much (time units) the clock of a controller may be wrong;
+        `broken`: what an objective on a condition means, directly."""
         self.problems: List[str] = []
         self.off_model = 0
         self.steps: List[TakenStep] = []
@@ -49,6 +51,7 @@ class Judge:
         self._moved = self._decided_since = 0.0
         self._zeros: Dict[str, float] = {}
         self._ordered: Set[Tuple[str, int]] = set()
+        self._broken, self._was_broken = broken, False
         self.lateness = 0.0
         """The time units for which a command was due at most before something happened; counted with faults only."""
         self.latest = ""
@@ -66,6 +69,7 @@ class Judge:
     def on_state(self, state: SystemState, now: float) -> None:
         """The observer publishes a state, at this moment (seconds)."""
         before, self._before = self._before, state
+        self._check_condition(state)
         if self._faults and before is not None and state.seq != before.seq:
             self.note_lateness(before, now)
             if state.plan != before.plan:
@@ -85,6 +89,18 @@ class Judge:
             self._problem(f"state {state.seq} differs from the one before, but nothing has happened")
         if state.status != "waiting":
             self._check_clocks(state, now)
+
+    def _check_condition(self, state: SystemState) -> None:
+        """A mission is lost if and only if the condition of its objective says so, in the next state at the latest."""
+        if self._broken is None or state.seq == 0:
+            return
+        broken = self._broken(state.locations, state.values)
+        lost = any(state.locations.get(name) == location for name, location in self._bad)
+        if lost and not broken:
+            self._problem(f"state {state.seq} counts as lost, but the condition of the objective is not broken there")
+        elif self._was_broken and not lost:
+            self._problem(f"the objective is broken before state {state.seq}, which does not count as lost")
+        self._was_broken = broken and not lost
 
     def note_lateness(self, state: SystemState, now: float) -> None:
         """Takes that nothing has happened in the state until now. While a mission holds its commands are late, too."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Mapping
+from typing import Callable, Mapping, Optional
 
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Always, Scenario
 from pursue_gen.tga import names
 
 
@@ -36,3 +36,16 @@ def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str]
     else:
         here = {names.doing(condition.event.name, poi.name) for poi in scenario.pois}
     return any(place in here for place in places)
+
+
+Broken = Callable[[Mapping[str, str], Mapping[str, int]], bool]
+"""From the locations of automata and the values of variables to whether an objective is broken there."""
+
+
+def broken_of(scenario: Scenario) -> Optional[Broken]:
+    """What says whether the scenario's objective on a condition is broken; None where it has no such objective."""
+    safety = scenario.safety
+    if not isinstance(safety, Always):
+        return None
+    condition = safety.broken_if
+    return lambda locations, values: holds(condition, scenario, locations, values)

@@ -11,6 +11,7 @@ from pursue_gen.simulation.connections import Connections
 from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.planner import SimulatedPlanner
@@ -105,7 +106,9 @@ class SimulatedMission:
         self.lines: List[str] = []
         self._stage, self._settings, self._seed, self._record = stage, settings, seed, record
         bad = stage.solution.objective.bad
-        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, self.fault_plan.offset)
+        broken = broken_of(stage.scenario)
+        offset = self.fault_plan.offset
+        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, offset, broken)
         self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
         self._kind = kind_in_mission(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)

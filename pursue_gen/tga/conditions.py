@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
 
-from pursue_gen.language.clauses import TRUE, Clause, Clauses, Domains, Value, clauses_of, given
-from pursue_gen.language.conditions import Doing, atoms, conditions_of
+from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given
+from pursue_gen.language.conditions import AllOf, AnyOf, Condition, Doing, Not, atoms, conditions_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Clause as Tests
@@ -44,6 +44,11 @@ class Conditions:
     def beginning(self, event: str, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
         """What has to hold when the agent, which is there, does or begins the event; None: that it cannot."""
         return self._guard(self._events.get(event, ()), agent, where)
+
+    def ways_to_hold(self, condition: Condition) -> Tuple[Tuple[Tests, ...], ...]:
+        """Guards of which one holds if and only if the condition does; none for one that never does."""
+        found = (clauses_of(part, self.domains) for part in _alternatives(condition))
+        return tuple(self.tests(clauses) for clauses in found if clauses != NEVER)
 
     def _guard(self, clauses: Clauses, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
         rest = given(clauses, agent, where)
@@ -101,3 +106,12 @@ class Conditions:
         if value.kind == "way":
             return self._positions.going(value.where, value.what)
         return self._positions.at(value.where) if value.kind == "at" else self._positions.doing(value.where)
+
+
+def _alternatives(condition: Condition) -> Tuple[Condition, ...]:
+    """The parts of a disjunction, else the condition alone: guards of parts are smaller than that of the whole."""
+    if isinstance(condition, AnyOf):
+        return condition.parts
+    if isinstance(condition, Not) and isinstance(condition.part, AllOf):
+        return tuple(Not(part) for part in condition.part.parts)
+    return (condition,)

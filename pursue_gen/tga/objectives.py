@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.language.scenario import Avoid, NeverWith, Reach, Respond, Safety, Scenario
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Safety, Scenario
+from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.names import AT_RISK, CLOCK_OBJECTIVE, CLOCK_REACH, IDLE, LOSE, OBJECTIVE, REACH, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.positions import Positions
@@ -36,7 +37,9 @@ def reach_automaton(reach: Reach, happened: Happened) -> Automaton:
     return Automaton(REACH, (Location(_START), Location(_UNLOCKED, named=False), Location(_WIN)), _START, (unlock, win))
 
 
-def safety_automaton(safety: Safety, happened: Happened, positions: Positions) -> Automaton:
+def safety_automaton(
+    safety: Safety, happened: Happened, positions: Positions, conditions: Conditions
+) -> Automaton:
     """The automaton that goes to `lose` when the safety objective is broken."""
     locations: Tuple[Location, ...] = (Location(IDLE), Location(LOSE))
     if isinstance(safety, Respond):
@@ -45,6 +48,10 @@ def safety_automaton(safety: Safety, happened: Happened, positions: Positions) -
     if isinstance(safety, Avoid):
         lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
         return Automaton(OBJECTIVE, locations, IDLE, (lose,))
+    if isinstance(safety, Always):
+        broken = conditions.ways_to_hold(safety.broken_if)
+        edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)
+        return Automaton(OBJECTIVE, locations, IDLE, edges)
     return Automaton(OBJECTIVE, locations, IDLE, _never_with(safety, positions))
 
 
@@ -60,13 +67,19 @@ def _respond(safety: Respond, happened: Happened) -> Tuple[Edge, ...]:
 
 
 def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
-    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way."""
+    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way.
+
+    Where the objective names a place, that POI alone counts.
+    """
     shared: List[Tuple[int, int]] = [(positions.at(poi), positions.doing(poi)) for poi in positions.pois]
     shared += [
         (code, positions.going(b, a))
         for (a, b), code in positions.ways.items()
         if positions.pois[a] < positions.pois[b]
     ]
+
+    if safety.place is not None:
+        shared = [(positions.at(safety.place.name), positions.doing(safety.place.name))]
 
     def among(agent: str, codes: Tuple[int, int]) -> Clause:
         return tuple(Test(agent_position(agent), code) for code in codes)

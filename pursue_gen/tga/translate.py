@@ -36,7 +36,7 @@ def translate(scenario: Scenario) -> Network:
     states = states_automaton(scenario.states)
     automata = [states] if states else []
     automata += [assumed(agent_automaton(agent, around), scenario) for agent in scenario.agents]
-    automata += [safety_automaton(scenario.safety, happened, codes)] if scenario.safety else []
+    automata += [safety_automaton(scenario.safety, happened, codes, conditions)] if scenario.safety else []
     automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()

@@ -159,6 +159,16 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         {"event_rest": 'event "rest" only_if not (bot at a and bot on_way)'},
         [("PML232", 6, "this condition always holds", "delete it")],
     ),
+    ({"objective": "objective: avoid bot at a"}, [("PML234", 12, "lost before anything moves: bot is at a", "start")]),
+    ({"objective": "objective: always tired is_true"}, [("PML234", 12, "tired is false", "other values")]),
+    ({"objective": "objective: avoid man at a"}, [("PML230", 12, "man is never at a", "another place")]),
+    ({"objective": "objective: bot never_with man at a"}, [("PML230", 12, "man is never at a", "another place")]),
+    ({"objective": "objective: bot never_with man at c"}, [("PML110", 12, "there is no POI c", "declare it")]),
+    (
+        {"objective": "objective: bot never_with man at b", "agent_bot": BOT.replace("location a", "location b")},
+        [("PML174", 12, "both start in b", "somewhere else")],
+    ),
+    ({"objective": "objective: always bot at a or not bot at a"}, [("PML232", 12, "always holds", "delete it")]),
     # rules and dependencies
     ({"rule": 'rule "order": (work before hand) before work'}, [("PML160", 7, "names work twice", "each event once")]),
     ({"rule": 'rule "order": work before hand\nrule "back": hand before work'}, [

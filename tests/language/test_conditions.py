@@ -26,6 +26,8 @@ from pursue_gen.language.conditions import (
     names_in,
 )
 from pursue_gen.language.formatter import format_text
+from pursue_gen.language.scenario import Always, Avoid, NeverWith
+from pursue_gen.language.wording import objective_words
 from tests.conditions import CONDITIONS, SCENARIO, ref, with_only_if, without_places
 
 from .texts import findings, text
@@ -97,6 +99,27 @@ def test_a_line_that_begins_with_such_a_word_is_a_statement_of_its_own(word: str
     found = findings(text(more=f'{word} "x" location a'))
     assert [(finding.code, finding.span.line if finding.span else 0) for finding in found] == [("PML011", 14)]
     assert ("did you mean agent?" in (found[0].hint or "")) is (word == "robot")
+
+
+def test_objectives_on_conditions_are_read_and_told() -> None:
+    for words, told in (
+        ("avoid anna at hall", "It never holds that anna is at hall."),
+        ("always any robot at hall", "It always holds that any robot is at hall."),
+    ):
+        scenario = parse(SCENARIO + f"objective: {words}\n", "x.pur")
+        assert isinstance(scenario.safety, Always) and scenario.safety.holds is words.startswith("always")
+        assert objective_words(scenario)[0] == told
+    plain = parse(SCENARIO + "objective: avoid open\n", "x.pur").safety
+    assert isinstance(plain, Avoid) and plain.event.name == "open"
+    apart = parse(SCENARIO + "objective: anna never_with dora at yard\n", "x.pur")
+    assert isinstance(apart.safety, NeverWith) and apart.safety.place and apart.safety.place.name == "yard"
+    assert objective_words(apart)[0] == "anna and dora are never both at yard."
+
+
+def test_always_may_be_a_name() -> None:
+    text = 'poi "a" agent "always" location a agent "x" location a objective: always never_with x at a'
+    safety = parse(text, "x.pur").safety
+    assert isinstance(safety, NeverWith) and safety.first.name == "always"
 
 
 @given(CONDITIONS)

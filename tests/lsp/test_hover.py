@@ -84,6 +84,14 @@ def test_when_events_and_ways_are_open() -> None:
     assert "the agent stands there" in told("only_if man a", limited)
 
 
+def test_what_must_never_be() -> None:
+    safe = SMALL.replace("if work then hand within 20", "always man at b or tired is_false")
+    assert "must never be: not (man is at b or tired is false)" in told('agent "m', safe)
+    assert "must never be: not (man is at b or tired is false)" in told('state "', safe)
+    apart = SMALL.replace("if work then hand within 20", "bot never_with man at a")
+    assert "must never be at a while man is there" in told('agent "b', apart)
+
+
 def test_who_is_busy_while_an_event_of_two_lasts() -> None:
     lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
     assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)

@@ -9,6 +9,8 @@ import pytest
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
+from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.mission import GOAL, HELD, SAFE, Settings, simulate_mission
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.options import SolveOptions
@@ -16,7 +18,8 @@ from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options
-from pursue_runtime.state import STOPPED
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.state import STOPPED, SystemState
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 STATUE = (SCENARIOS / "museum" / "guarded_statue.pur").read_text(encoding="utf-8")
@@ -38,6 +41,25 @@ agent "warden" controllable location entrance can_do inspect, shut
 agent "burglar" mobile 1 location street can_do steal
 objective: avoid steal
 """
+
+
+EARLY = """\
+poi "a"
+poi "b"
+poi "c"
+connect a and b distance 9
+connect a and c distance 1
+event "work" location c duration 2
+agent "bot" controllable mobile 1 location a can_do work
+agent "visitor" mobile 1 location b
+objective: avoid any robot at a and visitor at a
+reach_objective: do work after 3
+"""
+SHIFT = (SCENARIOS / "museum" / "night_shift.pur").read_text(encoding="utf-8")
+CORRIDOR = (SCENARIOS / "hotel" / "quiet_corridor.pur").read_text(encoding="utf-8")
+
+
+MEETING = "avoid any robot at corridor and guest at corridor"
 
 
 def is_won(text: str, engine: str) -> bool:
@@ -69,6 +91,59 @@ def test_what_the_condition_decides(text: str, condition: str, won: bool, withou
     assert (is_won(text, engine), is_won(text.replace(condition, ""), engine)) == (won, without)
 
 
+@pytest.mark.parametrize(
+    ("text", "old", "new", "won", "then"),
+    [
+        (SHIFT, "any robot at gallery", "first at gallery", True, False),
+        (CORRIDOR, MEETING, "bot never_with guest at stairs", False, True),
+        (CORRIDOR, MEETING, "bot never_with guest at corridor", False, False),
+    ],
+    ids=["shift", "corridor", "never_with"],
+)
+def test_what_the_objective_decides(text: str, old: str, new: str, won: bool, then: bool) -> None:
+    assert old in text
+    assert (is_won(text, "native"), is_won(text.replace(old, new), "native")) == (won, then)
+
+
+def test_a_lost_objective_is_told_with_its_condition() -> None:
+    explanation = explain(parse(CORRIDOR, "x.pur", "x"), DEFAULT)
+    assert "any robot is at corridor and guest is at corridor, which must never be" in str(explanation)
+
+
+def test_the_observer_ends_a_mission_whose_condition_is_broken() -> None:
+    """The visitor is back sooner than the model allows, while the robot is still there: the mission is lost."""
+    read = parse(EARLY, "x.pur", "x")
+    stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
+    judge = Judge(stage.arena, stage.commands, stage.solution.objective.bad, stage.reaction, True, 0.0, broken_of(read))
+    mission = Mission(stage.model, stage.cover, lambda level, text: None)
+    states: "list[tuple[SystemState, float]]" = []
+    for now, word in ((0.0, "_start_"), (1.3, "visitor_b2a"), (1.4, "visitor_going_b_to_a2a")):
+        states += [(state, now) for state in mission.on_word(word, now)]
+    for state, now in states:
+        judge.on_state(state, now)
+    last, _ = states[-1]
+    assert (last.status, last.locations["obj"]) == ("lost", "lose")
+    assert not [problem for problem in judge.problems if "objective" in problem or "lost" in problem]
+
+
+def test_the_judge_knows_what_the_condition_means() -> None:
+    read = parse(EARLY, "x.pur", "x")
+    stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
+    at = {automaton.name: automaton.initial for automaton in stage.model.automata}
+    first = SystemState(1, 0.0, at, dict(stage.model.variables), dict.fromkeys(stage.model.clocks, 0.0))
+
+    def problems(*places: "dict[str, str]") -> str:
+        judge = Judge(stage.arena, stage.commands, stage.solution.objective.bad, 0.1, True, 0.0, broken_of(read))
+        for number, place in enumerate(places, start=1):
+            judge.on_state(first._replace(seq=number, locations={**at, **place}), 0.0)
+        return " ".join(judge.problems)
+
+    assert "does not count as lost" in problems({}, {"visitor": "a"}, {"visitor": "a"})
+    assert "counts as lost, but" in problems({}, {"obj": "lose"})
+    fine = problems({}, {"visitor": "a"}, {"visitor": "a", "obj": "lose"})
+    assert "lost" not in fine
+
+
 def test_the_explanation_names_the_condition() -> None:
     read = parse(DOOR, "x.pur", "x")
     explanation = explain(read, DEFAULT)
@@ -76,7 +151,7 @@ def test_the_explanation_names_the_condition() -> None:
     assert "the way between desk and kitchen without only_if clerk at desk" in " ".join(labels)
 
 
-@pytest.mark.parametrize("text", [STATUE, GATE], ids=["statue", "gate"])
+@pytest.mark.parametrize("text", [STATUE, GATE, SHIFT], ids=["statue", "gate", "shift"])
 def test_missions_with_random_opponents_end_well(text: str) -> None:
     """The judge takes each step for wrong that is not one of the network, and each command that is not held."""
     read = parse(text, "x.pur", "x")

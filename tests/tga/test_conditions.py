@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pursue_gen.language import parse
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.proof.moves import Arena, State
-from pursue_gen.simulation.meaning import holds
+from pursue_gen.simulation.meaning import broken_of, holds
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.uppaal import read_network, write_network
@@ -55,6 +55,31 @@ def test_an_event_or_a_way_is_open_exactly_while_its_condition_holds(condition: 
         without = free.situation((state[0], tuple(state[1][k] for k in kept)))
         possible = {m.moves[0].edge.sync.channel if m.moves[0].edge.sync else "" for m in without.moves}
         assert sent == {channel for channel in possible if told or channel not in limited}
+
+
+@given(CONDITIONS, st.booleans())
+@settings(max_examples=40)
+def test_an_objective_can_be_lost_exactly_where_its_condition_is_broken(condition: Condition, always: bool) -> None:
+    text = SCENARIO + f"objective: {'always' if always else 'avoid'} {condition_text(condition)}\n"
+    scenario = parse(text, "x.pur")
+    network, broken = translate(scenario), broken_of(scenario)
+    assert broken is not None
+    names, variables = [a.name for a in network.automata], [name for name, _ in network.variables]
+    for (places, values), sent in states_of(network).items():
+        locations = dict(zip(names, places))
+        if locations["obj"] == "idle":
+            told = broken(locations, dict(zip(variables, values)))
+            assert ("" in sent) >= told
+            moves = Arena(network, 1, idle_moves=True).situation((places, values)).moves
+            assert any(move.moves[0].edge.target == "lose" and not move.controllable for move in moves) is told
+
+
+def test_a_place_of_never_with_is_the_only_one_that_counts() -> None:
+    text = SCENARIO + "objective: anna never_with dora at shop\n"
+    (edge,) = translate(parse(text, "x.pur")).automaton("obj").edges
+    assert [sorted((test.variable, test.value) for test in clause) for clause in edge.guard.integers] == [
+        [("Panna", -22), ("Panna", 2)], [("Pdora", -22), ("Pdora", 2)]
+    ]  # fmt: skip
 
 
 def test_networks_without_conditions_have_no_more_variables() -> None:
