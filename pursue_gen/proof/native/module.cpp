@@ -90,6 +90,7 @@ Watch::Poll polling(const py::function& poll) {
 // Calls f with a zone type that has room for the clocks, with 32-bit bounds, or 64-bit ones if `wide` is set.
 template <class F>
 auto with_zones(int dim, bool wide, F f) {
+#ifndef PURSUE_ONE_SIZE  // as in the solver
     if (!wide) {
         if (dim <= 4) return f(Dbm<4, std::int32_t>{});
         if (dim <= 8) return f(Dbm<8, std::int32_t>{});
@@ -97,6 +98,7 @@ auto with_zones(int dim, bool wide, F f) {
     }
     if (dim <= 8) return f(Dbm<8, std::int64_t>{});
     if (dim <= 16) return f(Dbm<16, std::int64_t>{});
+#endif
     if (dim <= 40) return f(Dbm<40, std::int64_t>{});
     throw std::overflow_error("more than 39 clocks");
 }

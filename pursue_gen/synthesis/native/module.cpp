@@ -198,6 +198,7 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
     const int dim = game.clocks + 1;
+#ifndef PURSUE_ONE_SIZE  // one size of matrices for all games: slower, and built in half the time
     if (fits<std::int16_t>(game)) {
         if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget);
         if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, small_budget);
@@ -205,10 +206,13 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
         if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, small_budget);
         if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, small_budget);
     }
+#endif
     if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
+#ifndef PURSUE_ONE_SIZE
     if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget);
     if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget);
     if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget);
+#endif
     if (dim <= 128) return solve_with<128, wide_t>(game, limits, small_budget);
     throw std::invalid_argument("more than 127 clocks");
 }
