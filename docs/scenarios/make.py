@@ -195,7 +195,7 @@ def _same(part: str, statement: str) -> bool:
     """True if both state something on the same thing."""
     words = statement.split()
     count = _SAME.get(words[0], 2)
-    return part.split()[:count] == words[:count]
+    return [word.rstrip(":") for word in part.split()[:count]] == [word.rstrip(":") for word in words[:count]]
 
 
 # The index ------------------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.own_turns import own_turns
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
 
@@ -101,7 +102,10 @@ def words_of(scenario: Scenario, network: Network) -> Words:
             clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s arrival at {assumption.place.name}"
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     turns = {}
-    for rule in scenario.rules:
+    for own in own_turns(scenario):
+        for location in own.order.locations:
+            turns[own.name, location.name] = _turn(own.order, location.name)
+    for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
         for location in automaton.locations:
             turns[rule.name, location.name] = _turn(automaton, location.name)

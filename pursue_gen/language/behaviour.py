@@ -203,6 +203,8 @@ class _Course:
         self.waits: Dict[str, List[Tuple[Rule, Earlier]]] = {}
         """For each event the rules that name it, with the events after which it is its turn; none: at the start."""
         for rule in scenario.rules:
+            if rule.each:
+                continue  # who is bound by it waits for what it does itself; others may not be bound
             for name, before in predecessors(rule).items():
                 self.waits.setdefault(name, []).append((rule, before))
         self.needs: Dict[str, List[Dependency]] = {}
@@ -252,6 +254,22 @@ class _Course:
         return f"{name} waits for a state that never has the value it needs"
 
 
+def _each(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Rules for each robot or agent that bind none, or one who cannot do what comes next."""
+    for rule in scenario.rules:
+        bound = scenario.bound_by(rule)
+        if rule.each and not bound:
+            who = rule.each
+            message = f"the rule {rule.name} is for each {who}, but no {who} can do one of its events"
+            yield error("PML205", message, rule.span, f"let one do its events, or delete for each {who}")
+        for agent in bound:
+            own = frozenset(ref.name for ref in agent.can_do)
+            if not _can_turn(rule.body, own):
+                missing = ", ".join(ref.name for ref in refs_of(rule.body) if ref.name not in own)
+                message = f"{agent.name} cannot end a round of the rule {rule.name}: it cannot do {missing}"
+                yield warning("PML206", message, agent.span, f"add {missing} behind its can_do, if it is to go on")
+
+
 def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     """Rules that name an event twice or can never turn, and dependencies that can never hold."""
     sound = True
@@ -272,6 +290,7 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             seen.add(ref.name)
     if not sound:
         return
+    yield from _each(scenario)
     course = _Course(scenario)
     possible = course.possible()
     for rule in scenario.rules:

@@ -95,6 +95,8 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
         yield rule.name, f"the rule {rule.name}", rule.span
         yield "P" + rule.name, f"the position of the rule {rule.name}", rule.span
         yield "C" + rule.name, f"the clock of the rule {rule.name}", rule.span
+        for agent in scenario.bound_by(rule):
+            yield f"P{rule.name}_{agent.name}", f"the turn of {agent.name} in the rule {rule.name}", rule.span
     for state in scenario.states:
         yield state.name, f"the state {state.name}", state.span
         yield "S" + state.name, f"the value of the state {state.name}", state.span

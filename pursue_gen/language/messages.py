@@ -15,7 +15,8 @@ FORMS: Dict[str, str] = {
     "CONNECT": "connect a and b distance 3 one_way only_if open is_true (one_way and only_if are optional)",
     "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times only_if open is_true '
              "(all but the name is optional; or: duration 6 to 9)",
-    "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest)',
+    "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest; '
+            'or: rule "order" for each robot: …)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
@@ -33,26 +34,24 @@ STATEMENTS = frozenset(FORMS) | {"TAIL"}
 KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
     "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
-    "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to",
-    "TAKES": "takes", "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way",
-    "LOCATION": "location",
-    "DURATION": "duration", "AT_MOST": "at_most", "TIMES": "times",
-    "COLLABORATIVE": "collaborative", "TOGETHER": "together", "BEFORE": "before", "OR": "or",
-    "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
-    "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
-    "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
-    "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
-    "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between",
-    "LEAVES": "leaves", "NEVER": "never", "AT": "at",
-    "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
+    "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
+    "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
+    "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
+    "EACH": "each", "BEFORE": "before", "OR": "or", "INITIALLY": "initially", "TRUE": "true", "FALSE": "false",
+    "TRUE_IF": "true_if", "FALSE_IF": "false_if", "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false",
+    "HUMAN": "human", "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to",
+    "IF": "if", "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do",
+    "AFTER": "after", "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
+    "NEVER": "never", "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any",
+    "NO": "no", "ROBOT": "robot",
 }  # fmt: skip
 """The words of the language, by token."""
 
 MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
-    "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between",
-    "LEAVES": "leaves", "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
-    "ROBOT": "robot", "ALWAYS": "always",
+    "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
+    "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
+    "ALWAYS": "always", "EACH": "each",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 

@@ -217,8 +217,9 @@ class _Builder:
         who = pml.Ref(_bare(agent), span_of(agent, self.file)) if quoted else self._ref(agent)
         return pml.Travel(who, self._ref(a), self._ref(b), *self._window(takes), span)
 
-    def _rule(self, name: Token, body: Any, span: Span) -> pml.Rule:
-        return pml.Rule(_bare(name), self._body(body), span_of(name, self.file))
+    def _rule(self, name: Token, each: Any, body: Any, span: Span) -> pml.Rule:
+        who = "" if each is None else str(each.data)[len("each_") :]
+        return pml.Rule(_bare(name), self._body(body), span_of(name, self.file), who)
 
     def _body(self, tree: Any) -> pml.RuleBody:
         if tree.data == "ref":

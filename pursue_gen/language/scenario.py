@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Optional, Tuple, Union
+from typing import Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition, Not
@@ -145,11 +145,16 @@ RuleBody = Union[Ref, Sequence, Choice, Both]
 
 @dataclass(frozen=True)
 class Rule:
-    """A cyclic order of events: each event that a rule names may happen only when it is its turn."""
+    """A cyclic order of events: each event that a rule names may happen only when it is its turn.
+
+    `each`: every robot ("robot"), or every agent ("agent"), that can do one of its events has its own turn; "": all
+    have one turn.
+    """
 
     name: str
     body: RuleBody
     span: Span
+    each: str = ""
 
 
 @dataclass(frozen=True)
@@ -334,6 +339,20 @@ class Scenario:
     reach: Optional[Reach]
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
+
+    def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
+        """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""
+
+        def names(body: RuleBody) -> Iterator[str]:
+            if isinstance(body, Ref):
+                yield body.name
+            else:
+                yield from names(body.first)
+                yield from names(body.second)
+
+        named = set(names(rule.body)) if rule.each else set()
+        able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
+        return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
 
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
         """From and to of each movement that the agent can make, and between which times it arrives."""

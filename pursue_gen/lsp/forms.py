@@ -35,6 +35,8 @@ MEANINGS: Dict[str, str] = {
     "TOGETHER": "Whoever takes part is busy until it ends. Without it, only the one who does it is.",
     "AT_MOST": "How many times it happens in the whole mission, and no more.",
     "TIMES": "In the whole mission.",
+    "FOR": "A rule for each of several: each of them has its own turn.",
+    "EACH": "A rule for each of several: each of them has its own turn.",
     "BEFORE": "First this, then that, and then the first again.",
     "OR": "Either of the two, round after round; in a condition: at least one holds.",
     "INITIALLY": "The value at the start, true or false.",
@@ -99,6 +101,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     ),
     "RULE": (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
+        Form("events in turn, for each robot", 'rule "{=order}" for each robot: {event} before {event}'),
         Form("either of two events", 'rule "{=choice}": {event} or {event}'),
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),
     ),

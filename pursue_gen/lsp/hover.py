@@ -167,6 +167,8 @@ def _wanted(scenario: Scenario, event: Event) -> List[str]:
 
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
     lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
+    if rule.each:
+        lines.append(f"- each of these has its own turn: {_all(a.name for a in scenario.bound_by(rule)) or 'nobody'}")
     names = _all(ref.name for ref in refs_of(rule.body))
     return [*lines, f"- {names} can happen only when it is their turn"]
 

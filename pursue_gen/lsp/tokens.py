@@ -23,6 +23,8 @@ _USED: Dict[Tuple[str, str], str] = {
     ("CONNECT", "AND"): "POI",
     ("EVENT", "LOCATION"): "POI",
     ("RULE", "RULE"): "event",
+    ("RULE", "ROBOT"): "event",
+    ("RULE", "AGENT"): "event",
     ("RULE", "BEFORE"): "event",
     ("RULE", "OR"): "event",
     ("RULE", "AND"): "event",

@@ -16,6 +16,7 @@ from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.own_turns import own_turns
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,10 @@ def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]
     for state in setup.scenario.states:
         value = values.get(names.state_value(state.name), int(state.initially))
         yield f"  {state.name} is {'true' if value else 'false'}"
-    for rule in setup.scenario.rules:
+    for own in own_turns(setup.scenario):
+        place = own.order.locations[values.get(own.variable, 0)].name
+        yield f"  rule {own.name}: {words.network.place(own.name, place)}"
+    for rule in (rule for rule in setup.scenario.rules if not rule.each):
         yield f"  rule {rule.name}: {_place(setup, words, play, rule.name)}"
     for event, _ in counted(setup.scenario):
         yield f"  so far {_place(setup, words, play, names.count(event.name))}"

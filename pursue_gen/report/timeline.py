@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Mapping, Tuple
+from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
@@ -13,6 +13,7 @@ from pursue_gen.report.recording import Recording, Stay, Step, ending_text, last
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
+from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
 
@@ -118,6 +119,7 @@ def _bar_label(words: Words, location: str) -> str:
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
     lanes = [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules)]
+    lanes += [own.name for own in own_turns(scenario)]
     return [*lanes, *(names.count(event.name) for event, _ in counted(scenario)), "deadline"]
 
 
@@ -162,10 +164,12 @@ def _lanes(
         changes = ((step.at, str(step.values.get(names.state_value(state.name), 0))) for step in recording.steps)
         found = [stay for stay in lasting(recording, changes) if stay.what == "1"]
         lanes.append(Lane(state.name, tuple(_box(scale, stay, "true") for stay in found)))
-    for rule in recording.scenario.rules:
-        found = list(stays(recording, rule.name))
-        turns = (words.place(rule.name, stay.what).replace("next: the end of ", "during ") for stay in found)
-        lanes.append(Lane(rule.name, tuple(_line(scale, stay, turn) for stay, turn in zip(found, turns))))
+    for rule in (rule for rule in recording.scenario.rules if not rule.each):
+        lanes.append(_turns(rule.name, list(stays(recording, rule.name)), words, scale))
+    for own in own_turns(recording.scenario):
+        places = [location.name for location in own.order.locations]
+        changes = ((step.at, places[step.values.get(own.variable, 0)]) for step in recording.steps)
+        lanes.append(_turns(own.name, lasting(recording, changes), words, scale))
     for event, _ in counted(recording.scenario):
         name = names.count(event.name)
         counts = tuple(_line(scale, stay, words.place(name, stay.what)) for stay in stays(recording, name))
@@ -202,6 +206,12 @@ def _agent(
         under = text(x, 50, label, "pg-small pg-strong") if room > free else ""
         free = x + len(label) * _LETTER / 2 if under else free
         yield tag("g", tooltip, shown, under, class_="instant")
+
+
+def _turns(name: str, found: Sequence[Stay], words: Words, scale: Scale) -> Lane:
+    """What a rule waited for, and what went on."""
+    turns = (words.place(name, stay.what).replace("next: the end of ", "during ") for stay in found)
+    return Lane(name, tuple(_line(scale, stay, turn) for stay, turn in zip(found, turns)))
 
 
 def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:

@@ -74,6 +74,11 @@ def rule_turn(rule: str) -> str:
     return f"P{rule}"
 
 
+def own_turn(rule: str, agent: str) -> str:
+    """The variable that holds the number of an agent's own turn in a rule."""
+    return f"P{rule}_{agent}"
+
+
 def state_value(state: str) -> str:
     """The variable that holds a state, 0 or 1."""
     return f"S{state}"

@@ -14,6 +14,7 @@ from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
+from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.positions import positions
 from pursue_gen.tga.rules import rule_automaton
 from pursue_gen.tga.states import states_automaton
@@ -27,7 +28,8 @@ def translate(scenario: Scenario) -> Network:
     """
     codes = positions(scenario.pois, scenario.connections)
     lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
-    rules = [rule_automaton(rule, lasting) for rule in scenario.rules]
+    rules = [rule_automaton(rule, lasting) for rule in scenario.rules if not rule.each]
+    own = tuple(own_turns(scenario))
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
     turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
     conditions = Conditions(scenario, codes)
@@ -35,12 +37,13 @@ def translate(scenario: Scenario) -> Network:
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
-    automata += [assumed(agent_automaton(agent, around), scenario) for agent in scenario.agents]
+    automata += [assumed(bound(agent_automaton(agent, around), own), scenario) for agent in scenario.agents]
     automata += [safety_automaton(scenario.safety, happened, codes, conditions)] if scenario.safety else []
     automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario)
+    variables += tuple((turn.variable, 0) for turn in own)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network
@@ -67,7 +70,7 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
 
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:
-    variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules]
+    variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules if not rule.each]
     variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
     variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
     variables += [(names.rule_turn(names.count(event.name)), 0) for event, _ in counted(scenario)]

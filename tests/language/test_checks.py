@@ -68,6 +68,15 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"event_rest": 'event "rest" at_most 0 times'}, [("PML204", 6, "expected 1 to 100", "avoid rest")]),
     ({"event_rest": 'event "rest" at_most 101 times'}, [("PML204", 6, "at_most 101 times", "or delete it")]),
     # rules
+    ({"rule": 'rule "order" for each robot: (work or hand) before rest'}, [
+        ("PML206", 10, "bot cannot end a round of the rule order: it cannot do rest", "add rest behind"),
+    ]),
+    ({"rule": 'rule "order" for each agent: (work and hand) before rest'}, [
+        ("PML206", 10, "it cannot do rest", ""), ("PML206", 11, "man cannot end", "add work, hand behind"),
+    ]),
+    ({"rule": 'rule "order" for each robot: rest or nap', "event_rest": 'event "rest" event "nap"',
+      "agent_man": MAN.replace("rest", "rest, nap")}, [("PML205", 7, "no robot can do one of its events", "let one")]),
+    ({"rule": 'rule "order" for each robot: work before hand'}, []),
     ({"rule": 'rule "order": (work and rest) before hand'}, []),
     (
         {"more": " ".join([*EVENTS, 'rule "all": ' + ALL, f'agent "x" location a can_do {TEN}'])},
@@ -212,7 +221,7 @@ def test_a_fault_is_reported_with_its_place_and_a_way_out(
         assert finding.hint and hint in finding.hint
 
 
-WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML158", "PML180", "PML190", "PML232"}
+WARNINGS = {"PML120", "PML121", "PML147", "PML152", "PML157", "PML158", "PML180", "PML190", "PML206", "PML232"}
 
 
 def test_only_what_can_be_meant_is_a_warning() -> None:

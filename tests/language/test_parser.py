@@ -80,6 +80,24 @@ def test_and_joins_parts_of_a_rule() -> None:
     ]  # fmt: skip
 
 
+def test_a_rule_is_for_all_or_for_each() -> None:
+    source = text(rule="""
+        rule "one": work before hand
+        rule "two" for each robot: work before hand
+        rule "three" for each
+            agent: work before hand
+    """)
+    scenario = parse(source, "test.pur")
+    assert [rule.each for rule in scenario.rules] == ["", "robot", "agent"]
+    bound = [scenario.bound_by(rule) for rule in scenario.rules]
+    assert [[agent.name for agent in agents] for agents in bound] == [[], ["bot"], ["bot"]]
+
+
+def test_each_and_robot_may_be_names() -> None:
+    source = 'poi "robot" event "each" agent "bot" controllable location robot can_do each\nagent "man" location robot'
+    assert [agent.name for agent in parse(source, "test.pur").agents] == ["bot", "man"]
+
+
 def test_rules_nest() -> None:
     body = parse('rule "r": ((a or b) or c) before (d or e)', "test.pur").rules[0].body
     assert isinstance(body, Sequence)

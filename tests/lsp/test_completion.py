@@ -36,6 +36,7 @@ WHOLE = SMALL + "{}"
         ('rule "new": |', ["work", "hand", "rest"]),
         ('rule "new": (work before |', ["hand", "rest"]),
         ('rule "new": (work and |', ["hand", "rest"]),
+        ('rule "new" for each robot: |', ["work", "hand", "rest"]),
         ('state "new": initially true, true_if |', ["work", "hand", "rest"]),
         ("stateDependency: |", ["work", "hand", "rest"]),
         ("stateDependency: work only_if |", ["tired"]),

@@ -62,6 +62,12 @@ def test_what_a_rule_with_and_says() -> None:
     assert "its turn comes after work and rest" in told('event "ha', both)
 
 
+def test_who_has_its_own_turn_in_a_rule() -> None:
+    each = SMALL.replace('rule "order":', 'rule "order" for each robot:')
+    assert "each of these has its own turn: bot" in told('rule "', each)
+    assert "own turn" in told("for ea", each) and "own turn" in told("each ro", each)
+
+
 def test_windows_and_travel_times() -> None:
     more = SMALL.replace("duration 3", "duration 3 to 5") + "travel bot from a to b takes 5 to 8\n"
     assert "takes 3 to 5 units of time" in told('event "wo', more)

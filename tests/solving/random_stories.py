@@ -66,7 +66,7 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
         del objectives[1]
     lines = [f'poi "{place}"' for place in places]
     lines += [f"connect {a} and {b} distance {distance}{_one_way(draw)}" for a, b, distance in ways]
-    lines += events + [f'rule "r{number}": {rule}' for number, rule in enumerate(rules)] + states
+    lines += events + [f'rule "r{number}"{_each(draw)}: {rule}' for number, rule in enumerate(rules)] + states
     text = "\n".join([*lines, *agents, *objectives, ""])
     try:
         return text, parse(text, "story.pur", "story")
@@ -77,6 +77,10 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
 
 def _where(draw: st.DrawFn, places: List[str]) -> str:
     return f" location {draw(st.sampled_from(places))}" if draw(st.integers(0, 3)) else ""
+
+
+def _each(draw: st.DrawFn) -> str:
+    return "" if draw(st.integers(0, 7)) else draw(st.sampled_from((" for each robot", " for each agent")))
 
 
 def _rarely(draw: st.DrawFn) -> str:

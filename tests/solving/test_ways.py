@@ -48,6 +48,8 @@ TRAVEL = "travel visitor from gallery to hall takes 12 to 20\n"
         ("hotel/early_breakfast", " to 9", "", False),
         ("hotel/one_call", " at_most 1 times", "", True),
         ("museum/extinguisher", " at_most 2 times", "", False),
+        ("hotel/laundry", " for each robot", "", True),
+        ("airport/own_load", " for each robot", "", False),
         ("airport/turnaround", "fuel and load", "fuel before load", True),
         ("hotel/room_service", "takeTowels and takeSoap", "takeTowels or takeSoap", False),
     ],
@@ -63,6 +65,8 @@ WON = [
     text("museum/slow_visitor").replace("duration 2", "duration 1 to 4"),
     text("hotel/early_breakfast").replace("within 17", "within 20"),
     text("airport/turnaround"),
+    text("hotel/laundry"),
+    text("airport/own_load").replace("within 6", "within 9"),
     text("hotel/one_call"),
     text("museum/extinguisher").replace('"fire"', '"fire" at_most 2 times'),
     text("hotel/room_service").replace("within 22", "within 24"),
@@ -88,3 +92,17 @@ def test_ends_are_drawn_from_the_whole_window() -> None:
             begun = step.at if step.event == "boil" else begun
             lasted += [step.at - begun] if step.event == "boilDONE" else []
     assert 4 < min(lasted) < 5 and 8 < max(lasted) < 9.5
+
+
+def test_who_has_loaded_unloads() -> None:
+    """In recorded missions each unload is of the cart that loaded last before it and has not unloaded since."""
+    read = parse(text("airport/own_load").replace("within 6", "within 9"), "x.pur", "x")
+    case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
+    for seed in range(10):
+        loaded = set()
+        for step in simulated(case, seed).steps:
+            if step.event == "load":
+                assert step.agent not in loaded
+                loaded.add(step.agent)
+            elif step.event == "unload":
+                loaded.remove(step.agent)

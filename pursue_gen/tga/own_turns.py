@@ -1,0 +1,72 @@
+"""Rules for each robot: every agent that they bind has a turn of its own.
+
+A channel does not say who sends on it, so such a rule is no automaton that listens: the agent's own edges test and set
+the number of its turn, an edge for each turn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Iterator, List, Sequence, Tuple
+
+from pursue_gen.language.scenario import Rule, Scenario
+from pursue_gen.tga import names
+from pursue_gen.tga.network import Automaton, Edge, Guard, Test
+from pursue_gen.tga.rules import rule_automaton
+
+
+@dataclass(frozen=True)
+class OwnTurn:
+    """An agent's turn in a rule. `variable` holds the number of a location of `order`, which is no automaton of the
+    network: it says what leads from one number to the next.
+    """
+
+    rule: Rule
+    agent: str
+    variable: str
+    order: Automaton
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return f"{self.rule.name} of {self.agent}"
+
+
+def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
+    """The turns of all agents in rules for each of them, in the order of the rules."""
+    lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
+    for rule in scenario.rules:
+        for agent in scenario.bound_by(rule):
+            order, _ = rule_automaton(rule, lasting)
+            yield OwnTurn(rule, agent.name, names.own_turn(rule.name, agent.name), order)
+
+
+def bound(automaton: Automaton, turns: Sequence[OwnTurn]) -> Automaton:
+    """The automaton of an agent that keeps to its turns; those of other agents change nothing."""
+    edges = list(automaton.edges)
+    for turn in turns:
+        if turn.agent == automaton.name:
+            edges = [one for edge in edges for one in _in_turn(edge, turn)]
+    return replace(automaton, edges=tuple(edges))
+
+
+def _in_turn(edge: Edge, turn: OwnTurn) -> List[Edge]:
+    """The edge, once for each number at which it is its turn; alone where the rule does not name what it does."""
+    if edge.sync is None or not edge.sync.sends:
+        return [edge]
+    steps = _steps(turn, edge.sync.channel)
+    return [
+        replace(
+            edge,
+            guard=Guard(edge.guard.clocks, (*edge.guard.integers, (Test(turn.variable, now),))),
+            assign=(*edge.assign, (turn.variable, then)),
+        )
+        for now, then in steps
+    ] or [edge]
+
+
+def _steps(turn: OwnTurn, channel: str) -> List[Tuple[int, int]]:
+    """From which number to which one the channel leads."""
+    numbers = {location.name: number for number, location in enumerate(turn.order.locations)}
+    steps = (edge for edge in turn.order.edges if edge.sync is not None and edge.sync.channel == channel)
+    return [(numbers[step.source], numbers[step.target]) for step in steps]
