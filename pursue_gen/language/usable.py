@@ -9,11 +9,6 @@ from itertools import chain, count
 from typing import Container
 
 GENERATED = frozenset("observer UI controllerObj controller simulator reachObj obj states".split())
-_UPPAAL = frozenset(
-    "chan clock bool int commit const urgent broadcast init process state guard sync assign system trans deadlock "
-    "imply forall exists typedef struct rate before_update after_update meta priority progress scalar select void "
-    "default switch case enum string double hybrid dynamic spawn exit branchpoint".split()
-)
 _FORM = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LONGEST = 60
 """Letters of a name: with what is added to it a name becomes a file name and a topic."""
@@ -21,7 +16,7 @@ _PREFIXES = ("going_", "doing_")
 
 
 def well_formed(name: str) -> bool:
-    """True for a name that can stand in a ROS topic, Python and UPPAAL."""
+    """True for a name that can stand in a ROS topic, Python and UPPAAL (whose own words get another name there)."""
     return _FORM.fullmatch(name) is not None
 
 
@@ -33,8 +28,6 @@ def reserved(name: str, words: Container[str]) -> str:
         return f"{name} is a word of the language and cannot be a name"
     if keyword.iskeyword(name):
         return f"{name} is a word of Python and cannot be a name"
-    if name in _UPPAAL:
-        return f"{name} is a word of UPPAAL's models and cannot be a name"
     if name.endswith("DONE"):
         return f"{name} ends in DONE, as the words for the ends of actions do"
     if name.startswith(_PREFIXES):

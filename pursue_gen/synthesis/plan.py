@@ -30,6 +30,7 @@ from pursue_gen.synthesis.plan_text import (
 )
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Edge, Guard, Kind, Network, Objective
+from pursue_gen.tga.uppaal_words import with_own_names
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
@@ -236,7 +237,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     `file` is the name that errors give. Raises PursueError where there is no strategy (exit status 4 when the file says
     that the property does not hold), where the text is cut or damaged, and where it does not fit the network.
     """
-    text = _ESCAPE.sub("", text).replace("\r\n", "\n")
+    text = with_own_names(_ESCAPE.sub("", text).replace("\r\n", "\n"), network)
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
