@@ -55,7 +55,7 @@ MISTAKES = {
     "PML122": changed('poi "a"', f'poi "a" //{POSE} man {POSE} bot [0, 1, 0, 0, 0, 0, 1]').replace('poi "b"', PLACED_B),
     "PML110 in a pose": changed('poi "a"', f'poi "a" //{POSE} bto {POSE}').replace('poi "b"', PLACED_B),
     "PML101": changed('poi "b"', 'poi "my b"').replace("location b", "location b"),
-    "PML102": re.sub(r"\btired\b", "exit", SMALL),
+    "PML102": re.sub(r"\btired\b", "lambda", SMALL),
     "PML103": SMALL + 'poi "a"\n',
     "PML110": changed("do hand", "do hnd"),
     "PML110 undeclared place": SMALL.replace('poi "b"\n', ""),
