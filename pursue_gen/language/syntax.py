@@ -197,8 +197,8 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
             from_follows = index + 2 < len(tokens) and tokens[index + 2].type == "FROM"
             ended = index == 0 or tokens[index - 1].type in _ENDS
             begins = goes_on or from_follows or (opens_line and (ended or following == "WORD"))
-        elif [one.type for one in tokens[max(0, index - 2) : index + 1]] == ["FOR", "EACH", "AGENT"]:
-            begins = False
+        elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
+            begins = False  # a rule is for each robot, or agent
         elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
         elif token.type in ("WORD", "ROBOT") and opens_line and index:

@@ -58,6 +58,14 @@ def test_one_statement_a_line_with_single_blanks() -> None:
     assert formatted(source) == f'poi "a"\npoi "b"\n\n{way}\n\nrule "r": (x or y) before z\n'
 
 
+def test_windows_limits_travel_times_and_rules_for_each() -> None:
+    source = 'event "e" duration 3   to 5 at_most 2\ntimes rule "r" for  each\nrobot :( x and y )before z '
+    source += 'travel  bot from a to b\ntakes 5 to 8 travel "bot" from b to a takes 3'
+    lines = ['event "e" duration 3 to 5 at_most 2 times', "", 'rule "r" for each robot: (x and y) before z', ""]
+    lines += ["travel bot from a to b takes 5 to 8", 'travel "bot" from b to a takes 3', ""]
+    assert formatted(source) == "\n".join(lines)
+
+
 def test_an_empty_line_stands_between_kinds_and_one_at_most_elsewhere() -> None:
     source = '\n\npoi "a"\n\n\n\npoi "b"\npoi "c"\n// ways\nconnect a and b distance 1\nevent "e"\n\n'
     expected = 'poi "a"\n\npoi "b"\npoi "c"\n\n// ways\nconnect a and b distance 1\n\nevent "e"\n'

@@ -65,7 +65,7 @@ def test_what_a_rule_with_and_says() -> None:
 def test_who_has_its_own_turn_in_a_rule() -> None:
     each = SMALL.replace('rule "order":', 'rule "order" for each robot:')
     assert "each of these has its own turn: bot" in told('rule "', each)
-    assert "own turn" in told("for ea", each) and "own turn" in told("each ro", each)
+    assert "own turn" in told("for ea", each) and "controllable and not human" in told("each ro", each)
 
 
 def test_windows_and_travel_times() -> None:
