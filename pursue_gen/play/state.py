@@ -193,13 +193,29 @@ def passed(play: PlayState, moment: Fraction) -> PlayState:
 
 
 def taken(setup: Setup, play: PlayState, move: JointMove, moment: Fraction, by: str) -> PlayState:
-    """The play after a move at a moment. Plans that cannot be carried out any more are dropped."""
+    """The play after a move at a moment. Plans that cannot be carried out any more are dropped.
+
+    Where the objective can be lost by nobody's doing then, as where two meet that must not, it is lost at once.
+    """
     there = after(play.entry, move, moment - play.since)
     status = WON if is_goal(setup.game, there.state) else LOST if is_bad(setup.game, there.state) else RUNNING
     deed = PlayedMove(moment, setup.owner(move), setup.word(move), by, there, move.edges)
     fresh = PlayState(there, moment, moment, status, (*play.deeds, deed))
+    lost = None if fresh.over else _broken(setup, fresh)
+    if lost is not None:
+        return taken(setup, fresh, lost, moment, OTHERS)
     kept = (plan for plan in play.plans if not (plan.agent == deed.agent and plan.word == deed.word))
     return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if possible(setup, fresh, plan)))
+
+
+def _broken(setup: Setup, play: PlayState) -> Optional[JointMove]:
+    """The move of an objective that is broken now, as the observer of a mission takes it; None where none is."""
+    watching = {name for name, _ in setup.objective.bad}
+    for move, open_ in open_moves(setup, play, False):
+        edge = setup.game.origins[move.edges[0]]
+        if setup.owner(move) in watching and edge.sync is None and open_.holds(Fraction(0)):
+            return move if is_bad(setup.game, move.target) else None
+    return None
 
 
 def possible(setup: Setup, play: PlayState, plan: PlannedMove) -> bool:

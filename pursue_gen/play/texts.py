@@ -10,7 +10,7 @@ from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Respond, Scenario
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
@@ -170,6 +170,11 @@ def _place(setup: Setup, words: EventTexts, play: PlayState, name: str) -> str:
     return name
 
 
+def _only_while(way: Connection) -> str:
+    """Behind the length of a way: while what it is open; nothing where it always is."""
+    return "" if way.only_if is None else f", only while {condition_words(way.only_if)}"
+
+
 def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
     """The map in text: each POI with who is there, and its ways with their distances; then who is on the way."""
     at: Dict[str, List[str]] = {}
@@ -178,7 +183,10 @@ def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.name) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{to} ({c.distance})" for c in setup.scenario.connections for a, to in c.directions if a == poi.name
+            f"{to} ({c.distance}{_only_while(c)})"
+            for c in setup.scenario.connections
+            for a, to in c.directions
+            if a == poi.name
         ]
         there = [a for place, people in at.items() if f" {place}".endswith(f" at {poi.name}") for a in people]
         here = f"   here: {', '.join(there)}" if there else ""

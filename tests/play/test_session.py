@@ -115,6 +115,17 @@ def test_the_map_tells_ways_and_people() -> None:
     assert "a  to b (3), d (6)   here: polBot1, polBot2" in told
 
 
+def test_the_map_says_while_what_a_way_is_open() -> None:
+    told = say(session("hotel/staff_door"), "map")[1]
+    assert "desk     to office (1), kitchen (2, only while clerk is at desk), room (3)   here: waiter, clerk" in told
+
+
+def test_a_game_is_lost_at_once_where_the_condition_is_broken() -> None:
+    at, told = say(session("hotel/quiet_corridor"), "1", "wait")
+    assert at.play.over
+    assert "any robot is at corridor and guest is at corridor, which must never be" in told + "\n".join(farewell(at))
+
+
 def test_a_won_game_ends_with_a_clear_sentence() -> None:
     at = session("thesis/scenario_1")
     told = ""
