@@ -1,9 +1,9 @@
 """Simulated time for missions that run faster than life: publishes /clock until it is ended.
 
-Set /use_sim_time before any other node starts. Parameters: ~speed (simulated seconds per real one, default 5), ~hold
-(real seconds of standstill after each message of the mission, default 0.1), ~time_unit (seconds, default 1.0), ~step
-(simulated seconds; default 0.02 time units). Killed and started again it goes on where it was: it keeps its time in a
-file under ROS_HOME, one for each roscore.
+Set /use_sim_time before any other node starts. Parameters: ~speed (simulated seconds per real one, default 5; one at
+most until the first word on pursue/events), ~hold (real seconds of standstill after each message of the mission,
+default 0.1), ~time_unit (seconds, default 1.0), ~step (simulated seconds; default 0.02 time units). Killed and started
+again it goes on where it was: it keeps its time in a file under ROS_HOME, one for each roscore.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread, subscribe
-from pursue_runtime.simulator.clock import START, ClockFile, Pace, SimClock, read_pace, send_whole
+from pursue_runtime.simulator.clock import ClockFile, Pace, SimClock, read_pace, send_whole
 from pursue_runtime.words import EVENTS, STATE
 
 
@@ -38,18 +38,18 @@ def run(pace: Pace, scenario: str) -> int:
     last = memory.last if memory is not None else None
     if last is not None:
         rospy.logwarn("simulated time goes on at %.2f s, where it was", last)
-    clock = SimClock(pace, START if last is None else last)
+    clock = SimClock(pace) if last is None else SimClock(pace, last, has_begun=True)
     publisher = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
     send_at_once(publisher)
     _, states = [
         subscribe(
-            topic, rospy.AnyMsg, lambda _: clock.on_message(time.monotonic()), ending, queue_size=1000, tcp_nodelay=True
+            topic, rospy.AnyMsg, lambda _, act: act(time.monotonic()), ending, act, queue_size=1000, tcp_nodelay=True
         )
-        for topic in (EVENTS, STATE)
+        for topic, act in ((EVENTS, clock.on_word), (STATE, clock.on_message))
     ]
     links = Links(states, ending=ending, lost=lambda _: ending.end(1))
     Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links)
-    start_thread("clock", lambda: tick(clock, pace, publisher, memory), ending)
+    start_thread("clock", lambda: tick(clock, publisher, memory), ending)
     return ending.wait()
 
 
@@ -78,7 +78,7 @@ def send_at_once(publisher: rospy.Publisher) -> None:
     topic.add_connection = lambda connection: add_connection(_Connection(connection))
 
 
-def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Optional[ClockFile]) -> None:
+def tick(clock: SimClock, publisher: rospy.Publisher, memory: Optional[ClockFile]) -> None:
     """Publishes /clock until ROS shuts down."""
     moment = time.monotonic()
     while not rospy.is_shutdown():
@@ -94,7 +94,7 @@ def tick(clock: SimClock, pace: Pace, publisher: rospy.Publisher, memory: Option
         except rospy.ROSException:
             return  # the node is going down
         # On a busy machine steps come late; they are not made up for.
-        moment = max(moment + pace.tick, time.monotonic())
+        moment = max(moment + clock.period, time.monotonic())
         time.sleep(max(0.0, moment - time.monotonic()))
 
 

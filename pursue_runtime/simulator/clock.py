@@ -31,11 +31,6 @@ class Pace:
     step: float = 0.02
     hold: float = 0.1
 
-    @property
-    def tick(self) -> float:
-        """Real seconds between two steps."""
-        return self.step / self.speed
-
 
 def read_pace(given: Mapping[str, Any]) -> Pace:
     """The pace that these parameters of the node give; a step is 0.02 time units by default. Raises ParameterError."""
@@ -45,11 +40,16 @@ def read_pace(given: Mapping[str, Any]) -> Pace:
 
 
 class SimClock:
-    """Simulated time, moved on by `tick`."""
+    """Simulated time, moved on by `tick`.
 
-    def __init__(self, pace: Pace, start: float = START) -> None:
+    Until the first word of the mission it goes no faster than real time: nodes come up, and need the processor.
+    `has_begun`: the mission may be under way already.
+    """
+
+    def __init__(self, pace: Pace, start: float = START, has_begun: bool = False) -> None:
         self._pace = pace
         self._start = start
+        self._has_begun = has_begun
         self._steps = 0
         self._held_until = self._published = float("-inf")
 
@@ -57,6 +57,16 @@ class SimClock:
     def now(self) -> float:
         """Simulated seconds."""
         return self._start + self._steps * self._pace.step
+
+    @property
+    def period(self) -> float:
+        """Real seconds between two steps."""
+        return self._pace.step / (self._pace.speed if self._has_begun else min(1.0, self._pace.speed))
+
+    def on_word(self, real: float) -> None:
+        """Begin to go at the full speed, and hold, as for any message: a word was received at the time `real`."""
+        self._has_begun = True
+        self.on_message(real)
 
     def on_message(self, real: float) -> None:
         """Hold the clock: a message was received at the time `real` of the monotonic clock."""

@@ -63,8 +63,22 @@ def test_a_subscriber_that_has_gone_is_an_error() -> None:
             send_whole(ours, b"1234")
 
 
-def test_the_tick_makes_the_speed() -> None:
-    assert Pace(speed=5, step=0.02).tick == pytest.approx(0.004)
+def test_the_period_makes_the_speed_which_is_that_of_real_time_until_the_first_word() -> None:
+    clock = SimClock(Pace(speed=5, step=0.02))
+    clock.on_message(10.0)
+    assert clock.period == pytest.approx(0.02)
+    clock.on_word(11.0)
+    assert clock.period == pytest.approx(0.004)
+    held = clock.tick(11.01)
+    assert clock.tick(11.05) == held < clock.tick(11.2), "a word is a message too"
+
+
+def test_a_slow_clock_is_slow_before_the_first_word_too() -> None:
+    assert SimClock(Pace(speed=0.5, step=0.02)).period == pytest.approx(0.04)
+
+
+def test_a_clock_of_a_mission_that_is_under_way_goes_at_its_speed_at_once() -> None:
+    assert SimClock(Pace(speed=5, step=0.02), 7.5, has_begun=True).period == pytest.approx(0.004)
 
 
 def test_a_step_is_a_share_of_the_time_unit() -> None:
