@@ -9,6 +9,8 @@ from pursue_gen.language.conditions import condition_text, conditions_of, names_
 from pursue_gen.language.scenario import (
     Agent,
     Always,
+    Assumption,
+    AtMost,
     Avoid,
     Both,
     Choice,
@@ -19,6 +21,7 @@ from pursue_gen.language.scenario import (
     Safety,
     Scenario,
     Sequence,
+    Waits,
 )
 
 
@@ -78,7 +81,13 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
             replace(a, can_do=_others(a.can_do, gone), reacts_to=_others(a.reacts_to, gone)) for a in agents
         ),
         travels=tuple(travel for travel in scenario.travels if travel.agent.name != name),
+        assumptions=tuple(a for a in scenario.assumptions if a.agent.name != name and not _names(a, gone)),
     )
+
+
+def _names(assumption: Assumption, gone: AbstractSet[str]) -> bool:
+    """True if the assumption is about one of these events."""
+    return isinstance(assumption, (AtMost, Waits)) and assumption.event.name in gone
 
 
 def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[[Scenario], Scenario]]]:
