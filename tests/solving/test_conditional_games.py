@@ -43,6 +43,17 @@ objective: avoid steal
 """
 
 
+KITCHEN = """\
+poi "desk"
+poi "office"
+poi "kitchen"
+connect desk and office distance 1
+connect desk and kitchen distance 2 only_if clerk at desk
+event "fetch" location kitchen
+agent "waiter" controllable mobile 1 location desk can_do fetch
+agent "clerk" mobile 2 location office
+reach_objective: do fetch
+"""
 EARLY = """\
 poi "a"
 poi "b"
@@ -145,7 +156,7 @@ def test_the_judge_knows_what_the_condition_means() -> None:
 
 
 def test_the_explanation_names_the_condition() -> None:
-    read = parse(DOOR, "x.pur", "x")
+    read = parse(KITCHEN, "x.pur", "x")
     explanation = explain(read, DEFAULT)
     labels = [change.sentence for change in explanation.changes]
     assert "the way between desk and kitchen without only_if clerk at desk" in " ".join(labels)
