@@ -92,6 +92,8 @@ class Model:
             """Automata and their locations: the goal is reached where all of them are there at once."""
             self.bad = places_of(objective["bad"])
             """The same: the mission is lost where any of them is there."""
+            self.says = {str(name): str(text) for name, text in dict(objective.get("says") or {}).items()}
+            """What the automata of objectives watch, in the scenario's words; empty where there is one objective."""
         except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
             raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
         self._by_name = {automaton.name: automaton for automaton in self.automata}

@@ -27,8 +27,8 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
-from pursue_gen.language.conditions import condition_text
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import objective_text
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
@@ -53,7 +53,7 @@ UNTIL = 120.0
 _PART = re.compile(r"(<!-- made: (\w+)(?: (\d+))? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _WHAT_IF = re.compile(r"^(\| [^|\n]+ \| ([^|\n]*`[^|\n]*) \|)([^|\n]*)\|$", re.MULTILINE)
 _STATEMENT = re.compile(r"(without )?`([^`]+)`")
-_SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 1, "reach_objective:": 1}
+_SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 3, "reach_objective:": 1}
 """So many words of a statement tell what it is on; of all others two."""
 
 
@@ -217,20 +217,7 @@ def row(found: Facts) -> str:
 
 def _wanted(scenario: Scenario) -> List[str]:
     """The objectives, as the scenario has them."""
-    found = []
-    safety = scenario.safety
-    if isinstance(safety, Respond):
-        found.append(f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}")
-    elif isinstance(safety, Avoid):
-        found.append(f"avoid {safety.event.name}")
-    elif isinstance(safety, Always):
-        found.append(f"{'always' if safety.holds else 'avoid'} {condition_text(safety.condition)}")
-    elif isinstance(safety, NeverWith):
-        place = "" if safety.place is None else f" at {safety.place.name}"
-        found.append(f"{safety.first.name} never_with {safety.second.name}{place}")
-    if scenario.reach is not None:
-        found.append(f"do {scenario.reach.event.name}")
-    return found
+    return [objective_text(objective) for objective in scenario.objectives]
 
 
 def index(text: str, rows: Mapping[str, str]) -> str:

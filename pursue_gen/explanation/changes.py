@@ -14,7 +14,8 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
 from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.scenario import Agent, Connection, Event, Respond, Scenario
+from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Respond, Scenario
+from pursue_gen.language.wording import events_words
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
@@ -236,23 +237,59 @@ def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> _Kno
 
 
 def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
-    safety, reach = scenario.safety, scenario.reach
-    if isinstance(safety, Respond):
-        respond = safety
-        deadline = safety.deadline
-        furthest = deadline + max(deadline, 2 * _all_time(scenario))
-        yield _number(
-            "deadline", safety.response.name, "a later deadline", deadline, range(deadline + 1, furthest + 1),
-            lambda k: (replace(scenario, safety=replace(respond, deadline=k)), rules),
-            lambda k: f"a deadline of {k} instead of {deadline} for {respond.response.name}", safety.span, 1,
-        )
-    if reach is not None and reach.after > 0:
-        goal = reach
-        yield _number(
-            "after", reach.event.name, f"an earlier {reach.event.name}", reach.after, range(reach.after - 1, -1, -1),
-            lambda k: (replace(scenario, reach=replace(goal, after=k)), rules),
-            lambda k: f"{goal.event.name} after {k} instead of {goal.after}", reach.span, 1,
-        )
+    for safety in scenario.safety:
+        if isinstance(safety, Respond):
+            yield _deadline_knob(scenario, rules, safety)
+    for reach in scenario.reach:
+        if reach.after > 0:
+            yield _after_knob(scenario, rules, reach)
+        if reach.within is not None:
+            yield _within_knob(scenario, rules, reach, reach.within)
+
+
+def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
+    deadline, answer = safety.deadline, safety.response.name
+
+    def make(k: int) -> Variant:
+        changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)
+        return replace(scenario, safety=changed), rules
+
+    def say(k: int) -> str:
+        return f"a deadline of {k} instead of {deadline} for {answer}"
+
+    furthest = deadline + max(deadline, 2 * _all_time(scenario))
+    later = range(deadline + 1, furthest + 1)
+    return _number("deadline", answer, "a later deadline", deadline, later, make, say, safety.span, 1)
+
+
+def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:
+    return replace(scenario, reach=tuple(new if each is old else each for each in scenario.reach))
+
+
+def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> _Knob:
+    goal = events_words(reach)
+
+    def make(k: int) -> Variant:
+        return _with_reach(scenario, reach, replace(reach, after=k)), rules
+
+    def say(k: int) -> str:
+        return f"{goal} after {k} instead of {reach.after}"
+
+    earlier = range(reach.after - 1, -1, -1)
+    return _number("after", goal, f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
+
+
+def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: int) -> _Knob:
+    goal = events_words(reach)
+
+    def make(k: int) -> Variant:
+        return _with_reach(scenario, reach, replace(reach, within=k)), rules
+
+    def say(k: int) -> str:
+        return f"{goal} within {k} instead of {within}"
+
+    later = range(within + 1, within + max(within, 2 * _all_time(scenario)) + 1)
+    return _number("within", goal, f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
 
 
 def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
@@ -287,7 +324,7 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         return f"{event.name} lasting {k} instead of {duration or 'no time'}"
 
     if event.duration is None:
-        if scenario.reach is not None and _may_be_endless(scenario, event):
+        if scenario.reach and _may_be_endless(scenario, event):
             yield _number("duration", event.name, f"a longer {event.name}", 0, (1,), make, say, event.span, 0)
         return
     if duration > 1:

@@ -17,7 +17,9 @@ from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
+from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import statement_text
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
@@ -26,8 +28,9 @@ from pursue_gen.tga import scenario_objective, translate
 WORK = 150_000_000
 """The work of an explanation: ten to thirty seconds."""
 
-_FOR_CHANGES, _FOR_ENDLESS = 0.5, 0.05
-"""The part of the limits that the search for changes may take, and whether time has to pass; the rest is for plays."""
+_FOR_CHANGES, _FOR_ENDLESS, _FOR_CONFLICT = 0.5, 0.05, 0.1
+"""The part of the limits that the search for changes may take, whether time has to pass, and which objectives exclude
+each other; the rest is for plays."""
 
 _LIMIT_HIT = 5
 """The exit status of errors at a limit."""
@@ -38,7 +41,8 @@ class Explanation:
     """Single changes that win, the cheapest first; the utmost changes that were tried and do not; those that were not
     decided within the limits; a play that is lost whatever the controller does (empty: not found within them); what
     else the controller could begin with, and why that fails too; and who prevents the objective without time passing
-    (empty: it is prevented in plays in which time passes, or that is not decided).
+    (empty: it is prevented in plays in which time passes, or that is not decided). `conflict`: of several objectives
+    those that cannot be promised together.
     """
 
     changes: Tuple[Change, ...]
@@ -47,6 +51,7 @@ class Explanation:
     play: Tuple[TimedLine, ...]
     attempts: Tuple[Attempt, ...] = ()
     endless: Tuple[Endless, ...] = ()
+    conflict: Optional[Conflict] = None
 
 
 def explain(
@@ -63,6 +68,9 @@ def explain(
     limits = replace(limits.chosen, work=limits.work or WORK)
     found = findings(scenario, rules, _share(limits, _FOR_CHANGES), progress)
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    together: Optional[Conflict] = None
+    if len(scenario.objectives) > 1:
+        together = conflict(scenario, rules, Budget(_share(limits, _FOR_CONFLICT), progress, phase=EXPLAINING))
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
     try:
@@ -70,7 +78,7 @@ def explain(
         repeating = endless(network, objective, rules.reaction, budget)
     except PursueError as problem:
         _check_limit(problem)
-    rest = _share(limits, 1 - _FOR_CHANGES - _FOR_ENDLESS)
+    rest = _share(limits, 1 - _FOR_CHANGES - _FOR_ENDLESS - (_FOR_CONFLICT if together else 0))
     try:
         game = network, objective, rules.reaction
         plays.extend(counter_plays(*game, rest, found.helpful, progress, bool(repeating)))
@@ -78,7 +86,7 @@ def explain(
         _check_limit(problem)
     main = describe(scenario, plays[0]) if plays else ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
-    return Explanation(found.changes, found.lost, found.undecided, main, attempts, repeating)
+    return Explanation(found.changes, found.lost, found.undecided, main, attempts, repeating, together)
 
 
 def _check_limit(problem: PursueError) -> None:
@@ -94,7 +102,9 @@ def _share(limits: Limits, share: float) -> Limits:
 
 def render(explanation: Explanation, width: int = 110) -> str:
     """The explanation as lines of text."""
-    lines = [line for text in endless_texts(explanation) for line in textwrap.wrap(text, width)]
+    texts = endless_texts(explanation)
+    texts += [explanation.conflict.in_words()] if explanation.conflict else []
+    lines = [line for text in texts for line in textwrap.wrap(text, width)]
     if explanation.changes:
         lines.append("Each of these alone would change that, the smallest change first (found by solving again):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
@@ -148,6 +158,7 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
         "play": [{"at": float(line.at), "who": line.who, "text": line.text} for line in explanation.play],
         "attempts": [asdict(one) for one in explanation.attempts],
         "endless": [asdict(one) for one in explanation.endless],
+        "conflict": [statement_text(one) for one in explanation.conflict.objectives] if explanation.conflict else [],
     }
 
 

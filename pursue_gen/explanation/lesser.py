@@ -8,21 +8,22 @@ from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
 from pursue_gen.language.conditions import condition_text, conditions_of, names_in
 from pursue_gen.language.scenario import (
     Agent,
-    Always,
     Assumption,
     AtMost,
     Avoid,
     Both,
     Choice,
     NeverWith,
+    Reach,
     Ref,
     Respond,
     RuleBody,
-    Safety,
     Scenario,
     Sequence,
+    StatedObjective,
     Waits,
 )
+from pursue_gen.language.wording import objective_text
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,9 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
         found.append(Part(name, _dependency(need.event.name, need.state.name)))
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
-    if scenario.safety is not None and scenario.reach is not None:
-        reach = scenario.reach
-        found.append(Part(f"objective {_safety_text(scenario.safety)}", _safety))
-        found.append(Part(f"reach_objective do {reach.event.name} after {reach.after}", _reach))
+    if len(scenario.objectives) > 1:
+        found += [Part(f"objective {objective_text(safety)}", _without(safety)) for safety in scenario.safety]
+        found += [Part(f"reach_objective {_reach_text(reach)}", _without(reach)) for reach in scenario.reach]
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -139,12 +139,20 @@ def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
     return left_out
 
 
-def _safety(scenario: Scenario) -> Optional[Scenario]:
-    return None if scenario.reach is None else replace(scenario, safety=None)
+def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:
+    """The scenario without the objective; None where it has no other one."""
+    if scenario.objectives == (objective,):
+        return None
+    safety = tuple(other for other in scenario.safety if other != objective)
+    return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other != objective))
 
 
-def _reach(scenario: Scenario) -> Optional[Scenario]:
-    return None if scenario.safety is None else replace(scenario, reach=None)
+def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenario]]:
+    return lambda scenario: without_objective(scenario, objective)
+
+
+def _reach_text(reach: Reach) -> str:
+    return objective_text(reach) if reach.after or reach.within else f"{objective_text(reach)} after 0"
 
 
 def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
@@ -157,16 +165,15 @@ def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
 
 def _wanted(scenario: Scenario) -> Set[str]:
     """The events and agents that the objectives and conditions name."""
-    safety = scenario.safety
     names = {ref.name for condition, _ in conditions_of(scenario) for _, ref in names_in(condition)}
-    if scenario.reach is not None:
-        names.add(scenario.reach.event.name)
-    if isinstance(safety, Respond):
-        names |= {safety.trigger.name, safety.response.name}
-    elif isinstance(safety, Avoid):
-        names.add(safety.event.name)
-    elif isinstance(safety, NeverWith):
-        names |= {safety.first.name, safety.second.name}
+    names |= {ref.name for reach in scenario.reach for ref in reach.events}
+    for safety in scenario.safety:
+        if isinstance(safety, Respond):
+            names |= {safety.trigger.name, safety.response.name}
+        elif isinstance(safety, Avoid):
+            names.add(safety.event.name)
+        elif isinstance(safety, NeverWith):
+            names |= {safety.first.name, safety.second.name}
     return names
 
 
@@ -182,14 +189,3 @@ def _body(body: RuleBody, gone: AbstractSet[str]) -> Optional[RuleBody]:
     if first is None or second is None:
         return first or second
     return replace(body, first=first, second=second)
-
-
-def _safety_text(safety: Safety) -> str:
-    if isinstance(safety, Respond):
-        return f"if {safety.trigger.name} then {safety.response.name} within {safety.deadline}"
-    if isinstance(safety, Avoid):
-        return f"avoid {safety.event.name}"
-    if isinstance(safety, Always):
-        return f"{'always' if safety.holds else 'avoid'} {condition_text(safety.condition)}"
-    place = "" if safety.place is None else f" at {safety.place.name}"
-    return f"{safety.first.name} never_with {safety.second.name}{place}"

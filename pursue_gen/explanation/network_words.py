@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Dict, Iterator, Optional, Tuple
+from dataclasses import dataclass, field
+from typing import Dict, Iterator, Mapping, Optional, Tuple
 
-from pursue_gen.language.scenario import Leaves, Respond, Scenario, Waits
-from pursue_gen.language.wording import units
+from pursue_gen.language.scenario import Leaves, Reach, Respond, Scenario, StatedObjective, Waits
+from pursue_gen.language.wording import events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
@@ -30,12 +31,16 @@ class Words:
     places: Dict[str, str]
     moves: Dict[Tuple[str, str, str], str]
     parts: Dict[str, Tuple[str, ...]]
+    objectives: Mapping[str, StatedObjective] = field(default_factory=dict)
 
     def place(self, automaton: str, location: str) -> str:
         """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
-        if automaton == names.REACH:
-            return {"win": "reached", "unlocked": "to be reached"}.get(location, "not counting yet")
-        if automaton == names.OBJECTIVE:
+        objective = self.objectives.get(automaton)
+        if isinstance(objective, Reach):
+            done = [objective.events[k].name for k in events_done(location)]
+            found = f"{listed(done)} done" if done else "not counting yet"
+            return {"win": "reached", "unlocked": "to be reached", names.LATE: "too late"}.get(location, found)
+        if objective is not None:
             return _DUTIES.get(location, location)
         return self.turns.get((automaton, location)) or self.places.get(location) or f"at {location}"
 
@@ -43,10 +48,13 @@ class Words:
         """What it does by that edge, as in "sets off from c to b"."""
         if edge.sync:
             return self.moves.get((automaton, edge.sync.channel, ""), edge.sync.channel)
-        if automaton == names.REACH:
+        objective = self.objectives.get(automaton)
+        if isinstance(objective, Reach) and edge.target == names.LATE:
+            return f"the deadline of {events_words(objective)} has passed"
+        if isinstance(objective, Reach):
             return "begins to count"
-        if automaton == names.OBJECTIVE and edge.target == names.LOSE:
-            return "the objective is broken"
+        if objective is not None and edge.target == names.LOSE:
+            return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective_text(objective)}"
         return self.moves.get((automaton, "", edge.source), f"goes from {edge.source} to {edge.target}")
 
     def when(self, zone: Zone) -> str:
@@ -93,8 +101,10 @@ class Words:
 def words_of(scenario: Scenario, network: Network) -> Words:
     """The words for a scenario and its network."""
     clocks = {names.agent_clock(agent.name): f"{agent.name}'s last step" for agent in scenario.agents}
-    if isinstance(scenario.safety, Respond):
-        clocks[names.CLOCK_OBJECTIVE] = f"the last {scenario.safety.trigger.name} or {scenario.safety.response.name}"
+    objectives = stated(scenario)
+    for name, each in objectives.items():
+        if isinstance(each, Respond):
+            clocks[clock_of(scenario, name)] = f"the last {each.trigger.name} or {each.response.name}"
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
             clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s last {assumption.event.name}"
@@ -129,7 +139,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
             begins = f"does {event.name}" if event.duration is None else f"begins {event.name}"
             moves[agent.name, event.name, ""] = begins
             moves[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
-    return Words(clocks, turns, places, moves, parts)
+    return Words(clocks, turns, places, moves, parts, objectives)
 
 
 def zone_texts(zone: Zone) -> str:

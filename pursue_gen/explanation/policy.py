@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import AbstractSet, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Callable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
@@ -94,7 +94,7 @@ class Controller:
     def __init__(self, game: Game, strategies: Sequence[Strategy]) -> None:
         self._game = game
         self._books = [Blocks(strategy) for strategy in strategies]
-        self._planner, self._at_risk = _planner(game)
+        self._planners = _planners(game)
         self._been: Set[State] = set()
 
     def decide(self, here: Position, moves: Sequence[JointMove]) -> Optional[Choice]:
@@ -128,19 +128,16 @@ class Controller:
         return min(choices, key=lambda choice: choice[1], default=None)
 
     def _planned(self, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
-        if self._planner is None:
-            return None
-        state = here.state
-        if self._at_risk:
-            locations = tuple(self._at_risk.get(number, place) for number, place in enumerate(state.locations))
-            state = replace(state, locations=locations)
         new = [(move, open_) for move, open_ in windows if move.target not in self._been]
-        for offered in (new, windows):
-            liked = self._planner.choose(state, [move for move, _ in offered])
-            for move, open_ in offered:
-                delay = open_.earliest() if move in liked else None
-                if delay is not None:
-                    return move, delay
+        # What is due now comes before what may come to be due.
+        urgent = sorted(self._planners, key=lambda planner: planner.state(here.state) != here.state)
+        for planner in urgent:
+            for offered in (new, windows):
+                liked = planner.plans.choose(planner.state(here.state), [move for move, _ in offered])
+                for move, open_ in offered:
+                    delay = open_.earliest() if move in liked else None
+                    if delay is not None:
+                        return move, delay
         return None
 
     def _keys(self, move: JointMove, named: AbstractSet[str]) -> Tuple[_Key, ...]:
@@ -160,21 +157,32 @@ def _both(a: Window, b: Window) -> Window:
     return common if b.high is None else common.at_most(b.high, b.high_open)
 
 
-def _planner(game: Game) -> Tuple[Optional[RelaxedPlanner], Mapping[int, int]]:
-    """Plans for the goal; where there are deadlines only, always for the way out of risk: the next risk comes.
+class _Planner(NamedTuple):
+    """Plans for the goal, or for the way out of the risk of one deadline: (automaton, location at risk)."""
 
-    With the automata that watch deadlines, and their locations at risk.
-    """
+    plans: RelaxedPlanner
+    at_risk: Optional[Tuple[int, int]] = None
+
+    def state(self, state: State) -> State:
+        """From where it plans: always from the risk, since the next one comes."""
+        if self.at_risk is None:
+            return state
+        number, place = self.at_risk
+        return replace(state, locations=(*state.locations[:number], place, *state.locations[number + 1 :]))
+
+
+def _planners(game: Game) -> List[_Planner]:
+    """One for the goal; where there are deadlines only, one for each."""
     if game.goal:
-        return RelaxedPlanner(game), {}
-    idle: List[Tuple[int, int]] = []
-    at_risk: Dict[int, int] = {}
+        return [_Planner(RelaxedPlanner(game))]
+    found: List[_Planner] = []
     for number in dict.fromkeys(automaton for automaton, _ in game.bad):
         locations = game.automata[number].locations
         if names.AT_RISK in locations:
-            idle.append((number, locations.index(names.IDLE)))
-            at_risk[number] = locations.index(names.AT_RISK)
-    return (RelaxedPlanner(replace(game, goal=tuple(idle))), at_risk) if idle else (None, {})
+            idle = (number, locations.index(names.IDLE))
+            plans = RelaxedPlanner(replace(game, goal=(idle,)))
+            found.append(_Planner(plans, (number, locations.index(names.AT_RISK))))
+    return found
 
 
 def _named(game: Game, state: State) -> DiscreteState:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Scenario, StatedObjective
+from pursue_gen.language.wording import events_words, listed
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
+from pursue_gen.tga.objectives import stated
 
 _MOST_OTHERS = 3
 """So many of the others' last actions are named in an attempt."""
@@ -97,15 +99,14 @@ def _words(scenario: Scenario) -> Dict[_Key, str]:
 
 def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]:
     """What the step means for a deadline."""
-    safety = scenario.safety
-    if isinstance(safety, Respond):
-        for k in step.edges:
-            edge = play.game.edges[k]
-            if play.game.automata[edge.automaton].name == names.OBJECTIVE:
-                if play.game.origins[k].target == names.AT_RISK:
-                    yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
-                elif play.game.origins[k].target == names.IDLE:
-                    yield " (in time)"
+    objectives = stated(scenario)
+    for k in step.edges:
+        safety = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
+        if isinstance(safety, Respond):
+            if play.game.origins[k].target == names.AT_RISK:
+                yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
+            elif play.game.origins[k].target == names.IDLE:
+                yield " (in time)"
 
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
@@ -153,31 +154,37 @@ def _endless(scenario: Scenario, play: Play) -> str:
 
 
 def _goal_clause(scenario: Scenario, before: str, after: str) -> str:
-    return "" if scenario.reach is None else f"{before}{scenario.reach.event.name}{after}"
+    wanted = dict.fromkeys(ref.name for reach in scenario.reach for ref in reach.events)
+    return f"{before}{listed(wanted)}{after}" if wanted else ""
 
 
 def _bad(scenario: Scenario, play: Play) -> str:
-    safety = scenario.safety
-    if isinstance(safety, Avoid):
-        return f"{safety.event.name} has happened, which was to be avoided"
-    if isinstance(safety, Always):
-        return f"{condition_words(safety.broken_if)}, which must never be"
-    if isinstance(safety, NeverWith):
-        return f"{safety.first.name} and {safety.second.name} are together: both {_place(play, safety.first.name)}"
-    return _late(scenario)
+    """The objective that is broken in the last state of the play."""
+    game, objectives = play.game, stated(scenario)
+    broken = (game.automata[k].name for k, place in game.bad if play.position.state.locations[k] == place)
+    return _broken(objectives.get(next(broken, "")), play)
 
 
-def _late(scenario: Scenario) -> str:
-    safety = scenario.safety
-    if not isinstance(safety, Respond):
-        return "the objective is broken"
-    return f"too late: no {safety.response.name} within {safety.deadline} of {safety.trigger.name}"
+def _broken(objective: Optional[StatedObjective], play: Play) -> str:
+    if isinstance(objective, Avoid):
+        return f"{objective.event.name} has happened, which was to be avoided"
+    if isinstance(objective, Always):
+        return f"{condition_words(objective.broken_if)}, which must never be"
+    if isinstance(objective, NeverWith):
+        here = _place(play, objective.first.name)
+        return f"{objective.first.name} and {objective.second.name} are together: both {here}"
+    if isinstance(objective, Respond):
+        return f"too late: no {objective.response.name} within {objective.deadline} of {objective.trigger.name}"
+    if isinstance(objective, Reach):
+        return f"too late: {events_words(objective)} not done within {objective.within} of the start"
+    return "the objective is broken"
 
 
 def _overdue(scenario: Scenario, play: Play) -> str:
-    overdue = [play.game.automata[k].name for k in play.overdue]
-    if names.OBJECTIVE in overdue:
-        return _late(scenario)
+    overdue, objectives = [play.game.automata[k].name for k in play.overdue], stated(scenario)
+    passed = next((objectives[name] for name in overdue if name in objectives), None)
+    if passed is not None:
+        return _broken(passed, play)
     doing = ", ".join(f"{name} (now {_place(play, name)})" for name in overdue)
     return f"nothing can go on: {doing} ought to be done by now, and cannot be"
 

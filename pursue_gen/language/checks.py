@@ -12,9 +12,10 @@ from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
+from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Agent, NeverWith, Respond, Safety, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
@@ -53,6 +54,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     whole = reading.scenario is not None
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
+    findings += check_objectives(scenario)
     for part in (_numbers, _connections, _travels, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
@@ -121,9 +123,10 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         elif longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
-    if isinstance(scenario.safety, Respond) and scenario.safety.deadline < 1:
-        message = "within 0 leaves no time to answer: expected 1 or more"
-        yield error("PML143", message, scenario.safety.span, "write the time units that the answer may take")
+    for safety in scenario.safety:
+        if isinstance(safety, Respond) and safety.deadline < 1:
+            message = "within 0 leaves no time to answer: expected 1 or more"
+            yield error("PML143", message, safety.span, "write the time units that the answer may take")
 
 
 def _window(name: str, low: int, high: int, word: str, span: Span) -> Iterator[Diagnostic]:
@@ -199,10 +202,14 @@ def _twice(agent: Agent) -> Iterator[Diagnostic]:
 
 
 def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
-    safety = scenario.safety
-    if safety is None and scenario.reach is None:
+    if not scenario.objectives:
         hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
         yield error("PML171", "the scenario has no objective", _end(scenario), hint)
+    for safety in scenario.safety:
+        yield from _safety(scenario, safety)
+
+
+def _safety(scenario: Scenario, safety: Safety) -> Iterator[Diagnostic]:
     if isinstance(safety, Respond) and safety.trigger.name == safety.response.name:
         message = f"{safety.trigger.name} cannot be its own answer"
         yield error("PML172", message, safety.response.span, "name the event that has to follow")
@@ -224,10 +231,9 @@ def _counts(safety: NeverWith, place: str) -> bool:
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:
     """The original's tools read a scenario in one order only."""
     order = ("poi", "connect", "event", "rule", "state", "stateDependency", "agent", "objective")
-    objectives = [objective for objective in (scenario.safety, scenario.reach) if objective is not None]
     parts: Tuple[Tuple[Any, ...], ...] = (
         scenario.pois, scenario.connections, scenario.events, scenario.rules, scenario.states, scenario.dependencies,
-        scenario.agents, tuple(objectives),
+        scenario.agents, scenario.objectives,
     )  # fmt: skip
     places = [(part.span.line, part.span.column, rank, part.span) for rank, kind in enumerate(parts) for part in kind]
     latest = 0

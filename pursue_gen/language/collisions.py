@@ -107,7 +107,12 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
         if has_conditions:
             yield "W" + agent.name, f"with what {agent.name} is busy", agent.span
     end = scenario.agents[-1].span if scenario.agents else Span(scenario.file, 1, 1, 1, 1)
-    for word in ("Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"):
+    words = ["Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"]
+    for number, _ in enumerate(scenario.safety[1:], 2):
+        words += [f"obj{number}", f"Cobj{number}"]
+    for number, _ in enumerate(scenario.reach[1:], 2):
+        words += [f"reachObj{number}", f"Creach{number}", f"reachObj{number}_going_initial_location2unlocked"]
+    for word in words:
         yield word, "a part of the objective", end
 
 

@@ -28,13 +28,13 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
         impossible = [finding for atom in atoms(condition) for finding in _impossible(scenario, domains, atom, span)]
         senseless = [] if impossible else list(_without_sense(condition, span, domains))
         yield from impossible or senseless
-        safety = scenario.safety
-        if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
-            yield from _lost_at_start(scenario, safety, domains)
-    if isinstance(scenario.safety, NeverWith) and scenario.safety.place is not None:
-        for who in (scenario.safety.first, scenario.safety.second):
-            at = At(Who(who), scenario.safety.place)
-            yield from _impossible(scenario, domains, at, scenario.safety.span)
+        for safety in scenario.safety:
+            if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
+                yield from _lost_at_start(scenario, safety, domains)
+    for safety in scenario.safety:
+        if isinstance(safety, NeverWith) and safety.place is not None:
+            for who in (safety.first, safety.second):
+                yield from _impossible(scenario, domains, At(Who(who), safety.place), safety.span)
 
 
 def _lost_at_start(scenario: Scenario, safety: Always, domains: Domains) -> Iterator[Diagnostic]:

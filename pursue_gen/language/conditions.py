@@ -107,9 +107,10 @@ def conditions_of(scenario: Scenario) -> Iterator[Tuple[Condition, Span]]:
     for event in scenario.events:
         if event.only_if is not None:
             yield event.only_if, event.span
-    condition = getattr(scenario.safety, "condition", None)
-    if scenario.safety is not None and condition is not None:
-        yield condition, scenario.safety.span
+    for safety in scenario.safety:
+        condition = getattr(safety, "condition", None)
+        if condition is not None:
+            yield condition, safety.span
 
 
 def condition_text(condition: Condition) -> str:

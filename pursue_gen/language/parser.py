@@ -6,7 +6,7 @@ import os
 import select
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, FrozenSet, List, Optional, Tuple, Union
+from typing import Any, FrozenSet, List, Optional, Tuple
 
 from lark import Token
 
@@ -44,7 +44,7 @@ class Reading:
 def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
     """The scenario in a text, not checked: `file` is what messages call it, `name` is its stem unless given.
 
-    Raises PursueError with every syntax error, and with what a Scenario cannot hold (two objectives of a kind).
+    Raises PursueError with every syntax error.
     """
     reading = read(text, file, name)
     return without_errors(reading.scenario, reading.diagnostics)
@@ -97,13 +97,9 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     builder = _Builder(file)
     parts = [part for part in (builder.part(tree) for tree in statements.trees) if part is not None]
     findings = statements.findings + builder.findings
-    safety = [part for part in parts if isinstance(part, (pml.Respond, pml.Avoid, pml.NeverWith, pml.Always))]
-    reach = [part for part in parts if isinstance(part, pml.Reach)]
-    for extra in safety[1:] + reach[1:]:
-        findings.append(_second_objective(extra, (reach if isinstance(extra, pml.Reach) else safety)[0]))
 
-    def only(kind: type) -> Tuple[Any, ...]:
-        return tuple(part for part in parts if isinstance(part, kind))
+    def only(*kinds: type) -> Tuple[Any, ...]:
+        return tuple(part for part in parts if isinstance(part, kinds))
 
     value = pml.Scenario(
         name=Path(file).stem if name is None else name,
@@ -116,8 +112,8 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         states=only(pml.State),
         dependencies=only(pml.Dependency),
         agents=only(pml.Agent),
-        safety=safety[0] if safety else None,
-        reach=reach[0] if reach else None,
+        safety=only(pml.Respond, pml.Avoid, pml.NeverWith, pml.Always),
+        reach=only(pml.Reach),
         travels=only(pml.Travel),
         assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
     )
@@ -131,12 +127,6 @@ def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic,
     if errors or scenario is None:
         raise PursueError(errors)
     return scenario
-
-
-def _second_objective(extra: Union[pml.Safety, pml.Reach], first: Union[pml.Safety, pml.Reach]) -> Diagnostic:
-    kind = "reach_objective" if isinstance(extra, pml.Reach) else "objective"
-    message = f"a second {kind}: a scenario has one at most, and line {first.span.line} has it already"
-    return error("PML170", message, extra.span, "keep one; one objective and one reach_objective together are allowed")
 
 
 class _Builder:
@@ -278,8 +268,13 @@ class _Builder:
         place = None if children[2] is None else self._ref(children[2])
         return pml.NeverWith(self._ref(children[0]), self._ref(children[1]), span, place)
 
-    def _reach(self, event: Any, after: Optional[Token], span: Span) -> pml.Reach:
-        return pml.Reach(self._ref(event), 0 if after is None else self._number(after), span)
+    def _reach(self, events: Any, after: Optional[Token], within: Optional[Token], span: Span) -> pml.Reach:
+        return pml.Reach(
+            self._refs(events),
+            0 if after is None else self._number(after),
+            span,
+            None if within is None else self._number(within),
+        )
 
 
 def _bare(name: Token) -> str:

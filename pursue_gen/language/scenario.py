@@ -271,11 +271,16 @@ Safety = Union[Respond, Avoid, NeverWith, Always]
 
 @dataclass(frozen=True)
 class Reach:
-    """`do event after T`: win once the event happens later than `after` time units from the start."""
+    """`do e1 and e2 after T within D`: each event happens, in any order, later than `after` and at most `within` time
+    units from the start (None: without a deadline)."""
 
-    event: Ref
+    events: Tuple[Ref, ...]
     after: int
     span: Span
+    within: Optional[int] = None
+
+
+StatedObjective = Union[Safety, Reach]
 
 
 @dataclass(frozen=True)
@@ -323,7 +328,10 @@ Assumption = Union[AtMost, Waits, Leaves, NeverAt]
 
 @dataclass(frozen=True)
 class Scenario:
-    """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration."""
+    """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration.
+
+    All of `safety` has to hold until all of `reach` is reached; for ever where there is none.
+    """
 
     name: str
     file: str
@@ -335,10 +343,15 @@ class Scenario:
     states: Tuple[State, ...]
     dependencies: Tuple[Dependency, ...]
     agents: Tuple[Agent, ...]
-    safety: Optional[Safety]
-    reach: Optional[Reach]
+    safety: Tuple[Safety, ...]
+    reach: Tuple[Reach, ...]
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
+
+    @property
+    def objectives(self) -> Tuple[StatedObjective, ...]:
+        """All objectives: those that always hold, then those that are reached once."""
+        return (*self.safety, *self.reach)
 
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""

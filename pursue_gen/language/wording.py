@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import List
+from typing import Iterable, List
 
-from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.conditions import condition_text, condition_words
 from pursue_gen.language.scenario import (
     Agent,
     Always,
@@ -13,8 +13,10 @@ from pursue_gen.language.scenario import (
     Avoid,
     Leaves,
     NeverWith,
+    Reach,
     Respond,
     Scenario,
+    StatedObjective,
     Waits,
 )
 
@@ -26,21 +28,58 @@ def units(amount: str) -> str:
 
 def objective_words(scenario: Scenario) -> List[str]:
     """What is wanted, a sentence for each objective."""
-    safety, reach, result = scenario.safety, scenario.reach, []
-    if isinstance(safety, Respond):
-        deadline = units(str(safety.deadline))
-        result.append(f"Whenever {safety.trigger.name} happens, {safety.response.name} happens within {deadline}.")
-    elif isinstance(safety, Avoid):
-        result.append(f"{safety.event.name} never happens.")
-    elif isinstance(safety, NeverWith):
-        where = "at one place or on one connection" if safety.place is None else f"both at {safety.place.name}"
-        result.append(f"{safety.first.name} and {safety.second.name} are never {where}.")
-    elif isinstance(safety, Always):
-        result.append(f"It {'always' if safety.holds else 'never'} holds that {condition_words(safety.condition)}.")
-    if reach:
-        after = f" later than {units(str(reach.after))} after the start" if reach.after else ""
-        result.append(f"{reach.event.name} happens{after}.")
-    return result
+    return [_sentence(objective) for objective in scenario.objectives]
+
+
+def _sentence(objective: StatedObjective) -> str:
+    if isinstance(objective, Respond):
+        deadline = units(str(objective.deadline))
+        return f"Whenever {objective.trigger.name} happens, {objective.response.name} happens within {deadline}."
+    if isinstance(objective, Avoid):
+        return f"{objective.event.name} never happens."
+    if isinstance(objective, NeverWith):
+        where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.name}"
+        return f"{objective.first.name} and {objective.second.name} are never {where}."
+    if isinstance(objective, Always):
+        return f"It {'always' if objective.holds else 'never'} holds that {condition_words(objective.condition)}."
+    after = f" later than {units(str(objective.after))} after the start" if objective.after else ""
+    within = "" if objective.within is None else f" within {units(str(objective.within))} after the start"
+    verb = "happens" if len(objective.events) == 1 else "happen, in any order,"
+    when = f"{after} and{within}" if after and within else after or within
+    return f"{listed(ref.name for ref in objective.events)} {verb}{when}".rstrip(",") + "."
+
+
+def listed(names: Iterable[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def events_words(reach: Reach) -> str:
+    """The events that are to be achieved, as in `load and unload`."""
+    return listed(ref.name for ref in reach.events)
+
+
+def objective_text(objective: StatedObjective) -> str:
+    """An objective as its author may write it, without the word that begins the statement."""
+    if isinstance(objective, Respond):
+        return f"if {objective.trigger.name} then {objective.response.name} within {objective.deadline}"
+    if isinstance(objective, Avoid):
+        return f"avoid {objective.event.name}"
+    if isinstance(objective, NeverWith):
+        place = "" if objective.place is None else f" at {objective.place.name}"
+        return f"{objective.first.name} never_with {objective.second.name}{place}"
+    if isinstance(objective, Always):
+        return f"{'always' if objective.holds else 'avoid'} {condition_text(objective.condition)}"
+    after = f" after {objective.after}" if objective.after else ""
+    within = "" if objective.within is None else f" within {objective.within}"
+    return f"do {' and '.join(ref.name for ref in objective.events)}{after}{within}"
+
+
+def statement_text(objective: StatedObjective) -> str:
+    """The whole statement, as in `objective: avoid e`."""
+    word = "reach_objective" if isinstance(objective, Reach) else "objective"
+    return f"{word}: {objective_text(objective)}"
 
 
 def assumption_words(assumption: Assumption) -> str:

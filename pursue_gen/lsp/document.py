@@ -98,7 +98,7 @@ class Document:
         """The scenario that its sound statements make; those with a syntax error are left out."""
         if self.reading.partial is not None:
             return self.reading.partial
-        return Scenario(self._name or "", self.file, self.text, (), (), (), (), (), (), (), None, None)
+        return Scenario(self._name or "", self.file, self.text, (), (), (), (), (), (), (), (), ())
 
     def statement_at(self, offset: int) -> Optional[Statement]:
         """The statement that an offset is in, or right behind of."""

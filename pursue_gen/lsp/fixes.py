@@ -48,10 +48,10 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML157": meaning.use_event,
     "PML158": meaning.do_together,
     "PML159": meaning.without_together,
-    "PML170": meaning.delete_statement,
     "PML171": meaning.add_objective,
     "PML180": meaning.human_ally,
     "PML190": meaning.sort_statements,
+    "PML220": meaning.delete_statement,
 }
 
 

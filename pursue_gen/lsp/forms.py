@@ -129,6 +129,9 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
         Form("two who never meet", "objective: {agent} never_with {agent}"),
         Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
     ),
-    "REACH_OBJECTIVE": (Form("achieve something once", "reach_objective: do {event}"),),
+    "REACH_OBJECTIVE": (
+        Form("achieve something once", "reach_objective: do {event}"),
+        Form("achieve several things in time", "reach_objective: do {event} and {event} within {=60}"),
+    ),
 }
 """What statements look like, by the token that begins them."""

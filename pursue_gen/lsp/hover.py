@@ -152,16 +152,18 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
 
 def _wanted(scenario: Scenario, event: Event) -> List[str]:
     lines = []
-    safety, reach = scenario.safety, scenario.reach
-    if isinstance(safety, Respond) and safety.trigger.name == event.name:
-        lines.append(f"- must be answered by {safety.response.name} within {units(safety.deadline)} of time")
-    if isinstance(safety, Respond) and safety.response.name == event.name:
-        lines.append(f"- is the answer to {safety.trigger.name}, within {units(safety.deadline)} of time")
-    if isinstance(safety, Avoid) and safety.event.name == event.name:
-        lines.append("- must never happen")
-    if reach is not None and reach.event.name == event.name:
-        after = f", later than {units(reach.after)} of time after the start" if reach.after else ""
-        lines.append(f"- is to be achieved once{after}")
+    for safety in scenario.safety:
+        if isinstance(safety, Respond) and safety.trigger.name == event.name:
+            lines.append(f"- must be answered by {safety.response.name} within {units(safety.deadline)} of time")
+        if isinstance(safety, Respond) and safety.response.name == event.name:
+            lines.append(f"- is the answer to {safety.trigger.name}, within {units(safety.deadline)} of time")
+        if isinstance(safety, Avoid) and safety.event.name == event.name:
+            lines.append("- must never happen")
+    for reach in scenario.reach:
+        if _in(event.name, reach.events):
+            after = f", later than {units(reach.after)} of time after the start" if reach.after else ""
+            within = "" if reach.within is None else f", {units(reach.within)} of time after the start at most"
+            lines.append(f"- is to be achieved once{after}{within}")
     return lines
 
 
@@ -205,10 +207,9 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     for event in scenario.events:
         if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
             lines.append(f"- {event.name} only while {condition_words(event.only_if)}")
-    if isinstance(scenario.safety, Always) and any(
-        ref.name == state.name for _, ref in names_in(scenario.safety.condition)
-    ):
-        lines.append(f"- must never be: {condition_words(scenario.safety.broken_if)}")
+    for safety in scenario.safety:
+        if isinstance(safety, Always) and any(ref.name == state.name for _, ref in names_in(safety.condition)):
+            lines.append(f"- must never be: {condition_words(safety.broken_if)}")
     return lines
 
 
@@ -228,13 +229,13 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     lines += [f"- assumed: {assumption_words(a)}" for a in scenario.assumptions if a.agent.name == agent.name]
-    safety = scenario.safety
-    if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
-        other = safety.second.name if safety.first.name == agent.name else safety.first.name
-        where = "be where" if safety.place is None else f"be at {safety.place.name} while"
-        lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
-    if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
-        lines.append(f"- must never be: {condition_words(safety.broken_if)}")
+    for safety in scenario.safety:
+        if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
+            other = safety.second.name if safety.first.name == agent.name else safety.first.name
+            where = "be where" if safety.place is None else f"be at {safety.place.name} while"
+            lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
+        if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
+            lines.append(f"- must never be: {condition_words(safety.broken_if)}")
     return lines
 
 
@@ -264,6 +265,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str
         return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
     if word == "AT_MOST":
         return f"It can happen {'once' if number == 1 else f'{number} times'} in all."
+    if word == "WITHIN" and part.kind == "REACH_OBJECTIVE":
+        return f"It must have happened {units(number)} of time after the start at most."
     if word == "WITHIN":
         return f"The answer must have come {units(number)} of time later at most."
     if word == "AFTER":

@@ -49,7 +49,7 @@ def rename(document: Document, offset: int, new: str) -> Tuple[Edit, ...]:
 
 def _check_new(document: Document, new: str) -> None:
     span = Span(document.file, 1, 1, 1, 1)
-    alone = Scenario("name", document.file, "", (Poi(new, None, span),), (), (), (), (), (), (), None, None)
+    alone = Scenario("name", document.file, "", (Poi(new, None, span),), (), (), (), (), (), (), (), ())
     findings = list(check_names(alone))
     if findings:
         raise PursueError(findings[:1])

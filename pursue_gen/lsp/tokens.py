@@ -50,6 +50,7 @@ _USED: Dict[Tuple[str, str], str] = {
     ("OBJECTIVE", "THEN"): "event",
     ("OBJECTIVE", "AVOID"): "event",
     ("REACH_OBJECTIVE", "DO"): "event",
+    ("REACH_OBJECTIVE", "AND"): "event",
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 

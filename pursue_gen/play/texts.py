@@ -10,12 +10,14 @@ from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Respond, Scenario
+from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Reach, Respond, Scenario
+from pursue_gen.language.wording import events_words, listed
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 
 
@@ -97,16 +99,19 @@ def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:
 
 
 def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Iterator[str]:
-    safety, clocks = setup.scenario.safety, dict(zip(setup.game.clocks, play.position.clocks))
-    if isinstance(safety, Respond):
-        number = where[names.OBJECTIVE]
+    clocks = dict(zip(setup.game.clocks, play.position.clocks))
+    for automaton, objective in stated(setup.scenario).items():
+        number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
-        if place == names.AT_RISK:
-            due = play.now - clocks[names.CLOCK_OBJECTIVE] + safety.deadline
-            yield f"deadline: {safety.response.name} by {time_text(due)} at the latest"
-    reach = setup.scenario.reach
-    if reach is not None and reach.after and play.now <= reach.after:
-        yield f"{reach.event.name} counts after {reach.after}"
+        if isinstance(objective, Respond) and place == names.AT_RISK:
+            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
+            yield f"deadline: {objective.response.name} by {time_text(due)} at the latest"
+        if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
+            yield f"{events_words(objective)} counts after {objective.after}"
+        if isinstance(objective, Reach) and objective.within is not None and place != "win":
+            done = {objective.events[k].name for k in events_done(place)}
+            left = listed(ref.name for ref in objective.events if ref.name not in done)
+            yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
 
 
 def deed_text(setup: Setup, words: EventTexts, deed: PlayedMove) -> str:
@@ -138,7 +143,8 @@ def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
     """How a game ended, in a sentence."""
     at = time_text(play.now)
     if play.status == WON:
-        what = f": {setup.scenario.reach.event.name}" if setup.scenario.reach else ""
+        done = dict.fromkeys(ref.name for reach in setup.scenario.reach for ref in reach.events)
+        what = f": {listed(done)}" if done else ""
         return f"The robots have done it after {at} time units{what}."
     if play.status == LOST:
         return f"The robots have lost after {at} time units: {_lost(setup, words, play)}."
@@ -147,12 +153,19 @@ def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
 
 
 def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
-    safety, late = setup.scenario.safety, overdue(setup, play)
-    if isinstance(safety, Respond) and names.OBJECTIVE in (*late, play.deeds[-1].agent if play.deeds else ""):
-        return f"no {safety.response.name} within {safety.deadline} of {safety.trigger.name}"
+    late, objectives = overdue(setup, play), stated(setup.scenario)
+    game, places = setup.game, play.position.state.locations
+    broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
+    for name in (*late, *broken):
+        passed = objectives.get(name)
+        if isinstance(passed, Respond):
+            return f"no {passed.response.name} within {passed.deadline} of {passed.trigger.name}"
+        if isinstance(passed, Reach):
+            return f"{events_words(passed)} not done within {passed.within} of the start"
     if late:
         doing = ", ".join(f"{name} ({_place(setup, words, play, name)})" for name in late)
         return f"{doing} ought to be done by now and cannot be, so nothing goes on"
+    safety = objectives.get(next(iter(broken), ""))
     if isinstance(safety, Avoid):
         return f"{safety.event.name} has happened, which was to be avoided"
     if isinstance(safety, Always):

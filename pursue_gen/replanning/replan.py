@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from typing import Any, Dict, Mapping
+from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
@@ -21,6 +21,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.objectives import stated
 
 _AT_A_LIMIT = 5
 """The exit status of errors at a limit."""
@@ -101,15 +102,17 @@ def _cannot_be_met(game: Network, request: Request) -> str:
             over[automaton.name] = f"{bound.clock} is {float(clocks[bound.clock]):g}, at most {bound.bound} is allowed"
     for name, why in over.items():
         if name not in agents:
-            return f"{_objective(request.scenario)} cannot be met any more: {why}"
+            missed = stated(request.scenario).get(name)
+            what = _objectives(request.scenario, [missed] if missed else None)
+            return f"{what} cannot be met any more: {why}"
     absent = [name for name in agents if name in request.excused or name in over]
     without = [f"without relying on {' and '.join(absent)}"] if absent else []
     without += [f"without the way between {a} and {b}" for a, b in sorted(request.blocked) if a < b]
-    return " ".join([f"{_objective(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
+    return " ".join([f"{_objectives(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
 
 
-def _objective(scenario: Scenario) -> str:
-    """What is to be met, in the author's words."""
+def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = None) -> str:
+    """What is to be met, or these of it, in the author's words."""
     lines = scenario.text.split("\n")
-    found = (part.span.line for part in (scenario.reach, scenario.safety) if part is not None)
+    found = [part.span.line for part in some or (*scenario.reach, *scenario.safety)]
     return " and ".join(f"'{lines[line - 1].split('//')[0].strip()}'" for line in found)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from string import ascii_letters
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Reach, Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.game import Game, State, compile_game, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import DiscreteState, Strategy, Zone
 from pursue_gen.tga import names
+from pursue_gen.tga.objectives import stated
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 
@@ -253,7 +255,10 @@ def size(data: StrategyData) -> Tuple[int, int]:
 
 
 def shown_name(name: str, kind: str) -> str:
-    """The name of an automaton on the page."""
+    """The name of an automaton on the page; the second objective of a kind and the following have numbers."""
+    number = name.lstrip(ascii_letters)
+    if kind in ("goal", "deadline") and number:
+        return f"{'goal' if kind == 'goal' else 'objective'} {number}"
     return {"goal": "the goal", "deadline": "the objective"}.get(kind, name)
 
 
@@ -262,5 +267,7 @@ def _kind(scenario: Scenario, automaton: str) -> str:
     for agent in scenario.agents:
         if agent.name == automaton:
             return "other" if not agent.controllable else "person" if agent.human else "robot"
-    kinds = {names.REACH: "goal", names.OBJECTIVE: "deadline", names.STATES: "states"}
-    return kinds.get(automaton, "rule")
+    objective = stated(scenario).get(automaton)
+    if objective is not None:
+        return "goal" if isinstance(objective, Reach) else "deadline"
+    return "states" if automaton == names.STATES else "rule"

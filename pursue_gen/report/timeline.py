@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
-from pursue_gen.language.scenario import Respond
+from pursue_gen.language.scenario import Reach, Respond
+from pursue_gen.language.wording import events_words
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
+from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
@@ -215,21 +217,28 @@ def _turns(name: str, found: Sequence[Stay], words: Words, scale: Scale) -> Lane
 
 
 def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
-    """When the clock of a `within` objective ran, and when it would have run out."""
-    safety = recording.scenario.safety
-    if not isinstance(safety, Respond):
-        return
+    """When the clocks of `within` objectives ran, and when they would have run out."""
+    for automaton, objective in stated(recording.scenario).items():
+        found = stays(recording, automaton)
+        if isinstance(objective, Respond):
+            risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
+            yield _deadline(recording, scale, risks, objective.response.name)
+        elif isinstance(objective, Reach) and objective.within is not None:
+            before = [stay for stay in found if stay.what not in ("win", names.LATE)]
+            whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []
+            yield _deadline(recording, scale, [(stay, objective.within) for stay in whole], events_words(objective))
+
+
+def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str) -> Lane:
+    """How long something was due, and by when."""
     parts: List[str] = []
-    for stay in stays(recording, names.OBJECTIVE):
-        if stay.what == names.AT_RISK:
-            due = stay.start + safety.deadline
-            tooltip = f"{safety.response.name} due by {_time(due)}"
-            parts.append(_box(scale, stay, f"due by {_time(due)}", tooltip))
-            if due <= recording.end:
-                x = scale.x(due)
-                parts.append(tag("path", d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
-                                 stroke="#1b1f24", stroke_width=2.5, fill="none", class_="due"))
-    yield Lane("deadline", tuple(parts))
+    for stay, due in risks:
+        parts.append(_box(scale, stay, f"due by {_time(due)}", f"{what} due by {_time(due)}"))
+        if due <= recording.end:
+            x = scale.x(due)
+            parts.append(tag("path", d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
+                             stroke="#1b1f24", stroke_width=2.5, fill="none", class_="due"))
+    return Lane("deadline", tuple(parts))
 
 
 def _course(recording: Recording, scale: Scale) -> Iterator[Lane]:

@@ -74,7 +74,8 @@ def _lost(lost: Lost) -> List[str]:
 
 
 def _explained(explanation: Explanation) -> List[str]:
-    parts = [f"<p>{safe(text)}</p>" for text in endless_texts(explanation)]
+    texts = [*endless_texts(explanation), *([explanation.conflict.in_words()] if explanation.conflict else [])]
+    parts = [f"<p>{safe(text)}</p>" for text in texts]
     parts.append("<h3>What would change that</h3>")
     if explanation.changes:
         items = []

@@ -95,7 +95,8 @@ class Judge:
         if self._broken is None or state.seq == 0:
             return
         broken = self._broken(state.locations, state.values)
-        lost = any(state.locations.get(name) == location for name, location in self._bad)
+        watching = ((name, location) for name, location in self._bad if name in self._broken.automata)
+        lost = any(state.locations.get(name) == location for name, location in watching)
         if lost and not broken:
             self._problem(f"state {state.seq} counts as lost, but the condition of the objective is not broken there")
         elif self._was_broken and not lost:

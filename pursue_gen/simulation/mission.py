@@ -15,6 +15,7 @@ from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.planner import SimulatedPlanner
+from pursue_gen.simulation.promises import Promises
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
@@ -109,6 +110,7 @@ class SimulatedMission:
         broken = broken_of(stage.scenario)
         offset = self.fault_plan.offset
         self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, offset, broken)
+        self._promises = Promises(stage.scenario, exact=not self.faulty)
         self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
         self._kind = kind_in_mission(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)
@@ -159,7 +161,8 @@ class SimulatedMission:
             events.schedule(moment, lambda: self._junk(draw))
 
     def _outcome(self) -> Outcome:
-        mission, problems = self._observer.mission, [*self._judge.problems, *self._complaints]
+        mission = self._observer.mission
+        problems = [*self._judge.problems, *self._promises.problems, *self._complaints]
         if self.faulty and self._latched is not None:
             self._judge.note_lateness(self._latched, self.events.now)
         end, reason = self._end(mission)
@@ -213,6 +216,7 @@ class SimulatedMission:
         if news and self._record:
             self._note(_described(state))
         self._judge.on_state(state, self.events.now)
+        self._promises.on_state(state, self.events.now)
         for node in self._controllers.values():
             self._send_state(node, state, self._stage.reaction)
         if news:

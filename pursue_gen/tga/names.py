@@ -16,7 +16,10 @@ STATES = "states"
 _SAFETY, _REACH = (re.compile(rf"{name}([2-9]|[1-9][0-9]+)?") for name in (OBJECTIVE, REACH))
 
 IDLE, AT_RISK, LOSE = "idle", "atRisk", "lose"
-"""The locations of the objective's automaton: no duty, a deadline is running, a duty was missed."""
+"""The locations of a safety objective's automaton: no duty, a deadline is running, a duty was missed."""
+
+LATE = "late"
+"""The location of a reach objective's automaton in which its deadline has passed."""
 
 going, doing = locations.movement, locations.action
 """The location on the way from one POI to another; the location at work, by event and POI."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import List, Mapping, Tuple
+from itertools import combinations
+from typing import Dict, List, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Safety, Scenario
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Safety, Scenario, StatedObjective
+from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.names import AT_RISK, CLOCK_OBJECTIVE, CLOCK_REACH, IDLE, LOSE, OBJECTIVE, REACH, agent_position
+from pursue_gen.tga.names import AT_RISK, IDLE, LOSE, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.positions import Positions
 
@@ -19,47 +21,90 @@ Happened = Mapping[str, str]
 
 def scenario_objective(scenario: Scenario) -> Objective:
     """What the scenario's controller wants. Raises PursueError where it has no objective."""
-    goal, bad = ((REACH, _WIN),), ((OBJECTIVE, LOSE),)
-    if scenario.reach and scenario.safety:
-        return Objective(Kind.REACH_WHILE_SAFE, goal=goal, bad=bad)
-    if scenario.reach:
-        return Objective(Kind.REACH, goal=goal)
-    if scenario.safety:
-        return Objective(Kind.SAFETY, bad=bad)
+    goal = tuple((names.reach_objective(k), _WIN) for k, _ in enumerate(scenario.reach))
+    bad = [(names.safety_objective(k), names.LOSE) for k, _ in enumerate(scenario.safety)]
+    bounded = (k for k, reach in enumerate(scenario.reach) if reach.within is not None)
+    bad += [(names.reach_objective(k), names.LATE) for k in bounded]
+    if goal:
+        return Objective(Kind.REACH_WHILE_SAFE if bad else Kind.REACH, goal, tuple(bad))
+    if bad:
+        return Objective(Kind.SAFETY, bad=tuple(bad))
     message = f"{scenario.name} has no objective"
     raise PursueError([error("TGA012", message, hint="add a line 'objective: …' or 'reach_objective: …'")])
 
 
-def reach_automaton(reach: Reach, happened: Happened) -> Automaton:
-    """`do e after T`: unlocked once T has passed, won when e happens then."""
-    unlock = Edge(_START, _UNLOCKED, Guard((ClockBound(CLOCK_REACH, ">", reach.after),)))
-    win = Edge(_UNLOCKED, _WIN, sync=Sync(happened[reach.event.name], sends=False))
-    return Automaton(REACH, (Location(_START), Location(_UNLOCKED, named=False), Location(_WIN)), _START, (unlock, win))
+def stated(scenario: Scenario) -> Dict[str, StatedObjective]:
+    """For the automaton of each objective what it watches, in the order of the network."""
+    found: Dict[str, StatedObjective] = {names.safety_objective(k): each for k, each in enumerate(scenario.safety)}
+    found.update((names.reach_objective(k), each) for k, each in enumerate(scenario.reach))
+    return found
+
+
+def clock_of(scenario: Scenario, automaton: str) -> str:
+    """The clock of an objective's automaton."""
+    order = list(stated(scenario))
+    number = order.index(automaton)
+    count = len(scenario.safety)
+    return names.safety_clock(number) if number < count else names.reach_clock(number - count)
+
+
+def reach_automaton(reach: Reach, happened: Happened, number: int = 0) -> Automaton:
+    """`do e1 and e2 after T within D`: unlocked once T has passed, won when each event has happened since then.
+
+    A deadline is the invariant of all locations before; `late` is what remains to do when it is reached.
+    """
+    clock = names.reach_clock(number)
+    limit = () if reach.within is None else (ClockBound(clock, "<=", reach.within),)
+    count = len(reach.events)
+    places = [Location(_START, limit), Location(_UNLOCKED, limit, named=False)]
+    edges = [Edge(_START, _UNLOCKED, Guard((ClockBound(clock, ">", reach.after),)))]
+    for size in range(count):
+        for done in combinations(range(count), size):
+            places += [Location(_done(done, count), limit)] if done else []
+            for k in (k for k in range(count) if k not in done):
+                sync = Sync(happened[reach.events[k].name], sends=False)
+                edges.append(Edge(_done(done, count), _done((*done, k), count), sync=sync))
+    late = [] if reach.within is None else [Location(names.LATE)]
+    edges += [Edge(place.name, names.LATE) for place in places for _ in late]
+    return Automaton(names.reach_objective(number), (*places, Location(_WIN), *late), _START, tuple(edges))
+
+
+def _done(events: Sequence[int], count: int) -> str:
+    """The location in which so many of the events have happened, named by their numbers from 1."""
+    if len(events) == count:
+        return _WIN
+    return "_".join(["did", *(str(k + 1) for k in sorted(events))]) if events else _UNLOCKED
+
+
+def events_done(location: str) -> Tuple[int, ...]:
+    """The numbers, from 0, of the events that have happened in a location of a reach objective's automaton."""
+    return tuple(int(k) - 1 for k in location.split("_")[1:]) if location.startswith("did_") else ()
 
 
 def safety_automaton(
-    safety: Safety, happened: Happened, positions: Positions, conditions: Conditions
+    safety: Safety, happened: Happened, positions: Positions, conditions: Conditions, number: int = 0
 ) -> Automaton:
     """The automaton that goes to `lose` when the safety objective is broken."""
+    name, clock = names.safety_objective(number), names.safety_clock(number)
     locations: Tuple[Location, ...] = (Location(IDLE), Location(LOSE))
     if isinstance(safety, Respond):
-        locations += (Location(AT_RISK, (ClockBound(CLOCK_OBJECTIVE, "<=", safety.deadline),)),)
-        return Automaton(OBJECTIVE, locations, IDLE, _respond(safety, happened))
+        locations += (Location(AT_RISK, (ClockBound(clock, "<=", safety.deadline),)),)
+        return Automaton(name, locations, IDLE, _respond(safety, happened, clock))
     if isinstance(safety, Avoid):
         lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
-        return Automaton(OBJECTIVE, locations, IDLE, (lose,))
+        return Automaton(name, locations, IDLE, (lose,))
     if isinstance(safety, Always):
         broken = conditions.ways_to_hold(safety.broken_if)
         edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)
-        return Automaton(OBJECTIVE, locations, IDLE, edges)
-    return Automaton(OBJECTIVE, locations, IDLE, _never_with(safety, positions))
+        return Automaton(name, locations, IDLE, edges)
+    return Automaton(name, locations, IDLE, _never_with(safety, positions))
 
 
-def _respond(safety: Respond, happened: Happened) -> Tuple[Edge, ...]:
+def _respond(safety: Respond, happened: Happened, clock: str) -> Tuple[Edge, ...]:
     trigger = Sync(happened[safety.trigger.name], sends=False)
     response = Sync(happened[safety.response.name], sends=False)
     return (
-        Edge(IDLE, AT_RISK, sync=trigger, resets=(CLOCK_OBJECTIVE,)),
+        Edge(IDLE, AT_RISK, sync=trigger, resets=(clock,)),
         Edge(AT_RISK, IDLE, sync=response),
         # The deadline is the invariant of atRisk; this is what remains to do when it is reached.
         Edge(AT_RISK, LOSE),

@@ -38,8 +38,8 @@ def translate(scenario: Scenario) -> Network:
     states = states_automaton(scenario.states)
     automata = [states] if states else []
     automata += [assumed(bound(agent_automaton(agent, around), own), scenario) for agent in scenario.agents]
-    automata += [safety_automaton(scenario.safety, happened, codes, conditions)] if scenario.safety else []
-    automata += [reach_automaton(scenario.reach, happened)] if scenario.reach else []
+    automata += [safety_automaton(each, happened, codes, conditions, k) for k, each in enumerate(scenario.safety)]
+    automata += [reach_automaton(each, happened, k) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario)
@@ -64,8 +64,8 @@ def translation_notes(scenario: Scenario) -> Tuple[Diagnostic, ...]:
 
 def _clocks(scenario: Scenario) -> Tuple[str, ...]:
     clocks = [names.agent_clock(agent.name) for agent in scenario.agents]
-    clocks += [names.CLOCK_OBJECTIVE] if scenario.safety else []
-    clocks += [names.CLOCK_REACH] if scenario.reach else []
+    clocks += [names.safety_clock(k) for k, _ in enumerate(scenario.safety)]
+    clocks += [names.reach_clock(k) for k, _ in enumerate(scenario.reach)]
     return (*clocks, *assumption_clocks(scenario))
 
 

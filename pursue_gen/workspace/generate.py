@@ -14,8 +14,8 @@ import jinja2
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
-from pursue_gen.language.scenario import Connection, Scenario
-from pursue_gen.language.wording import condition_of_promise
+from pursue_gen.language.scenario import Connection, Reach, Safety, Scenario
+from pursue_gen.language.wording import condition_of_promise, listed
 from pursue_gen.partition import SubStrategy, partition, strategy_file
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
@@ -248,17 +248,19 @@ def _readme(
 
 def _promise(scenario: Scenario) -> str:
     """What the mission guarantees, in a sentence, with the names of the scenario."""
-    goal = f"reaches `{scenario.reach.event.name}`" if scenario.reach else ""
-    if goal and scenario.reach and scenario.reach.after:
-        goal += f" after {scenario.reach.after} time units"
-    safe = f"keeps `{_source(scenario)}`" if scenario.safety else ""
-    what = " and ".join(part for part in (goal, safe) if part)
+    parts = [_reaches(reach) for reach in scenario.reach]
+    parts += [f"keeps `{_source(scenario, safety)}`" for safety in scenario.safety]
     assumed = condition_of_promise(scenario)
-    return f"The mission {what}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
+    return f"The mission {listed(parts)}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
 
 
-def _source(scenario: Scenario) -> str:
-    """The safety objective as it stands in the scenario."""
-    assert scenario.safety is not None
-    line = scenario.text.splitlines()[scenario.safety.span.line - 1]
+def _reaches(reach: Reach) -> str:
+    goal = "reaches " + listed(f"`{ref.name}`" for ref in reach.events)
+    goal += f" after {reach.after} time units" if reach.after else ""
+    return goal if reach.within is None else f"{goal} within {reach.within} time units"
+
+
+def _source(scenario: Scenario, safety: Safety) -> str:
+    """A safety objective as it stands in the scenario."""
+    line = scenario.text.splitlines()[safety.span.line - 1]
     return line.split("//")[0].split(":", 1)[-1].strip()

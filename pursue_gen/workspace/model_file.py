@@ -6,13 +6,14 @@ from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import assumption_words
+from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.names import STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
+from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.words import event_word
 
 
@@ -37,7 +38,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
         "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],
-        "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad}),
+        "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **_says(scenario, objective)}),
     }
     if scenario.assumptions:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
@@ -56,6 +57,12 @@ def _has_several(objective: Objective) -> bool:
     """True for what only format 2 can say: several places, or one automaton with a place to reach and one to avoid."""
     watching = [name for name, _ in (*objective.goal, *objective.bad)]
     return len(objective.goal) > 1 or len(objective.bad) > 1 or len(set(watching)) < len(watching)
+
+
+def _says(scenario: Scenario, objective: Objective) -> Dict[str, Any]:
+    """What each automaton watches, in the words of the scenario, where there are several."""
+    said = {name: objective_text(each) for name, each in stated(scenario).items()}
+    return {"says": said} if _has_several(objective) else {}
 
 
 def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:

@@ -99,9 +99,9 @@ class Automata:
         goal = self.model.goal
         return bool(goal) and all(self.location_of(name) == location for name, location in goal)
 
-    def is_lost(self) -> bool:
-        """Return True if an automaton is where it must not be."""
-        return any(self.location_of(name) == location for name, location in self.model.bad)
+    def lost(self) -> Tuple[str, ...]:
+        """Return the automata that are where they must not be."""
+        return tuple(name for name, location in self.model.bad if self.location_of(name) == location)
 
     def position(self, now: float) -> Position:
         """Return the locations, variables and clocks at the time `now`; what is returned is not changed any more.

@@ -374,8 +374,10 @@ class Mission:
         position = self.position(now)
         if self._automata.is_won():
             self._conclude(WON, "", now)
-        elif self._automata.is_lost():
-            self._conclude(LOST, why or f"{self._event} by {self._agent}", now)
+        elif self._automata.lost():
+            broken = [self.model.says[name] for name in self._automata.lost() if name in self.model.says]
+            reason = why or f"{self._event} by {self._agent}"
+            self._conclude(LOST, f"{reason} (broken: {', '.join(broken)})" if broken else reason, now)
         else:
             moves = self._automata.internal_move(position)
             if not moves:

@@ -205,8 +205,10 @@ class MissionView:
             return None
         after = f"after {self.elapsed(state.stamp):.1f} time units"
         if state.status == WON:
-            goal = "The goal is reached" if self._model.goal else "The objective was kept to the end"
-            return 0, f"{goal}, {after}."
+            several = len(self._model.says) > 1
+            goal = "All goals are reached" if len(self._model.goal) > 1 else "The goal is reached"
+            kept = "All objectives were kept to the end" if several else "The objective was kept to the end"
+            return 0, f"{goal if self._model.goal else kept}, {after}."
         if state.status == LOST:
             return 1, f"The mission is lost, {after}: {state.reason or 'the safety objective is broken'}."
         return 1, f"The mission was stopped, {after}: {state.reason or '_stop_ was published'}."

@@ -43,7 +43,8 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     if automaton.kind not in ACTING:
         goals = dict(model.goal)
         counts = goals.get(state.agent, here) != here and (state.agent, here) not in model.bad
-        return "the goal counts from now on" if counts else f"{state.agent}: {here}"
+        what = model.says.get(state.agent, "the goal" if counts else state.agent)
+        return f"{what} counts from now on" if counts else f"{what}: {here}"
     before = last.locations.get(state.agent, "") if last is not None else ""
     edges = [edge for edge in automaton.edges if edge.word == state.event and edge.source != edge.target]
     likely = sorted(edges, key=lambda edge: (edge.target != here, edge.source != before))

@@ -58,7 +58,7 @@ def test_every_combination_of_options_is_won(kind: str, robots: int, places: int
     assert [poi.name for poi in scenario.pois] == list(ROW[:places])
     assert sum(agent.controllable for agent in scenario.agents) == robots
     kinds = {"reach": Reach, "catch": Reach, "respond": Respond, "avoid": Avoid, "never-with": NeverWith}
-    assert isinstance(scenario.safety or scenario.reach, kinds[kind])
+    assert isinstance(scenario.objectives[0], kinds[kind])
 
 
 @pytest.mark.parametrize("speeds", [(1,), (3,), (1, 3), (4, 2)])
@@ -88,8 +88,9 @@ def test_the_deadline_can_be_kept(
     )
     required = Requirements("respond", places, distances, robots, "man", None, "call")
     scenario = sound_and_won(scenario_text(required, "floor.pur"))
-    assert isinstance(scenario.safety, Respond)
-    assert scenario.safety.deadline == deadline(distances, robots)
+    (safety,) = scenario.safety
+    assert isinstance(safety, Respond)
+    assert safety.deadline == deadline(distances, robots)
 
 
 # The questions --------------------------------------------------------------------------------------------------------
@@ -238,7 +239,7 @@ def test_a_file_is_not_replaced_without_force(folder: Path) -> None:
     assert done.status == 2 and "--force" in done.err
     assert (folder / "floor.pur").read_text(encoding="utf-8") == "mine"
     assert pursue("new", "floor", "--yes", "--force", "--kind", "avoid").status == 0
-    assert isinstance(load(folder / "floor.pur").safety, Avoid)
+    assert isinstance(load(folder / "floor.pur").safety[0], Avoid)
 
 
 @pytest.mark.parametrize("answers", [b"", b"1\n", b"1\na,b\n\xff\n"])

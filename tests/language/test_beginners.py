@@ -154,7 +154,7 @@ reach_objective knock
         ("PML010", 3, "the form is: connect a and b distance 3"),
         ("PML010", 6, 'the form is: rule "order": first before second (or: first or s'),
         ("PML010", 7, "put a comma between two names"),
-        ("PML010", 8, "the form is: reach_objective: do e after 0 (after is optional)"),
+        ("PML010", 8, "the form is: reach_objective: do e1 and e2 after 10 within 60"),
     ]),
     ("three in a row", """\
 poi "desk"
@@ -261,12 +261,12 @@ connect door and desk distance 3
 event "knock" location door
 agent "bot" controllable mobile 1 location desk can_do knock, knock
 reach_objective: do knock
-reach_objective: do knock after 5
+reach_objective: do knock
 """, [
         ("PML103", 3, "delete one"),
         ("PML146", 5, "delete one: a connection goes both ways"),
         ("PML156", 7, "delete one"),
-        ("PML170", 9, "keep one; one objective and one reach_objective together are a"),
+        ("PML220", 9, "delete one of the two"),
     ]),
     ("a handover without a partner", """\
 poi "desk"
@@ -305,7 +305,7 @@ reach_objective: knock
         ("PML010", 5, "did you mean location?"),
         ("PML010", 6, "did you mean before?"),
         ("PML010", 7, "did you mean mobile?"),
-        ("PML010", 8, "the form is: reach_objective: do e after 0 (after is optional)"),
+        ("PML010", 8, "the form is: reach_objective: do e1 and e2 after 10 within 60"),
     ]),
     ("human in front", """\
 poi "desk"

@@ -203,8 +203,16 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         {"objective": "objective: bot never_with man", "agent_man": MAN.replace("location b", "location a")},
         [("PML174", 12, "both start in a", "somewhere else")],
     ),
-    ({"more": "objective: avoid rest"}, [("PML170", 14, "a second objective", "keep one")]),
-    ({"more": "reach_objective: do rest"}, [("PML170", 14, "a second reach_objective", "keep one")]),
+    ({"more": "objective: avoid rest\nreach_objective: do hand after 99\nobjective: bot never_with man"}, []),
+    ({"objective": "objective: avoid rest", "more": "objective: avoid rest"}, [("PML220", 14, "line 12", "delete")]),
+    ({"reach": "reach_objective: do rest", "more": "objective: avoid rest"}, [("PML221", 13, "line 14 has", "delete")]),
+    ({"reach": "reach_objective: do work and work"}, [("PML222", 13, "work stands twice", "delete one")]),
+    ({"reach": "reach_objective: do work and hand and wrk"}, [("PML110", 13, "no event wrk", "did you mean work?")]),
+    ({"reach": "reach_objective: do work within 0"}, [("PML223", 13, "ends before it counts", "within 1 or more")]),
+    ({"reach": "reach_objective: do work after 9 within 9"}, [("PML223", 13, "later than 9", "within 10 or more")]),
+    ({"reach": "reach_objective: do work and hand after 9 within 10"}, []),
+    ({"more": "objective: if work then work within 3"}, [("PML172", 14, "its own answer", "follow")]),
+    ({"more": "objective: if work then hand within 0"}, [("PML143", 14, "no time to answer", "time units")]),
     ({"more": 'poi "c" connect c and a distance 1'}, [("PML190", 14, "only before objective", "the order is free")]),
 ]  # fmt: skip
 

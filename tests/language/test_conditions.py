@@ -107,18 +107,20 @@ def test_objectives_on_conditions_are_read_and_told() -> None:
         ("always any robot at hall", "It always holds that any robot is at hall."),
     ):
         scenario = parse(SCENARIO + f"objective: {words}\n", "x.pur")
-        assert isinstance(scenario.safety, Always) and scenario.safety.holds is words.startswith("always")
+        (safety,) = scenario.safety
+        assert isinstance(safety, Always) and safety.holds is words.startswith("always")
         assert objective_words(scenario)[0] == told
-    plain = parse(SCENARIO + "objective: avoid open\n", "x.pur").safety
+    (plain,) = parse(SCENARIO + "objective: avoid open\n", "x.pur").safety
     assert isinstance(plain, Avoid) and plain.event.name == "open"
     apart = parse(SCENARIO + "objective: anna never_with dora at yard\n", "x.pur")
-    assert isinstance(apart.safety, NeverWith) and apart.safety.place and apart.safety.place.name == "yard"
+    (safety,) = apart.safety
+    assert isinstance(safety, NeverWith) and safety.place and safety.place.name == "yard"
     assert objective_words(apart)[0] == "anna and dora are never both at yard."
 
 
 def test_always_may_be_a_name() -> None:
     text = 'poi "a" agent "always" location a agent "x" location a objective: always never_with x at a'
-    safety = parse(text, "x.pur").safety
+    (safety,) = parse(text, "x.pur").safety
     assert isinstance(safety, NeverWith) and safety.first.name == "always"
 
 

@@ -136,6 +136,8 @@ def test_a_name_for_two_kinds(name: str) -> None:
         ({"rule": RULE.replace("order", "Creach")}, "Creach"),
         ({"agent_man": MAN.replace("man", "reach")}, "Creach"),
         ({"rule": RULE + '\nrule "Porder": work before rest'}, "Porder"),
+        ({"rule": RULE.replace("order", "obj2"), "more": "objective: avoid rest"}, "obj2"),
+        ({"rule": RULE.replace("order", "Creach2"), "more": "reach_objective: do rest"}, "Creach2"),
         ({"poi_b": 'poi "b" poi "a2a" connect a and a2a distance 1'}, "bot_a2a2a"),
         ({"poi_b": AMBIGUOUS}, "going_a_to_b_to_c"),
     ],
@@ -143,6 +145,13 @@ def test_a_name_for_two_kinds(name: str) -> None:
 def test_names_from_which_one_word_would_be_made_twice(changes: Dict[str, str], word: str) -> None:
     found = [finding for finding in findings(text(**changes)) if finding.code == "PML105"]
     assert [word in finding.message for finding in found] == [True]
+
+
+def test_the_names_of_further_objectives_are_taken_where_there_are_such() -> None:
+    for name in ("obj2", "reachObj2", "obj7"):
+        assert findings(text(agent_man=MAN.replace("man", name))) == []
+    found = findings(text(agent_man=MAN.replace("man", "reachObj2"), more="reach_objective: do rest"))
+    assert [finding.code for finding in found] == ["PML105"]
 
 
 def test_package_names_do_not_collide() -> None:

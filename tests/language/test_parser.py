@@ -43,8 +43,8 @@ def test_every_field_is_read() -> None:
     assert (bot.controllable, bot.human, bot.mobile, bot.location.name) == (True, False, 2, "a")
     assert bot.is_robot and not man.is_robot and man.mobile is None
     assert [ref.name for ref in man.reacts_to] == ["hand"]
-    assert isinstance(scenario.safety, Respond) and scenario.safety.deadline == 20
-    assert isinstance(scenario.reach, Reach) and scenario.reach.after == 4
+    assert isinstance(scenario.safety[0], Respond) and scenario.safety[0].deadline == 20
+    assert isinstance(scenario.reach[0], Reach) and scenario.reach[0].after == 4
     assert rest.name == "rest"
 
 
@@ -69,7 +69,7 @@ def test_layout_comments_and_a_query_behind_the_objective_change_nothing(source:
     scenario = parse(source, "test.pur")
     assert [poi.name for poi in scenario.pois] == ["a"]
     assert [agent.name for agent in scenario.agents] == ["bot"]
-    assert isinstance(scenario.safety, Avoid)
+    assert isinstance(scenario.safety[0], Avoid)
 
 
 def test_and_joins_parts_of_a_rule() -> None:
@@ -178,7 +178,7 @@ def test_words_of_younger_statements_are_names_everywhere_else() -> None:
     """
     scenario = parse(source, "test.pur")
     assert [ref.name for ref in scenario.agents[0].can_do] == ["walk", "travel"]
-    assert scenario.travels[0].way == ("hall", "to") and scenario.reach is not None
+    assert scenario.travels[0].way == ("hall", "to") and len(scenario.reach) == 1
     assert check(scenario) == ()
 
 
@@ -191,21 +191,27 @@ def test_human_is_a_word_before_controllable_and_a_name_everywhere_else() -> Non
     human, nurse = scenario.agents
     assert (human.name, human.human, human.controllable) == ("human", False, False)
     assert (nurse.human, nurse.controllable, nurse.is_robot) == (True, True, False)
-    assert isinstance(scenario.safety, NeverWith) and scenario.safety.first.name == "human"
+    assert isinstance(scenario.safety[0], NeverWith) and scenario.safety[0].first.name == "human"
 
 
-def test_after_is_optional() -> None:
-    reach = parse("reach_objective: do e", "test.pur").reach
-    assert reach is not None and reach.after == 0
+def test_after_and_within_are_optional() -> None:
+    forms = (("", 0, None), (" after 3", 3, None), (" within 9", 0, 9), (" after 3 within 9", 3, 9))
+    for words, after, within in forms:
+        (reach,) = parse(f"reach_objective: do e{words}", "test.pur").reach
+        assert ([ref.name for ref in reach.events], reach.after, reach.within) == (["e"], after, within)
 
 
-def test_one_objective_of_each_kind_but_not_two_of_one() -> None:
-    both = parse("objective: avoid e reach_objective: do f", "test.pur")
-    assert both.safety is not None and both.reach is not None
-    with pytest.raises(PursueError) as caught:
-        parse("objective: avoid e\nobjective: a never_with b\nreach_objective: do e\nreach_objective: do f", "test.pur")
-    places = [(finding.code, finding.span and finding.span.line) for finding in caught.value.diagnostics]
-    assert places == [("PML170", 2), ("PML170", 4)]
+def test_several_things_may_be_to_do() -> None:
+    (reach,) = parse("reach_objective: do e and f and together after 3", "test.pur").reach
+    assert ([ref.name for ref in reach.events], reach.after) == (["e", "f", "together"], 3)
+
+
+def test_there_may_be_as_many_objectives_as_wanted_in_any_order() -> None:
+    text = "reach_objective: do e\nobjective: avoid f\nreach_objective: do g\nobjective: a never_with b"
+    scenario = parse(text, "test.pur")
+    assert [safety.span.line for safety in scenario.safety] == [2, 4]
+    assert [reach.span.line for reach in scenario.reach] == [1, 3]
+    assert scenario.objectives == (*scenario.safety, *scenario.reach)
 
 
 def test_load_takes_the_name_from_the_file(tmp_path: Path) -> None:
@@ -305,7 +311,7 @@ def test_names_and_numbers_come_out_as_they_went_in(names: List[str], number: in
     assert [(part.name, part.initially) for part in scenario.states] == [(state, controllable)]
     assert [(agent.name, agent.controllable) for agent in scenario.agents] == [(bot, controllable), (man, False)]
     assert [ref.name for ref in scenario.agents[0].can_do] == [e, f]
-    assert isinstance(scenario.safety, Respond) and scenario.safety.deadline == number
+    assert isinstance(scenario.safety[0], Respond) and scenario.safety[0].deadline == number
 
 
 def test_every_statement_of_the_sample_may_stand_alone() -> None:

@@ -104,11 +104,13 @@ def test_thesis_scenarios_say_what_the_listings_say(name: str) -> None:
         for agent in scenario.agents
     } == agents
     assert [agent.name for agent in scenario.agents if not agent.controllable] == (["thief"] if goal == "catch" else [])
-    assert scenario.reach is not None and (scenario.reach.event.name, scenario.reach.after) == (goal, 0)
-    assert scenario.safety is None
+    (reach,) = scenario.reach
+    assert ([ref.name for ref in reach.events], reach.after, reach.within) == ([goal], 0, None)
+    assert not scenario.safety
     assert all(poi.pose is None for poi in scenario.pois) == name.startswith("scenario")
 
 
 def test_the_office_robot_has_the_deadline_that_it_can_keep() -> None:
     scenario = load(ROOT / "scenarios" / "ecobot" / "ecobot.pur")
-    assert isinstance(scenario.safety, Respond) and scenario.safety.deadline == 46
+    (safety,) = scenario.safety
+    assert isinstance(safety, Respond) and safety.deadline == 46

@@ -105,7 +105,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ("objective: |", ["if", "avoid", "always"]),
         ('rule "new": work |', ["and", "before", "or"]),
         ("stateDependency: work only_if tired |", ["is_true", "is_false"]),
-        ("reach_objective: do work |", ["after"]),
+        ("reach_objective: do work |", ["and", "within", "after"]),
         ("nonsense here |", []),
     ],
 )

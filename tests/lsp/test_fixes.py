@@ -85,7 +85,7 @@ MISTAKES = {
     "PML158": changed('"hand" collaborative', '"hand" collaborative duration 3'),
     "PML159": changed('"work" location', '"work" together location'),
     "PML159 without a duration": changed('"hand" collaborative', '"hand" collaborative together'),
-    "PML170": SMALL + "reach_objective: do work\n",
+    "PML220": SMALL + SMALL.rstrip().rsplit("\n", 1)[-1] + "\n",
     "PML171": re.sub("(reach_)?objective.*\n", "", SMALL),
     "PML180": changed('agent "man"', 'agent "man" human'),
     "PML190": 'agent "early" location a // it waits\n' + SMALL,

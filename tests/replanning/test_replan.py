@@ -181,6 +181,13 @@ def test_a_deadline_that_has_passed_is_named() -> None:
     assert "cannot be met any more: Cobj is 5001, at most" in text and "'objective: " in text
 
 
+def test_of_several_objectives_the_one_whose_deadline_has_passed_is_named() -> None:
+    request = beginning("hotel/two_bells")
+    locations = {**request["locations"], "obj2": "atRisk"}
+    text = why({**request, "locations": locations, "clocks": {**request["clocks"], "Cobj2": 5000.0}})
+    assert text.startswith("'objective: if ringWest then serveWest within 20' cannot be met any more: Cobj2 is 5001")
+
+
 def test_a_plan_that_takes_too_long_is_none() -> None:
     assert why(beginning("thesis/scenario_4", limit=1e-5)) == "no plan was found within 1e-05 s"
 

@@ -64,6 +64,14 @@ def stories(draw: st.DrawFn) -> Tuple[str, Scenario]:
         objectives.insert(0, "objective: bot0 never_with guest0")
     if len(objectives) > 1 and draw(st.integers(0, 3)) == 0:
         del objectives[1]
+    more = draw(st.sampled_from(("", "", "", "goal", "deadline", "call", "with")))
+    if more in ("goal", "deadline"):
+        todo = draw(st.sampled_from(("a0", "report", "a0 and report")))
+        objectives.append(f"reach_objective: do {todo} after 1" + (" within 60" if more == "deadline" else ""))
+    elif more == "call" and callers:
+        objectives.append(f"objective: if {callers[-1]} then report within {draw(st.integers(10, 40))}")
+    elif more == "with" and people > 1:
+        objectives.append("objective: bot0 never_with guest1")
     lines = [f'poi "{place}"' for place in places]
     lines += [f"connect {a} and {b} distance {distance}{_one_way(draw)}" for a, b, distance in ways]
     lines += events + [f'rule "r{number}"{_each(draw)}: {rule}' for number, rule in enumerate(rules)] + states

@@ -350,6 +350,21 @@ def test_names_that_yaml_misreads_are_found_in_every_file(loader: str) -> None:
     assert all("no" in entry["state"] for entry in found["src/observer/config/cover.yaml"]["cover"])
 
 
+def test_a_mission_of_several_objectives_names_them_all() -> None:
+    found = files("airport/last_call")
+    model = yaml.safe_load(found["src/observer/config/model.yaml"])
+    assert (model["format"], model["objective"]["goal"]) == (2, ["reachObj", "win"])
+    assert model["objective"]["bad"] == ["reachObj", "late"]
+    assert model["objective"]["says"] == {"reachObj": "do stamp and fetch within 26"}
+    assert {automaton["name"]: automaton["kind"] for automaton in model["automata"]} == {
+        "porter": "robot", "reachObj": "reach",
+    }  # fmt: skip
+    assert "reaches `stamp` and `fetch` within 26 time units, whatever" in found["README.md"].decode()
+    readme = " ".join(files("hotel/two_bells")["README.md"].decode().split())
+    for side in ("East", "West"):
+        assert f"keeps `if ring{side} then serve{side} within 20`" in readme
+
+
 def test_expectations_of_the_launch_tests() -> None:
     expected = json.loads(files("thesis/catch_the_thief")["src/catch_the_thief_bringup/test/expected.json"])
     assert expected["reach"] is True

@@ -330,7 +330,7 @@ automata:
   locations: {initial_location: [], win: []}
   edges:
   - {from: initial_location, to: win, word: wave, sync: receive, controllable: true}
-objective: {kind: reach-while-safe, goal: [[reachObj, win], [reachObj2, win]], bad: [[obj, lose], [reachObj, late]]}
+objective: {kind: reach-while-safe, goal: [[reachObj, win], [reachObj2, win]], bad: [[obj, lose], [reachObj, late]], says: {obj: avoid fall, reachObj: do load within 9, reachObj2: do wave}}
 """
 UNLOCK = "reachObj_going_initial_location2unlocked"
 
@@ -348,7 +348,8 @@ def test_any_of_several_bad_locations_loses() -> None:
     journey = Journey(SEVERAL)
     journey.hear("_start_", 0.0)
     journey.hear("wave", 1.0)
-    assert journey.hear("fall", 2.0).status == "lost"
+    state = journey.hear("fall", 2.0)
+    assert (state.status, state.reason) == ("lost", "fall by bot (broken: avoid fall)")
 
 
 @pytest.mark.parametrize("unlocked", [False, True])
@@ -360,7 +361,8 @@ def test_the_deadline_of_a_goal_passes_wherever_it_waits(unlocked: bool) -> None
     moment = journey.mission.next_moment(1.0)
     assert moment == pytest.approx(9.1)
     state = journey.mission.on_time(moment)[-1]
-    assert (state.status, state.locations["reachObj"]) == ("lost", "late") and "deadline of reachObj" in state.reason
+    assert (state.status, state.locations["reachObj"]) == ("lost", "late")
+    assert state.reason == "the deadline of reachObj has passed (broken: do load within 9)"
 
 
 # Cover ----------------------------------------------------------------------------------------------------------------

@@ -1,0 +1,70 @@
+"""Which objectives of a lost scenario cannot be promised together: found by solving with fewer of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import List, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import Reach, Scenario, StatedObjective
+from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.tga import scenario_objective, translate
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+_SHARE = 0.5
+"""The part of what is left of the budget that one game may take."""
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Objectives that cannot be promised together. `least`: without any one of them the others of these can."""
+
+    objectives: Tuple[StatedObjective, ...]
+    least: bool
+    of: int
+
+    def in_words(self) -> str:
+        """A sentence or two."""
+        texts = [f"'{statement_text(objective)}'" for objective in self.objectives]
+        if len(texts) == 1:
+            return f"{texts[0]} cannot be promised, even as the only objective."
+        if self.least and len(texts) == self.of == 2:
+            return f"Of {listed(texts)} each alone can be promised, both together cannot."
+        rest = " Without any one of them the others of these can." if self.least else ""
+        return f"{listed(texts)} cannot be promised together.{rest}"
+
+
+def conflict(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Conflict]:
+    """As few objectives of a lost scenario as still cannot be promised together; None where it has one alone.
+
+    What must always hold is left out first: without anything to reach it would have to hold for ever.
+    """
+    if len(scenario.objectives) < 2:
+        return None
+    kept: List[StatedObjective] = list(scenario.objectives)
+    least = True
+    for objective in scenario.objectives:
+        fewer = [other for other in kept if other is not objective]
+        won = _won(scenario, fewer, rules, budget) if fewer else True
+        if won is False:
+            kept = fewer
+        least = least and won is not None
+    return Conflict(tuple(kept), least, len(scenario.objectives))
+
+
+def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, budget: Budget) -> Optional[bool]:
+    """Whether these alone can be promised; None: not decided within the budget."""
+    safety = tuple(each for each in scenario.safety if any(each is kept for kept in objectives))
+    reach = tuple(each for each in objectives if isinstance(each, Reach))
+    fewer = replace(scenario, safety=safety, reach=reach)
+    try:
+        network = played(translate(fewer), rules)
+        return budget.verdict(network, scenario_objective(fewer), rules.reaction, _SHARE).won
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None

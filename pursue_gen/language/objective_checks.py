@@ -1,0 +1,45 @@
+"""What is wrong with objectives beside each other, and with what is to be done."""
+
+from __future__ import annotations
+
+from typing import Dict, Iterator, Set
+
+from pursue_gen.diagnostics import Diagnostic, error
+from pursue_gen.language.scenario import Avoid, Reach, Scenario
+from pursue_gen.language.wording import objective_text
+
+MOST_EVENTS = 5
+"""So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
+
+
+def check_objectives(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
+    lines: Dict[str, int] = {}
+    for objective in sorted(scenario.objectives, key=lambda each: (each.span.line, each.span.column)):
+        text = objective_text(objective)
+        if text in lines:
+            message = f"the same objective stands in line {lines[text]} already"
+            yield error("PML220", message, objective.span, "delete one of the two")
+        lines.setdefault(text, objective.span.line)
+    avoided = {safety.event.name: safety for safety in scenario.safety if isinstance(safety, Avoid)}
+    for reach in scenario.reach:
+        for ref in reach.events:
+            if ref.name in avoided:
+                message = f"{ref.name} is to be done, and line {avoided[ref.name].span.line} has it avoided"
+                yield error("PML221", message, ref.span, "delete one of the two, or name another event")
+        yield from _reach(reach)
+
+
+def _reach(reach: Reach) -> Iterator[Diagnostic]:
+    seen: Set[str] = set()
+    for ref in reach.events:
+        if ref.name in seen:
+            yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
+        seen.add(ref.name)
+    if len(reach.events) > MOST_EVENTS:
+        message = f"more than {MOST_EVENTS} events behind one do"
+        yield error("PML224", message, reach.span, "write several lines: all reach_objectives have to be reached")
+    if reach.within is not None and reach.within <= reach.after:
+        message = f"within {reach.within} ends before it counts, which is later than {reach.after}"
+        hint = f"both count from the start of the mission: write within {reach.after + 1} or more"
+        yield error("PML223", message, reach.span, hint)

@@ -1,0 +1,89 @@
+"""What the objectives of a scenario mean for the course of a mission, without the network: by its events and places.
+
+A mission may end as won only where everything to be reached has happened in time, and nothing was broken before; and as
+lost only where an objective is broken.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, FrozenSet, List, Optional, Set
+
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Safety, Scenario
+from pursue_gen.language.wording import objective_text
+from pursue_gen.simulation.commands import EPSILON
+from pursue_gen.simulation.meaning import holds
+from pursue_gen.tga.names import going, has_happened
+from pursue_runtime.locations import place_of
+from pursue_runtime.state import LOST, WON, SystemState
+
+
+class Promises:
+    """The objectives of one mission. `problems`: what must never be."""
+
+    def __init__(self, scenario: Scenario, exact: bool = True) -> None:
+        """`exact`: nothing comes late, so that a deadline is either kept or missed; False where there are faults."""
+        self.problems: List[str] = []
+        self._scenario, self._exact = scenario, exact
+        self._events = {has_happened(event): event.name for event in scenario.events}
+        self._ways = {going(a, b): frozenset((a, b)) for way in scenario.connections for a, b in way.directions}
+        self._places = [poi.name for poi in scenario.pois]
+        self._done: List[Set[str]] = [set() for _ in scenario.reach]
+        self._since: Dict[int, float] = {}
+        self._broken: Dict[str, float] = {}
+        self._begun: Optional[float] = None
+        self._seq = 0
+
+    def on_state(self, state: SystemState, now: float) -> None:
+        """The observer publishes a state, at this moment (seconds)."""
+        if state.seq > 0 and self._begun is None:
+            self._begun = now
+        if self._begun is None:
+            return
+        at = (now - self._begun) / state.unit
+        # A deadline that ends now is missed where the mission is lost, and kept where it is not.
+        latest = at + EPSILON if state.status == LOST else at - EPSILON
+        event = self._events.get(state.event, "") if state.seq > self._seq else ""
+        self._seq = max(self._seq, state.seq)
+        for number, safety in enumerate(self._scenario.safety):
+            if self._breaks(number, safety, event, latest, state):
+                self._broken.setdefault(objective_text(safety), at)
+        for reach, done in zip(self._scenario.reach, self._done):
+            in_time = reach.within is None or latest <= reach.within
+            if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
+                done.add(event)
+            if not in_time and len(done) < len(reach.events):
+                self._broken.setdefault(objective_text(reach), at)
+        if self._exact:
+            self._check(state)
+
+    def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
+        """True if the objective is broken now."""
+        if isinstance(safety, Avoid):
+            return event == safety.event.name
+        if isinstance(safety, Always):
+            return state.status != WON and holds(safety.broken_if, self._scenario, state.locations, state.values)
+        if isinstance(safety, NeverWith):
+            spots = [self._spot(state.locations.get(agent.name, "")) for agent in (safety.first, safety.second)]
+            here = safety.place is None or spots[0] == {safety.place.name}
+            return state.status != WON and here and spots[0] == spots[1]
+        since = self._since.get(number)
+        missed = since is not None and latest - since > safety.deadline
+        if event == safety.response.name:
+            self._since.pop(number, None)
+        elif event == safety.trigger.name:
+            self._since.setdefault(number, latest)
+        return missed
+
+    def _check(self, state: SystemState) -> None:
+        if state.status == WON:
+            for reach, done in zip(self._scenario.reach, self._done):
+                if len(done) < len(reach.events):
+                    self.problems.append(f"the mission is won, but not '{objective_text(reach)}'")
+            for text in self._broken:
+                self.problems.append(f"the mission is won, but '{text}' was broken")
+        elif state.status == LOST and not self._broken:
+            self.problems.append("the mission is lost, but no objective is broken")
+
+    def _spot(self, location: str) -> FrozenSet[str]:
+        """Where an agent is: a place, or a way by its two ends."""
+        return self._ways.get(location) or frozenset((place_of(location, self._places),))
