@@ -28,17 +28,18 @@ def prove(
     simpler: bool = True,
     states: int = LIMIT,
     otherwise: Callable[[], Optional[Strategy]] = lambda: None,
+    unranked: bool = True,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
     `simpler`: in fewer zones and bounds, proven once more, where that costs little. `states`: the most symbolic states
-    that each look of the checker may take. `otherwise` makes a strategy to try where this one does not win. Raises
-    PursueError with the play that breaks it; with exit status 5 at a limit, the checker's own one on symbolic states
-    included.
+    that each look of the checker may take. `otherwise` makes a strategy to try where this one does not win; `unranked`:
+    it is looked at without ranks, too, where it is not proven with them. Raises PursueError with the play that breaks
+    it; with exit status 5 at a limit, the checker's own one on symbolic states included.
     """
     start, limits, progress = time.monotonic(), options.limits, options.progress
     report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
-    if not report.ok and ranks is not None:
+    if not report.ok and ranks is not None and unranked:
         ranks = None
         report = verify(network, objective, strategy, reaction, states, limits=limits.since(start), progress=progress)
     another = otherwise() if not report.ok and not report.reason.startswith("limit") else None

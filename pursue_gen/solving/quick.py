@@ -1,8 +1,9 @@
 """A quicker strategy than the first one, within a fixed budget of work: the default of `solve` and `ws`.
 
-Where the first strategy may take much longer than the lower bound, games with a deadline are solved (`least_time`): at
-first without a reaction delay, which is a smaller game. What its strategy needs says which moves to keep to; with those
-alone the game with the delay is small as well. Every win is a win of the whole game, in which it is proven.
+Where the first strategy may take much longer than the lower bound, the game is solved in the order of time (`soonest`).
+Where that is too much work, games with a deadline are solved (`deadlines`): at first without a reaction delay, which is
+a smaller game. What its strategy needs says which moves to keep to; with those alone the game with the delay is small,
+too. Every win is a win of the whole game, in which it is proven.
 """
 
 from __future__ import annotations
@@ -10,47 +11,43 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Iterator, Optional, Set, Tuple
+from typing import Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.proof.checker import pruned, verify
-from pursue_gen.proof.worst_case import with_counter, with_deadline, worst_case
-from pursue_gen.solving.least_time import Faster, Guarantee, bounds, decimal, scaled, unscaled
+from pursue_gen.proof.worst_case import with_counter
+from pursue_gen.solving import soonest
+from pursue_gen.solving.deadlines import STATES, Moves, better, in_time, keeping_to, moves_of, proven_in_time, tried
+from pursue_gen.solving.least_time import Faster, Guarantee, bounds, decimal, unscaled
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.proving import prove
-from pursue_gen.solving.solution import Solution, guaranteed, with_clocks_of
+from pursue_gen.solving.solution import Solution, guaranteed
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Automaton, Edge, Network, Objective
-from pursue_gen.zones.scale import least_common_multiple
 
 WORK = 40_000_000
 """The work of the search, a few seconds at most: the same on every machine."""
 
+_DISCRETE_STATES = 30_000
+"""The most discrete states of its games with few clocks: larger ones take long, whatever work is counted."""
+
+_DISCRETE_STATES_OF_BOUND = 100_000
+"""Those of the one game that gives a lower bound."""
+
 _PROMPT, _PROMPT_GAME, _DELAYED_GAME = 0.6, 5_000_000, 8_000_000
-"""The part of it for games without a reaction delay, and the work of each game without and with one."""
+"""Games with a deadline: the part of the work for those without a reaction delay, and that of each without and with."""
 
 _CLOCKS = 8
 """In games of more clocks each piece of work takes longer: they get less of it."""
 
-STATES = 8_000
-"""Symbolic states of the checker that a worst-case time may take."""
-
 _ENOUGH = Fraction(11, 10)
 """A strategy that takes no longer than this part of the lower bound is quick."""
-
-_PRECISION = Fraction(21, 20)
-"""The search for a deadline ends where the shortest that is won is so close to the longest that is not."""
 
 _DELAYED = tuple((Fraction(n, 20), late) for n, late in ((21, 2), (21, 1), (22, 1), (24, 1)))
 """What is tried with a reaction delay: parts of the deadline that is kept without, and of the delay (some to spare)."""
 
+_PRECISION = Fraction(21, 20)
+"""The search for a deadline ends where the shortest that is won is so close to the longest that is not."""
+
 _NOT_WITHIN = "SYN023"
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
-_Moves = Set[Tuple[str, Edge]]
 
 
 def quick(won: Solution, options: SolveOptions) -> Solution:
@@ -62,24 +59,65 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
     known = guaranteed(won, STATES, options.limits)
     if won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
         return replace(won, guarantee=known)
-    limits = options.limits.since(start)
     scale = min(1.0, (_CLOCKS / (len(won.part.clocks) + 1)) ** 3)
-    budget = Budget(replace(limits, work=int(WORK * scale)), options.progress, options.engine, whole=options.whole)
+    budget = _budget(options.since(start), WORK, _DISCRETE_STATES, scale)
+    work = int(soonest.GAME * scale)
+    first = soonest.prompt(won, budget, work)
+    if first is not None:
+        found = soonest.soonest(won, known, first, budget, work, options.since(start))
+        if found is None and known.worst is not None and first.worst * soonest.MUCH > known.worst:
+            found = replace(won, guarantee=known)
+        if found is not None:
+            return _bounded(found, options.since(start), scale) if first.easy else found
+    found = _in_less_time(won, known, scale, options.since(start))
+    return _bounded(found, options.since(start), scale) if first is None else found
+
+
+def _budget(options: SolveOptions, work: int, states: int, scale: float) -> Budget:
+    """A budget of that part of the work, for games of that part of the states."""
+    limits = replace(options.limits, work=int(work * scale), states=int(states * scale))
+    return Budget(limits, options.progress, options.engine, whole=options.whole)
+
+
+def _bounded(won: Solution, options: SolveOptions, scale: float) -> Solution:
+    """The solution with a better lower bound, where a game with a deadline gives one, without a reaction delay."""
+    known = won.guarantee
+    if known is None or known.worst is None:
+        return won
+    budget = _budget(options, _PROMPT_GAME, _DISCRETE_STATES_OF_BOUND, scale)
+    for part in (_PRECISION, _ENOUGH):
+        deadline = Fraction(int(known.worst / part))
+        if deadline <= known.least:
+            return won
+        faster, decided = tried(with_counter(won.part), won.objective, Fraction(0), deadline, budget, _PROMPT_GAME)
+        if not decided:
+            return won
+        if faster is None:
+            return replace(won, guarantee=replace(known, least=deadline))
+    return won
+
+
+def _in_less_time(won: Solution, known: Guarantee, scale: float, options: SolveOptions) -> Solution:
+    """The solution with a strategy for a deadline that is much shorter than what the one at hand takes, or with that.
+
+    `scale`: the part of the work that games of so many clocks get.
+    """
+    start, budget = time.monotonic(), _budget(options, WORK, _DISCRETE_STATES, scale)
     least, kept, moves = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale))
     known = replace(known, least=max(known.least, least))
     if kept is None:
         return replace(won, guarantee=known)
-    some = with_counter(replace(won.part, automata=_keeping_to(won.part, moves)))
+    some = with_counter(keeping_to(won.part, moves))
     for part, late in _DELAYED:
         deadline = kept * part
         if known.worst is not None and deadline >= known.worst:
             break
         if late > 1 and not won.reaction:
             continue
-        faster, _ = _tried(some, won.objective, won.reaction * late, deadline, budget, int(_DELAYED_GAME * scale))
-        better = None if faster is None else _better(won, known, faster, options.since(start))
-        if better is not None:
-            return better
+        faster, _ = tried(some, won.objective, won.reaction * late, deadline, budget, int(_DELAYED_GAME * scale))
+        found = None if faster is None else better(won, known, faster, options.since(start))
+        if found is not None:
+            return found
     return replace(won, guarantee=known)
 
 
@@ -113,66 +151,7 @@ def _too_short(deadline: Fraction, known: Guarantee) -> Diagnostic:
     return error(_NOT_WITHIN, message, hint=hint)
 
 
-def in_time(
-    network: Network, objective: Objective, reaction: Fraction, deadline: Fraction, budget: Budget, share: float = 1.0
-) -> Optional[Faster]:
-    """A strategy (not proven yet) that comes to the goal within so many time units; None: there is none.
-
-    The network must count the time (see `with_counter`). Raises PursueError with exit status 5 where it is not decided
-    with that share of what is left of the budget.
-    """
-    fine = least_common_multiple((deadline.denominator, reaction.denominator))
-    game = with_deadline(scaled(network, fine), objective, int(deadline * fine))
-    verdict = budget.verdict(game, objective, reaction * fine, share)
-    if verdict.strategy is None:
-        return None
-    return Faster(game, fine, verdict.strategy, verdict.ranks, deadline)
-
-
-def proven_in_time(won: Solution, faster: Faster, options: SolveOptions) -> Solution:
-    """The solution with the faster strategy, proven with all moves, and what it takes at worst.
-
-    Raises PursueError as `prove` does.
-    """
-    counted = with_counter(won.part)
-    game = with_deadline(scaled(counted, faster.fine), won.objective, int(faster.kept * faster.fine))
-    delay = won.reaction * faster.fine
-    proven = prove(game, won.objective, faster.strategy, delay, faster.ranks, options)
-    strategy = unscaled(proven, counted, faster.fine)
-    took = worst_case(counted, won.objective, strategy, won.reaction, STATES, options.limits)
-    worst = faster.kept if took is None else min(took, faster.kept)
-    guarantee = bounds(counted, won.objective, won.reaction, worst)
-    return replace(won, network=with_clocks_of(counted, won.network), strategy=strategy, guarantee=guarantee)
-
-
-def _better(won: Solution, known: Guarantee, faster: Faster, options: SolveOptions) -> Optional[Solution]:
-    """The solution with the faster strategy; None where that is not proven."""
-    try:
-        found = proven_in_time(won, faster, options)
-    except PursueError as problem:
-        if problem.exit_status not in (4, _LIMIT_HIT):
-            raise
-        return None
-    assert found.guarantee is not None
-    least = max(known.least, found.guarantee.least)
-    return replace(found, guarantee=replace(found.guarantee, least=least))
-
-
-def _tried(
-    network: Network, objective: Objective, reaction: Fraction, deadline: Fraction, budget: Budget, work: int
-) -> Tuple[Optional[Faster], bool]:
-    """What `in_time` finds with so much work of the budget, and whether it is decided with that."""
-    try:
-        return in_time(network, objective, reaction, deadline, budget, min(1.0, work / max(budget.work, 1))), True
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
-        return None, False
-
-
-def _prompt(
-    won: Solution, known: Guarantee, budget: Budget, work: int
-) -> Tuple[Fraction, Optional[Fraction], _Moves]:
+def _prompt(won: Solution, known: Guarantee, budget: Budget, work: int) -> Tuple[Fraction, Optional[Fraction], Moves]:
     """A lower bound, a deadline that is kept where commands take effect at once, and the moves that this needs.
 
     The deadline is None where none was found that is much shorter than what the strategy at hand takes.
@@ -183,16 +162,16 @@ def _prompt(
     for deadline in search.deadlines():
         if budget.used_up:
             break
-        faster, decided = _tried(network, won.objective, now, Fraction(deadline), budget, work)
+        faster, decided = tried(network, won.objective, now, Fraction(deadline), budget, work)
         best = faster or best
         search.answer(deadline, faster is not None, decided)
     if best is None:
-        return Fraction(search.least), None, set()
+        return Fraction(search.least), None, frozenset()
     report = verify(best.game, won.objective, best.strategy, now, STATES, ranks=best.ranks)
     if not report.ok:
-        return Fraction(search.least), None, set()
+        return Fraction(search.least), None, frozenset()
     strategy = unscaled(pruned(best.strategy, report), network, best.fine)
-    return Fraction(search.least), best.kept, _moves(strategy)
+    return Fraction(search.least), best.kept, moves_of(strategy)
 
 
 @dataclass
@@ -220,18 +199,3 @@ class _Bisection:
             return
         self.floor = deadline
         self.least = deadline if decided else self.least
-
-
-def _moves(strategy: Strategy) -> _Moves:
-    """The moves that the strategy commands."""
-    return {(move.automaton, move.edge) for b in strategy.blocks for c in b.commands for move in c.moves}
-
-
-def _keeping_to(network: Network, moves: _Moves) -> Tuple[Automaton, ...]:
-    """The automata without the commands that are no such moves: what is won without them is won with them."""
-
-    def kept(name: str, edge: Edge) -> bool:
-        commanded = edge.controllable and (edge.sync is None or edge.sync.sends)
-        return not commanded or (name, edge) in moves
-
-    return tuple(replace(a, edges=tuple(e for e in a.edges if kept(a.name, e))) for a in network.automata)

@@ -53,14 +53,17 @@ class Budget:
         work = max(1, int(self.work * share)) if self.work < math.inf else 0
         return replace(self._limits, seconds=self._limits.since(self._start).left * share, spent=0.0, work=work)
 
-    def verdict(self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
+    def verdict(
+        self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0, soonest: bool = False
+    ) -> Verdict:
         """The verdict of `solve`. Raises PursueError (exit status 5) where that share of what is left is too little."""
         limits = self.part(share)
         if self.used_up:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
         self._spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
         try:
-            verdict = solve(network, objective, reaction, self._engine, limits, self._progress, self._games_whole)
+            how = self._engine, limits, self._progress, self._games_whole, soonest
+            verdict = solve(network, objective, reaction, *how)
         except PursueError as problem:
             if problem.exit_status == _LIMIT_HIT:
                 self._spend(limits.work)

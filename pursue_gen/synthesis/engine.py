@@ -63,10 +63,17 @@ class Engine(ABC):
         return True
 
     @abstractmethod
-    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+    def solve(
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        soonest: bool = False,
+    ) -> Outcome:
         """Decide a game that it `holds`.
 
         `progress` is called a few times a second from the calling thread; what it raises ends the search, as does
-        KeyboardInterrupt. Raises PursueError (SYN010, exit status 5) at one of the limits, and where the system gives
-        no more memory.
+        KeyboardInterrupt. `soonest` (reach): with all moves, and what is nearer to the goal in time is won first, so
+        that the strategy is quick; that may be much more work. Raises PursueError (SYN010, exit status 5) at one of the
+        limits, and where the system gives no more memory.
         """

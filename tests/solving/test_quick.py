@@ -67,9 +67,19 @@ def test_the_thief_is_caught_quickly() -> None:
 
 
 @needs_native
-@pytest.mark.parametrize(("name", "least"), [("CT1", "61.9"), ("CT2a", "79.2")])
+@pytest.mark.parametrize(("name", "least"), [("CT1", "61.9"), ("CT2a", "79.2"), ("CT4", "117.8")])
 def test_published_scenarios_are_quick(reference_dir: Path, name: str, least: str) -> None:
     _is_quick(_published(reference_dir, name), least)
+
+
+@needs_native
+@pytest.mark.parametrize(("file", "worst"), [("drug_delivery/drug_delivery", "22"), ("fields/two_robot_farm", "76")])
+def test_where_the_order_of_time_does_not_help_games_with_a_deadline_do(file: str, worst: str) -> None:
+    game = _game(FIRST.parent.parent / f"{file}.pur")
+    found = solved(*game, Rules())
+    assert found.guarantee is not None and found.guarantee.worst is not None
+    assert found.guarantee.worst <= Fraction(worst) <= Fraction(6, 5) * found.guarantee.least
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok
 
 
 @needs_native

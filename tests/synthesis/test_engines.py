@@ -16,6 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.synthesis.engine import Engine, Outcome
 from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
 from pursue_gen.synthesis.limits import Limits
@@ -102,6 +103,10 @@ def _edge(target: str, op: str, bound: int, controllable: bool) -> Edge:
     return Edge("start", target, Guard((ClockBound("x", op, bound),)), controllable=controllable)
 
 
+def _step(source: str, target: str, after: int) -> Edge:
+    return Edge(source, target, Guard((ClockBound("x", ">", after),)), resets=("x",))
+
+
 REACH = Objective(Kind.REACH, goal=(("A", "goal"),))
 SAFETY = Objective(Kind.SAFETY, bad=(("A", "bad"),))
 BOTH = Objective(Kind.REACH_WHILE_SAFE, goal=(("A", "goal"),), bad=(("A", "bad"),))
@@ -124,6 +129,22 @@ class TestEngine:
     @given(game=games(EVERY_KIND, (0, 1)))
     def test_an_outcome_is_well_formed(self, engine: Engine, game: Game) -> None:
         is_well_formed(game, engine.solve(game))
+
+    @RANDOM
+    @given(game=games(EVERY_KIND, (0, 0, 1)))
+    def test_in_the_order_of_time_it_agrees_as_well(self, engine: Engine, game: Game) -> None:
+        outcome = engine.solve(game, soonest=True)
+        agrees_with_brute_force(game, outcome)
+        is_well_formed(game, outcome)
+
+    def test_in_the_order_of_time_it_takes_the_quick_way(self, engine: Engine) -> None:
+        places = ("start", "first", "second", "goal")
+        steps = [_step(*ends, after=1) for ends in zip(places, places[1:])]
+        robot = Automaton("A", tuple(map(Location, places)), "start", (_step("start", "goal", after=50), *steps))
+        game = compile_game(_network(robot), REACH, Fraction(0))
+        strategy = to_strategy(game, engine.solve(game, soonest=True).blocks)
+        took = worst_case(_network(robot), REACH, strategy)
+        assert took is not None and 3 <= took < 4
 
     @settings(RANDOM, max_examples=30)
     @given(game=games(EVERY_KIND, (0, 1)))

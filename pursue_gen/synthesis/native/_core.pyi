@@ -12,4 +12,5 @@ def solve(
     progress: Optional[Callable[[int, int, float, int], None]] = None,
     small_budget: float = 5e5,
     work: int = 0,
+    soonest: bool = False,
 ) -> Dict[str, Any]: ...

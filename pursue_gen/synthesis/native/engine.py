@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Dict, List, Optional, Tuple
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
-from pursue_gen.synthesis.strategy_from import followed
 from pursue_gen.zones.dbm import INF
 
 try:
@@ -56,7 +55,13 @@ class NativeEngine(Engine):
         path = (len(game.clocks) + 2) * (2 * largest + 2 * game.delta + 2)
         return len(game.clocks) <= _CLOCKS and path < _NO_BOUND and all(-_VALUES <= v < _VALUES for v in values)
 
-    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+    def solve(
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        soonest: bool = False,
+    ) -> Outcome:
         """Decide the game, see `Engine`."""
         reached = NOTHING_YET
 
@@ -69,7 +74,8 @@ class NativeEngine(Engine):
         try:
             tables, most = _tables(game), (limits.left, limits.states, limits.memory)
             # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
-            result = _core.solve(tables, *most, report, max(self.small_budget, limits.work), limits.work)
+            small = max(self.small_budget, limits.work)
+            result = _core.solve(tables, *most, report, small, limits.work, soonest)
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
         except MemoryError:
@@ -80,8 +86,6 @@ class NativeEngine(Engine):
 def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
     count = len(game.automata)
     states = result["states"]
-    commanded = [(tuple(d[:count]), tuple(d[count:]), [((), edges) for _, edges, _ in pieces]) for d, pieces in states]
-    states = [states[k] for k in followed(game, commanded)]  # few of those that are won, and the others cost most
     known: Dict[bytes, Tuple[int, ...]] = {}
     blocks: List[RawBlock] = [
         (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(zone, known), _action(edges)) for zone, edges, _ in pieces))

@@ -4,6 +4,8 @@
 // delay keeps a command usable only where it stays right, and uPre out of reach, for the whole delay.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 
@@ -23,6 +25,59 @@ class Fixpoint : public ZoneGraph<Z> {
 
     std::size_t evaluations() const { return evaluations_; }
 
+    // What to do in the states that a play by the plans may come to, by one hull of the clocks of each.
+    std::map<int, std::vector<Piece<Z>>> followed() {
+        std::map<int, std::vector<Piece<Z>>> plans;
+        std::map<int, Z> met;
+        std::deque<int> queue{0};
+        std::vector<bool> queued(nodes_.size(), false);
+        const auto enter = [&](const Transition& transition, Z z) {
+            const Node<Z>& target = nodes_[transition.target];
+            if (!target.reached || !this->take(joints_[transition.joint], target, z)) return;
+            const auto [known, fresh] = met.emplace(transition.target, z);
+            if (!fresh) {
+                if (includes(known->second, z)) return;
+                known->second = hull(known->second, z);
+                this->extrapolate_within(target, known->second);
+            }
+            if (queued[transition.target]) return;
+            queued[transition.target] = true;
+            queue.push_back(transition.target);
+        };
+        Z start = this->start_zone();
+        this->elapse(nodes_[0], start);
+        for (met.emplace(0, start); !queue.empty();) {
+            const int k = queue.front();
+            queue.pop_front();
+            queued[k] = false;
+            this->check_limits();
+            const auto [known, fresh] = plans.try_emplace(k);
+            if (fresh) known->second = plan(k);
+            const Z here = met.at(k);
+            std::map<int, Z> commanded;  // per joint move, where it may take effect
+            std::optional<Z> anywhere;   // and where a play may be
+            for (const Piece<Z>& piece : known->second) {
+                Z z = piece.zone;
+                if (!intersect(z, here)) continue;
+                if (piece.joint >= 0) {
+                    up_within(z, game_.delta);
+                    if (!intersect(z, here)) continue;
+                    const auto [other, first] = commanded.emplace(piece.joint, z);
+                    if (!first) other->second = hull(other->second, z);
+                }
+                anywhere = anywhere ? hull(*anywhere, z) : z;
+            }
+            if (!anywhere) continue;
+            for (const Transition& transition : nodes_[k].transitions) {
+                const auto command = commanded.find(transition.joint);
+                if (!joints_[transition.joint].controllable) enter(transition, *anywhere);
+                else if (command != commanded.end()) enter(transition, command->second);
+            }
+        }
+        for (auto k = plans.begin(); k != plans.end();) k = k->second.empty() ? plans.erase(k) : std::next(k);
+        return plans;
+    }
+
   protected:
     using ZoneGraph<Z>::game_, ZoneGraph<Z>::nodes_, ZoneGraph<Z>::joints_, ZoneGraph<Z>::monitor_;
     using ZoneGraph<Z>::before;
@@ -38,25 +93,38 @@ class Fixpoint : public ZoneGraph<Z> {
     virtual const Federation<Z>& winning(Node<Z>& n) const = 0;
     virtual const Federation<Z>& losing(Node<Z>& n) const = 0;
 
-    void schedule(int k) {
+    // How soon a state is evaluated again, the smallest first.
+    virtual std::int64_t due(int k) const { return nodes_[k].deferred; }
+
+    // The same for a state before one that was evaluated when `when` was due.
+    virtual std::int64_t due_before(int k, [[maybe_unused]] int target, [[maybe_unused]] std::int64_t when) {
+        return due(k);
+    }
+
+    void schedule(int k) { schedule(k, due(k)); }
+
+    void schedule(int k, std::int64_t when) {
         Node<Z>& n = nodes_[k];
-        if (n.scheduled || !n.reached) return;
+        if (!n.reached || (n.scheduled && n.when <= when)) return;
         n.scheduled = true;
-        waiting_.emplace(n.deferred, order_++, k);
+        n.when = when;
+        waiting_.emplace(when, order_++, k);
     }
 
     // Evaluates until the start is decided (true), nothing changes any more, or the budget is used up.
     bool iterate(double budget = std::numeric_limits<double>::infinity()) {
         const Z start = this->start_zone();
         for (work_ = 0; !waiting_.empty() && work_ < budget;) {
+            const std::int64_t when = std::get<0>(waiting_.top());
             const int k = std::get<2>(waiting_.top());
             waiting_.pop();
+            if (!nodes_[k].scheduled || nodes_[k].when != when) continue;  // it was, sooner
             nodes_[k].scheduled = false;
             monitor_.check(nodes_.size(), waiting_.size());
             ++evaluations_;
             ++work_;
             if (!evaluate(k)) continue;
-            for (int p : nodes_[k].parents) schedule(p);
+            for (int p : nodes_[k].parents) schedule(p, due_before(p, k, when));
             if (k == 0 && decided(nodes_[0].rest, start)) return true;
         }
         return decided(nodes_[0].rest, start);
@@ -104,10 +172,10 @@ class Fixpoint : public ZoneGraph<Z> {
     double work_ = 0;  // of the budget, in zones or pairs of zones: the same on every machine
 
   private:
-    // How many of its automata are deferred, order of arrival, state. An agent that is under way to an end which the
-    // environment chooses stops time there, so sets grow slice by slice, an end at a time. Where no agent is under way
-    // they are simple; known first, they spare the others most of their slices.
-    using Waiting = std::tuple<int, std::size_t, int>;
+    // When it is due, order of arrival, state. As a rule it is due by how many of its automata are deferred. An agent
+    // that is under way to an end which the environment chooses stops time there, so sets grow slice by slice, an end at
+    // a time. Where no agent is under way they are simple; known first, they spare the others most of their slices.
+    using Waiting = std::tuple<std::int64_t, std::size_t, int>;
 
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<Waiting>> waiting_;
     std::size_t order_ = 0;

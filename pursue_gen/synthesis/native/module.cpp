@@ -2,9 +2,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <map>
-#include <set>
-
 #include "reach.hpp"
 #include "safety.hpp"
 
@@ -80,42 +77,13 @@ py::bytes matrix(const Z& z, int dim) {
     return py::bytes(reinterpret_cast<const char*>(out.data()), out.size() * sizeof(std::int32_t));
 }
 
-// The states that a play by the strategy can come to, whatever the clocks, with what to do in them.
-template <class Z>
-using Plan = std::map<int, std::vector<Piece<Z>>>;
-
-template <class Z>
-Plan<Z> followed(Fixpoint<Z>& solver) {
-    Plan<Z> out;
-    std::deque<int> queue{0};
-    std::vector<bool> met(solver.nodes().size(), false);
-    met[0] = true;
-    while (!queue.empty()) {
-        const int k = queue.front();
-        queue.pop_front();
-        solver.check_limits();
-        std::vector<Piece<Z>> pieces = solver.plan(k);
-        if (pieces.empty()) continue;
-        std::set<int> commanded;
-        for (const Piece<Z>& piece : pieces) commanded.insert(piece.joint);
-        for (const Transition& transition : solver.nodes()[k].transitions) {
-            if (met[transition.target] || !solver.nodes()[transition.target].reached) continue;
-            if (solver.joint(transition.joint).controllable && !commanded.count(transition.joint)) continue;
-            met[transition.target] = true;
-            queue.push_back(transition.target);
-        }
-        out.emplace(k, std::move(pieces));
-    }
-    return out;
-}
-
 // What was found, without Python's objects.
 template <class Z>
 struct Found {
     std::unique_ptr<Fixpoint<Z>> solver;
     bool won;
     double seconds;
-    Plan<Z> plan;
+    std::map<int, std::vector<Piece<Z>>> plan;  // of the states that a play can come to
 };
 
 template <class Z>
@@ -149,20 +117,20 @@ py::dict outcome(const Found<Z>& found, int dim) {
 
 // Without the GIL: other threads go on.
 template <class Z>
-Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget) {
+Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget, bool soonest) {
     const py::gil_scoped_release released;
     Found<Z> found;
     if (game.kind == Kind::safety) std::tie(found.won, found.solver) = solve_safety<Z>(game, monitor, small_budget);
-    else std::tie(found.won, found.solver) = solve_reach<Z>(game, monitor, small_budget);
+    else std::tie(found.won, found.solver) = solve_reach<Z>(game, monitor, small_budget, soonest);
     found.seconds = monitor.spent();
-    if (found.won) found.plan = followed(*found.solver);
+    if (found.won) found.plan = found.solver->followed();
     return found;
 }
 
 template <int N, class R>
-py::dict solve_with(const Game& game, const Limits& limits, double small_budget) {
+py::dict solve_with(const Game& game, const Limits& limits, double small_budget, bool soonest) {
     LimitMonitor monitor(limits);
-    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget), game.clocks + 1);
+    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget, soonest), game.clocks + 1);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -181,7 +149,7 @@ bool fits(const Game& game) {
 }
 
 py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
-               double small_budget, std::uint64_t work) {
+               double small_budget, std::uint64_t work, bool soonest) {
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
@@ -200,20 +168,20 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
     const int dim = game.clocks + 1;
 #ifndef PURSUE_ONE_SIZE  // one size of matrices for all games: slower, and built in half the time
     if (fits<std::int16_t>(game)) {
-        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget);
-        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, small_budget);
-        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, small_budget);
-        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, small_budget);
-        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, small_budget);
+        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget, soonest);
+        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, small_budget, soonest);
+        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, small_budget, soonest);
+        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, small_budget, soonest);
+        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, small_budget, soonest);
     }
 #endif
     if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
 #ifndef PURSUE_ONE_SIZE
-    if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget);
-    if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget);
-    if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget);
+    if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget, soonest);
+    if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget, soonest);
+    if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget, soonest);
 #endif
-    if (dim <= 128) return solve_with<128, wide_t>(game, limits, small_budget);
+    if (dim <= 128) return solve_with<128, wide_t>(game, limits, small_budget, soonest);
     throw std::invalid_argument("more than 127 clocks");
 }
 
@@ -224,7 +192,7 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
-               py::arg("work") = 0,
+               py::arg("work") = 0, py::arg("soonest") = false,
                "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). `small_budget` is the work, in\n"
-               "zones, that the game gets as it is, before searches take turns.");
+               "zones, that the game gets as it is, before searches take turns. `soonest`: see Engine.solve.");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <numeric>
 
 #include "fixpoint.hpp"
 
@@ -13,9 +14,13 @@ class Reach : public Fixpoint<Z> {
     enum class Verdict { open, won, lost };
 
     // `most`: in so many zones at most is kept, in each discrete state, what is not won; 0: in as many as it takes. Fewer
-    // zones hold more points, so what is won is won, and what is lost may only be lost so.
-    Reach(const Game& game, LimitMonitor& monitor, std::size_t most)
-        : Fixpoint<Z>(game, monitor, Restricted::controllable), most_(most) {}
+    // zones hold more points, so what is won is won, and what is lost may only be lost so. `soonest`: with all moves, and
+    // what is won sooner in time first.
+    Reach(const Game& game, LimitMonitor& monitor, std::size_t most, bool soonest = false)
+        : Fixpoint<Z>(game, monitor, soonest ? Restricted::none : Restricted::controllable), most_(most),
+          soonest_(soonest) {
+        this->all_ = soonest;
+    }
 
     // Goes on until the budget is used up, with few moves first; after a loss, states that are not won get all of theirs.
     // `won` and `lost` are final.
@@ -69,6 +74,35 @@ class Reach : public Fixpoint<Z> {
   private:
     using Fixpoint<Z>::nodes_, Fixpoint<Z>::game_;
     using typename Fixpoint<Z>::Usable;
+
+    std::int64_t due(int k) const override { return soonest_ ? 0 : Fixpoint<Z>::due(k); }
+
+    // Dijkstra's order, by some time to the goal in hundredths of the unit. The moves of each agent add up, while agents
+    // move at the same time: the longest counts, and a part of the others. With a reaction delay that part is all, since
+    // else commands are more often overtaken by such as lead less far. A move that takes no time counts as one.
+    std::int64_t due_before(int k, int target, std::int64_t when) override {
+        if (!soonest_) return due(k);
+        std::int64_t best = std::numeric_limits<std::int64_t>::max();
+        std::vector<std::int64_t> busy;
+        for (const Transition& transition : nodes_[k].transitions) {
+            if (transition.target != target) continue;
+            const Joint& joint = this->joints_[transition.joint];
+            std::int64_t takes = 0;
+            for (const Bound& b : joint.guard)
+                if (b.i == 0) takes = std::max<std::int64_t>(takes, -(b.raw >> 1));
+            std::vector<std::int64_t> times = nodes_[target].busy;  // of the agents, and the number of other moves
+            times.resize(game_.automata.size() + 1, 0);
+            (takes > 0 ? times[joint.owner] : times.back()) += takes > 0 ? takes : 1;
+            const std::int64_t longest = *std::max_element(times.begin(), times.end() - 1);
+            const std::int64_t all = std::accumulate(times.begin(), times.end() - 1, std::int64_t{0});
+            const std::int64_t due = 100 * longest + (game_.delta > 0 ? 100 : 25) * (all - longest) + times.back();
+            if (std::max(when, due) >= best) continue;
+            best = std::max(when, due);
+            busy = std::move(times);
+        }
+        if (!nodes_[k].scheduled || best < nodes_[k].when) nodes_[k].busy = std::move(busy);
+        return best;
+    }
 
     static constexpr double per_state = 24;  // the work of a budget that exploring a state stands for
 
@@ -179,6 +213,7 @@ class Reach : public Fixpoint<Z> {
     }
 
     std::size_t most_;
+    const bool soonest_;
     double spent_ = 0;  // of the budget, since `resume`
     int rank_ = 1;
     std::vector<std::vector<Step>> steps_;
@@ -186,10 +221,18 @@ class Reach : public Fixpoint<Z> {
 
 // First the game as it is, for `small_budget`, which is enough for many. Then two searches take turns, each with twice the
 // work of its turn before: one keeps few zones per state, more of them where it ends without a win; what it wins is won.
+// `soonest`: the one search with all moves, see Reach.
 template <class Z>
-std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMonitor& monitor, double small_budget) {
+std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMonitor& monitor, double small_budget,
+                                                       bool soonest) {
     using Verdict = typename Reach<Z>::Verdict;
     constexpr std::size_t largest = 8;
+    if (soonest) {
+        auto all = std::make_unique<Reach<Z>>(game, monitor, 0, true);
+        constexpr double unlimited = 1e15;  // but for the limits
+        const Verdict verdict = all->resume(unlimited);
+        return {verdict == Verdict::won, std::move(all)};
+    }
     auto exact = std::make_unique<Reach<Z>>(game, monitor, 0);
     const Verdict first = exact->resume(small_budget);
     if (first != Verdict::open) return {first == Verdict::won, std::move(exact)};

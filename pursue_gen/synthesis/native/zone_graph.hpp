@@ -29,6 +29,8 @@ struct Node {
     Z hull{};
     bool won = false, lost = false;           // by its locations alone
     bool reached = false, full = false, queued = false, scheduled = false;
+    std::int64_t when = 0;                    // if it is scheduled: how soon
+    std::vector<std::int64_t> busy;           // reach, in the order of time: what each agent has still to do
     int deferred = 0;                         // automata that stop time here until the environment moves them
     std::vector<wide_t> max;                  // the largest constants that matter here
     std::vector<std::pair<int, Bound>> limits;  // invariants, with the automata that have them
@@ -189,14 +191,19 @@ class ZoneGraph {
         return changed;
     }
 
-    void propagate(Z z, const Transition& transition) {
+    // Where the move leads from z, and what time makes of it; false: nowhere.
+    static bool take(const Joint& joint, const Node<Z>& target, Z& z) {
         spend(1);
-        const Joint& joint = joints_[transition.joint];
-        Node<Z>& target = nodes_[transition.target];
-        if (!guard(joint, z)) return;
+        if (!guard(joint, z)) return false;
         for (int x : joint.resets) reset(z, x);
-        if (!invariant(target, z)) return;
+        if (!invariant(target, z)) return false;
         elapse(target, z);
+        return true;
+    }
+
+    void propagate(Z z, const Transition& transition) {
+        Node<Z>& target = nodes_[transition.target];
+        if (!take(joints_[transition.joint], target, z)) return;
         if (target.reached) {
             if (includes(target.hull, z)) return;
             z = hull(target.hull, z);

@@ -14,6 +14,8 @@ every time of the delay and no uncontrollable move out of X comes first.
 
 from __future__ import annotations
 
+import heapq
+import itertools
 import time
 from abc import ABC, abstractmethod
 from collections import deque
@@ -25,6 +27,7 @@ from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.reference.zone_graph import Node, Transition, ZoneGraph
+from pursue_gen.synthesis.strategy_from import followed
 from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
@@ -43,14 +46,25 @@ class ReferenceEngine(Engine):
     name: ClassVar[str] = "python"
     directed: bool = True
 
-    def solve(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+    def solve(
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        soonest: bool = False,
+    ) -> Outcome:
         """Decide the game, see `Engine`. It keeps no ranks."""
         start = time.perf_counter()
         monitor = LimitMonitor(limits, progress)
         try:
-            fixpoint = _Safety(game, monitor) if game.kind is Kind.SAFETY else _Reach(game, monitor, self.directed)
+            fixpoint: _Fixpoint
+            if game.kind is Kind.SAFETY:
+                fixpoint = _Safety(game, monitor)
+            else:
+                fixpoint = _Soonest(game, monitor) if soonest else _Reach(game, monitor, self.directed)
             won = fixpoint.solve()
             blocks = fixpoint.blocks() if won else ()
+            blocks = tuple(blocks[k] for k in followed(game, blocks))
         except MemoryError:
             raise monitor.stopped("memory") from None
         return Outcome(won, blocks, None, fixpoint.counts(), time.perf_counter() - start)
@@ -107,6 +121,10 @@ class _Fixpoint(ABC):
         """Add the new positions (disjoint from what was found), and look again at what leads to the node."""
         self.found[number] = self.found[number].union(new).reduced()
         self.rest[number] = self.rest[number].minus(new).reduced()
+        self.again(number)
+
+    def again(self, number: int) -> None:
+        """Look again at a node that has grown, and at what leads to it."""
         self.push(self.graph.nodes[number].sources | {number})
 
     def cpre(self, number: int, targets: List[Federation], upre: Federation) -> List[Tuple[Transition, Federation]]:
@@ -251,6 +269,67 @@ class _Reach(_Fixpoint):
             forced = _union(self.graph.at_bound(number, k).intersect(self.graph.own_moves(number, k)) for k in owners)
             known = self._forced[number] = (node.reach, forced)
         return known[1]
+
+
+class _Soonest(_Reach):
+    """With all moves, in Dijkstra's order: by some time to the goal, in hundredths.
+
+    The moves of each agent add up, while agents move at the same time: the longest counts, and a part of the others.
+    With a reaction delay that part is all, since else commands are more often overtaken by such as lead less far. A
+    move that takes no time counts as one.
+    """
+
+    def __init__(self, game: Game, monitor: LimitMonitor) -> None:
+        super().__init__(game, monitor, directed=False)
+        self._due: Dict[int, int] = {}
+        self._busy: Dict[int, Tuple[int, ...]] = {}
+        self._others = 100 if game.delta else 25
+        self._waiting: List[Tuple[int, int, int]] = []
+        self._order = itertools.count()
+        self._now = 0
+
+    def push(self, numbers: Iterable[int]) -> None:
+        """Look at what leads to those of these nodes in which something is won; the others wait for that."""
+        for number in numbers:
+            if self.found[number]:
+                self.again(number)
+
+    def _push(self, number: int, when: int) -> None:
+        if self.rest[number] and when < self._due.get(number, when + 1):
+            self._due[number] = when
+            heapq.heappush(self._waiting, (when, next(self._order), number))
+
+    def pop(self) -> Optional[int]:
+        """The next node; None: a fixpoint."""
+        while self._waiting:
+            self._now, _, number = heapq.heappop(self._waiting)
+            if self._due.get(number) == self._now:
+                del self._due[number]
+                self.check(1 + self._pairs(number))
+                self.evaluations += 1
+                return number
+        return None
+
+    def again(self, number: int) -> None:
+        """What leads to the node is as much later as the way to it takes."""
+        self._push(number, self._now)
+        game = self.graph.game
+        count = len(game.automata)
+        for source in self.graph.nodes[number].sources:
+            node = self.graph.nodes[source]
+            ways: List[Tuple[int, Tuple[int, ...]]] = []
+            for move in node.controllable + node.uncontrollable:
+                if move.target == number:
+                    takes = max(game.edges[k].duration for k in move.joint.edges)
+                    times = list(self._busy.get(number, (0,) * (count + 1)))  # of agents, and the number of other moves
+                    times[move.joint.owner if takes else count] += takes or 1
+                    longest, total = max(times[:count]), sum(times[:count])
+                    due = 100 * longest + self._others * (total - longest) + times[count]
+                    ways.append((max(self._now, due), tuple(times)))
+            when, busy = min(ways)
+            if when < self._due.get(source, when + 1):
+                self._busy[source] = busy
+            self._push(source, when)
 
 
 class _Safety(_Fixpoint):

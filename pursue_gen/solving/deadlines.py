@@ -1,0 +1,106 @@
+"""Games with a deadline: strategies that come to the goal within so many time units, and the moves that they need."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import FrozenSet, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import LIMIT
+from pursue_gen.proof.worst_case import with_counter, with_deadline, worst_case
+from pursue_gen.solving.least_time import Faster, Guarantee, bounds, scaled, unscaled
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.solution import Solution, with_clocks_of
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Edge, Network, Objective
+from pursue_gen.zones.scale import least_common_multiple
+
+STATES = 20_000
+"""Symbolic states of the checker that a worst-case time may take."""
+
+PROOF = 50_000
+"""Symbolic states of the checker that the proof of a strategy may take which is not needed: there is another one."""
+
+_NOT_PROVEN, _LIMIT_HIT = 4, 5
+"""The exit statuses of strategies that do not win, and of errors at a limit."""
+
+Moves = FrozenSet[Tuple[str, Edge]]
+"""Edges of agents."""
+
+
+def in_time(
+    network: Network, objective: Objective, reaction: Fraction, deadline: Fraction, budget: Budget, share: float = 1.0
+) -> Optional[Faster]:
+    """A strategy (not proven yet) that comes to the goal within so many time units; None: there is none.
+
+    The network must count the time (see `with_counter`). Raises PursueError with exit status 5 where it is not decided
+    with that share of what is left of the budget.
+    """
+    fine = least_common_multiple((deadline.denominator, reaction.denominator))
+    game = with_deadline(scaled(network, fine), objective, int(deadline * fine))
+    verdict = budget.verdict(game, objective, reaction * fine, share)
+    if verdict.strategy is None:
+        return None
+    return Faster(game, fine, verdict.strategy, verdict.ranks, deadline)
+
+
+def proven_in_time(won: Solution, faster: Faster, options: SolveOptions, states: int = LIMIT) -> Solution:
+    """The solution with the faster strategy, proven with all moves, and what it takes at worst.
+
+    `states`: the most symbolic states of each look of the checker. Raises PursueError as `prove` does.
+    """
+    counted = with_counter(won.part)
+    game = with_deadline(scaled(counted, faster.fine), won.objective, int(faster.kept * faster.fine))
+    delay = won.reaction * faster.fine
+    proven = prove(game, won.objective, faster.strategy, delay, faster.ranks, options, states=states)
+    strategy = unscaled(proven, counted, faster.fine)
+    took = worst_case(counted, won.objective, strategy, won.reaction, STATES, options.limits)
+    worst = faster.kept if took is None else min(took, faster.kept)
+    guarantee = bounds(counted, won.objective, won.reaction, worst)
+    return replace(won, network=with_clocks_of(counted, won.network), strategy=strategy, guarantee=guarantee)
+
+
+def better(
+    won: Solution, known: Guarantee, faster: Faster, options: SolveOptions, states: int = PROOF
+) -> Optional[Solution]:
+    """The solution with the faster strategy; None where that is not proven in looks of so many symbolic states."""
+    try:
+        found = proven_in_time(won, faster, options, states)
+    except PursueError as problem:
+        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
+            raise
+        return None
+    assert found.guarantee is not None
+    least = max(known.least, found.guarantee.least)
+    return replace(found, guarantee=replace(found.guarantee, least=least))
+
+
+def tried(
+    network: Network, objective: Objective, reaction: Fraction, deadline: Fraction, budget: Budget, work: int
+) -> Tuple[Optional[Faster], bool]:
+    """What `in_time` finds with so much work of the budget, and whether it is decided with that."""
+    try:
+        return in_time(network, objective, reaction, deadline, budget, min(1.0, work / max(budget.work, 1))), True
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None, False
+
+
+def moves_of(strategy: Strategy) -> Moves:
+    """The moves that the strategy commands."""
+    return frozenset((move.automaton, move.edge) for b in strategy.blocks for c in b.commands for move in c.moves)
+
+
+def keeping_to(network: Network, moves: Moves) -> Network:
+    """The network without the commands that are no such moves: what is won without them is won with them."""
+
+    def kept(name: str, edge: Edge) -> bool:
+        commanded = edge.controllable and (edge.sync is None or edge.sync.sends)
+        return not commanded or (name, edge) in moves
+
+    automata = (replace(a, edges=tuple(e for e in a.edges if kept(a.name, e))) for a in network.automata)
+    return replace(network, automata=tuple(automata))

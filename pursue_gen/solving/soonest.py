@@ -1,0 +1,170 @@
+"""Quick strategies in the order of time: with all moves, what is nearer to the goal in time is won first.
+
+The game without a reaction delay is solved so, which is little work. Its strategy says which moves are needed, and how
+soon the goal may come; with those moves alone the game with the delay is small as well, and with some delay to spare it
+is tried first. In the order of time robots do more at the same time, so that strategies have more cases. So a game with
+a deadline a little later is tried before, which begins with few moves and may have a smaller strategy.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Mapping, Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import pruned, verify
+from pursue_gen.proof.worst_case import with_counter, worst_case
+from pursue_gen.solving.deadlines import STATES, better, keeping_to, moves_of, tried
+from pursue_gen.solving.least_time import Guarantee
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.solution import Solution, guaranteed
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.solve import Verdict
+from pursue_gen.synthesis.strategy import Strategy, ZoneKey
+from pursue_gen.tga.network import Network
+
+GAME = 1_000_000
+"""The work of each game."""
+
+MUCH = Fraction(21, 20)
+"""A strategy that takes so many times as long is much slower."""
+
+_NEAR = Fraction(21, 20)
+"""The deadline for a small strategy: so many times what another strategy takes."""
+
+_LARGER = Fraction(4, 3)
+"""So many times as many commands are many more."""
+
+_PROOF = 8_000
+"""Symbolic states of the checker that the proof of a strategy may take."""
+
+_EASY = 100_000
+"""Where the game in the order of time took no more work, games with a deadline are easy, too."""
+
+_LATE = (2, 1)
+"""The parts of the reaction delay with which a game is tried: with some to spare, and then without."""
+
+_NOT_PROVEN, _LIMIT_HIT = 4, 5
+"""The exit statuses of strategies that do not win, and of errors at a limit."""
+
+
+@dataclass(frozen=True)
+class Prompt:
+    """A strategy where commands take effect at once: the network with the moves that it needs, what it takes, and
+    whether it took little work to find."""
+
+    network: Network
+    strategy: Strategy
+    ranks: Optional[Mapping[ZoneKey, int]]
+    worst: Fraction
+    easy: bool
+
+
+def prompt(won: Solution, budget: Budget, work: int) -> Optional[Prompt]:
+    """What the order of time gives without a reaction delay; None where that takes more than so much work."""
+    now = Fraction(0)
+    verdict = _verdict(won.part, won, now, budget, work)
+    if verdict is None or verdict.strategy is None:
+        return None
+    report = verify(won.part, won.objective, verdict.strategy, now, STATES, ranks=verdict.ranks)
+    if not report.ok:
+        return None
+    strategy = pruned(verdict.strategy, report)
+    worst = worst_case(won.part, won.objective, strategy, now, STATES)
+    if worst is None:
+        return None
+    kept = keeping_to(won.part, moves_of(strategy))
+    return Prompt(kept, verdict.strategy, verdict.ranks, worst, verdict.stats.work <= _EASY)
+
+
+def soonest(
+    won: Solution, known: Guarantee, first: Prompt, budget: Budget, work: int, options: SolveOptions
+) -> Optional[Solution]:
+    """A solution that is much quicker than what is known, as `first` is; None: none is found with so much work."""
+    start = time.monotonic()
+    search = _Small(won, known, first.network, budget, work)
+    found = search.within(first.worst * _NEAR, options) if first.easy else None
+    if found is not None:
+        return found
+    found = _in_order(won, known, first, budget, work, options.since(start))
+    if found is None or _commands(found) <= _LARGER * _commands(won):
+        return found
+    assert found.guarantee is not None and found.guarantee.worst is not None
+    small = search.within(found.guarantee.worst * _NEAR, options.since(start))
+    return found if small is None or _LARGER * _commands(small) > _commands(found) else small
+
+
+def _in_order(
+    won: Solution, known: Guarantee, first: Prompt, budget: Budget, work: int, options: SolveOptions
+) -> Optional[Solution]:
+    """The first proven solution that the order of time gives with the moves of `first`."""
+    if not won.reaction:
+        return _proven(won, known, first.strategy, first.ranks, options)
+    for late in _LATE:
+        verdict = _verdict(first.network, won, won.reaction * late, budget, work)
+        if verdict is None:
+            return None
+        if verdict.strategy is not None:
+            found = _proven(won, known, verdict.strategy, verdict.ranks, options)
+            if found is not None:
+                return found
+    return None
+
+
+@dataclass(frozen=True)
+class _Small:
+    """Games with a deadline in this network, which begin with few moves, each with so much work."""
+
+    won: Solution
+    known: Guarantee
+    network: Network
+    budget: Budget
+    work: int
+
+    def within(self, deadline: Fraction, options: SolveOptions) -> Optional[Solution]:
+        """A proven solution for the deadline that is much quicker than what is known; None: none is found."""
+        worst, reaction = self.known.worst, self.won.reaction
+        if worst is not None and deadline * MUCH > worst:
+            return None
+        game = with_counter(self.network), self.won.objective, reaction * _LATE[0], deadline
+        faster, _ = tried(*game, self.budget, self.work)
+        return None if faster is None else better(self.won, self.known, faster, options, _PROOF)
+
+
+def _verdict(network: Network, won: Solution, reaction: Fraction, budget: Budget, work: int) -> Optional[Verdict]:
+    """The verdict with so much work of the budget; None where it is not decided with that."""
+    share = min(1.0, work / max(budget.work, 1))
+    try:
+        return budget.verdict(network, won.objective, reaction, share, soonest=True)
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None
+
+
+def _proven(
+    won: Solution,
+    known: Guarantee,
+    strategy: Strategy,
+    ranks: Optional[Mapping[ZoneKey, int]],
+    options: SolveOptions,
+) -> Optional[Solution]:
+    """The solution with the strategy; None where that is not proven with little work, or not much quicker."""
+    try:
+        proven = prove(won.part, won.objective, strategy, won.reaction, ranks, options, states=_PROOF, unranked=False)
+    except PursueError as problem:
+        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
+            raise
+        return None
+    found = replace(won, strategy=proven)
+    guarantee = guaranteed(found, STATES, options.limits)
+    if guarantee.worst is None or (known.worst is not None and guarantee.worst * MUCH > known.worst):
+        return None
+    return replace(found, guarantee=replace(guarantee, least=max(known.least, guarantee.least)))
+
+
+def _commands(won: Solution) -> int:
+    return sum(len(block.commands) for block in won.strategy.blocks)
