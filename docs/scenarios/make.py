@@ -181,7 +181,7 @@ def edited(text: str, changes: str) -> str:
     """The scenario's text with the statements in the code spans of `changes`."""
     parts = re.split(r"\n(?!\s)", text)  # what is indented goes on with the statement above it
     for away, statement in _STATEMENT.findall(changes):
-        found = [k for k, part in enumerate(parts) if _same(part, statement)]
+        found = [k for k, part in enumerate(parts) if _same(part, statement)] or _only(parts, statement)
         if away and not found:
             raise ValueError(f"there is no such statement: {statement}")
         for k in found:
@@ -189,6 +189,13 @@ def edited(text: str, changes: str) -> str:
         if not found:
             parts.append(statement)
     return "\n".join(parts)
+
+
+def _only(parts: List[str], statement: str) -> List[int]:
+    """The objective that another one takes the place of, where there is no other objective of the kind."""
+    word = statement.split()[0]
+    alone = [k for k, part in enumerate(parts) if part.startswith(word)] if word == "objective:" else []
+    return alone if len(alone) == 1 else []
 
 
 def _same(part: str, statement: str) -> bool:
