@@ -269,13 +269,15 @@ class ZoneGraph {
         return out;
     }
 
-    // The points where automaton a can make an uncontrollable move of its own, followed or not, that is not unseen.
+    // The points where automaton a can make an uncontrollable move of its own, followed or not. Of an automaton that
+    // matters an unseen one is none; whatever one that cannot matter does is unseen, and its bounds oblige it alone.
     Federation<Z> own_moves(const Node<Z>& n, int a) const {
         Federation<Z> out;
+        const bool matters = std::find(game_.unseen.begin(), game_.unseen.end(), a) == game_.unseen.end();
         for (const std::vector<Transition>* transitions : {&n.transitions, &n.unfollowed})
             for (const Transition& transition : *transitions) {
                 const Joint& joint = joints_[transition.joint];
-                if (joint.owner != a || joint.controllable || transition.unseen) continue;
+                if (joint.owner != a || joint.controllable || (matters && transition.unseen)) continue;
                 Z anywhere = universe<Z>();
                 if (invariant(nodes_[transition.target], anywhere)) before(n, joint, {anywhere}, out);
             }

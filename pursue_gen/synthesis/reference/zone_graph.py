@@ -112,8 +112,14 @@ class ZoneGraph:
         return Federation(tuple(face for face in faces if face is not None))
 
     def own_moves(self, number: int, owner: int) -> Federation:
-        """Where an uncontrollable move that the owner sends (or makes by itself) is enabled, and not unseen."""
-        moves = [m for m in self.nodes[number].uncontrollable if m.joint.owner == owner and not m.joint.is_unseen]
+        """Where an uncontrollable move that the owner sends (or makes by itself) is enabled.
+
+        Of an owner that matters an unseen one is none; whatever one that cannot matter does is unseen, and its bounds
+        oblige it alone.
+        """
+        matters = owner not in self.game.unseen
+        moves = [m for m in self.nodes[number].uncontrollable if m.joint.owner == owner]
+        moves = [move for move in moves if not (matters and move.joint.is_unseen)]
         enabled = Federation()
         for move in (m for m in moves if m.target >= 0):
             enabled = enabled.union(self.pre(number, move, Federation.of(self.nodes[move.target].within)))
