@@ -14,8 +14,8 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
 from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Respond, Scenario
-from pursue_gen.language.wording import events_words
+from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Scenario
+from pursue_gen.language.wording import events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
@@ -240,6 +240,8 @@ def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
     for safety in scenario.safety:
         if isinstance(safety, Respond):
             yield _deadline_knob(scenario, rules, safety)
+        elif isinstance(safety, Patrol) and safety is _of_one_statement(scenario, safety)[0]:
+            yield _patrol_knob(scenario, rules, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _after_knob(scenario, rules, reach)
@@ -260,6 +262,26 @@ def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
     furthest = deadline + max(deadline, 2 * _all_time(scenario))
     later = range(deadline + 1, furthest + 1)
     return _number("deadline", answer, "a later deadline", deadline, later, make, say, safety.span, 1)
+
+
+def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
+    """The patrols of all places that the statement names."""
+    return [each for each in scenario.safety if isinstance(each, Patrol) and each.span == patrol.span]
+
+
+def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
+    every, together = patrol.every, _of_one_statement(scenario, patrol)
+    place = listed(each.place.name for each in together)
+
+    def make(k: int) -> Variant:
+        changed = tuple(replace(each, every=k) if each in together else each for each in scenario.safety)
+        return replace(scenario, safety=changed), rules
+
+    def say(k: int) -> str:
+        return f"a patrol of {place} every {k} instead of {every}"
+
+    rarer = range(every + 1, every + max(every, 2 * _all_time(scenario)) + 1)
+    return _number("deadline", place, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
 
 
 def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:

@@ -14,6 +14,7 @@ from pursue_gen.language.scenario import (
     Both,
     Choice,
     NeverWith,
+    Patrol,
     Reach,
     Ref,
     Respond,
@@ -174,6 +175,8 @@ def _wanted(scenario: Scenario) -> Set[str]:
             names.add(safety.event.name)
         elif isinstance(safety, NeverWith):
             names |= {safety.first.name, safety.second.name}
+        elif isinstance(safety, Patrol):
+            names |= {agent.name for agent in scenario.on_patrol(safety)}
     return names
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
-from pursue_gen.language.scenario import Leaves, Reach, Respond, Scenario, StatedObjective, Waits
+from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
 from pursue_gen.language.wording import events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -105,6 +105,8 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     for name, each in objectives.items():
         if isinstance(each, Respond):
             clocks[clock_of(scenario, name)] = f"the last {each.trigger.name} or {each.response.name}"
+        elif isinstance(each, Patrol):
+            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.name}, or the start"
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
             clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s last {assumption.event.name}"
@@ -131,6 +133,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         for agent in scenario.agents:
             moves[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
             moves[agent.name, "", names.going(a, b)] = f"arrives at {b} from {a}"
+            moves[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {b} from {a}"
     for event in scenario.events:
         for poi in scenario.pois:
             places[names.doing(event.name, poi.name)] = f"doing {event.name} at {poi.name}"

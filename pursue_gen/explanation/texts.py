@@ -9,8 +9,8 @@ from typing import Callable, Dict, Iterator, List, Optional, Tuple
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import events_words, listed
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
+from pursue_gen.language.wording import events_words, listed, patroller
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
@@ -94,6 +94,7 @@ def _words(scenario: Scenario) -> Dict[_Key, str]:
         for a, b in (way for connection in scenario.connections for way in connection.directions):
             words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
             words[agent.name, "", names.going(a, b)] = f"arrives at {b}"
+            words[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {b}"
     return words
 
 
@@ -107,6 +108,8 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
                 yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
             elif play.game.origins[k].target == names.IDLE:
                 yield " (in time)"
+        if isinstance(safety, Patrol) and play.game.origins[k].target == names.AT_RISK:
+            yield f" ({patroller(safety)} has to be back by {time_text(step.at + safety.every)})"
 
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
@@ -175,6 +178,8 @@ def _broken(objective: Optional[StatedObjective], play: Play) -> str:
         return f"{objective.first.name} and {objective.second.name} are together: both {here}"
     if isinstance(objective, Respond):
         return f"too late: no {objective.response.name} within {objective.deadline} of {objective.trigger.name}"
+    if isinstance(objective, Patrol):
+        return f"too late: not {patroller(objective)} at {objective.place.name} for {objective.every}"
     if isinstance(objective, Reach):
         return f"too late: {events_words(objective)} not done within {objective.within} of the start"
     return "the objective is broken"

@@ -15,7 +15,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, NeverWith, Respond, Safety, Scenario
+from pursue_gen.language.scenario import Agent, NeverWith, Patrol, Respond, Safety, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
@@ -127,6 +127,9 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if isinstance(safety, Respond) and safety.deadline < 1:
             message = "within 0 leaves no time to answer: expected 1 or more"
             yield error("PML143", message, safety.span, "write the time units that the answer may take")
+        if isinstance(safety, Patrol) and safety.every < 2:
+            message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
+            yield error("PML143", message, safety.span, "write the time units between two visits")
 
 
 def _window(name: str, low: int, high: int, word: str, span: Span) -> Iterator[Diagnostic]:

@@ -18,7 +18,7 @@ from pursue_gen.language.conditions import (
     condition_words,
     conditions_of,
 )
-from pursue_gen.language.scenario import Always, NeverWith, Scenario
+from pursue_gen.language.scenario import Always, NeverWith, Patrol, Scenario
 
 
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -32,6 +32,8 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
             if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
                 yield from _lost_at_start(scenario, safety, domains)
     for safety in scenario.safety:
+        if isinstance(safety, Patrol):
+            yield from _impossible(scenario, domains, At(safety.who, safety.place), safety.span)
         if isinstance(safety, NeverWith) and safety.place is not None:
             for who in (safety.first, safety.second):
                 yield from _impossible(scenario, domains, At(Who(who), safety.place), safety.span)

@@ -24,7 +24,8 @@ FORMS: Dict[str, str] = {
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
     "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e (or a condition: avoid open is_true) · "
-    "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional)",
+    "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
+    "objective: patrol a, b every 60 by bot1 (or: by any robot)",
     "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",
 }
 """What each statement looks like, by the token that begins it."""
@@ -37,13 +38,14 @@ KEYWORDS: Dict[str, str] = {
     "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
     "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
     "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
-    "EACH": "each", "BEFORE": "before", "OR": "or", "INITIALLY": "initially", "TRUE": "true", "FALSE": "false",
-    "TRUE_IF": "true_if", "FALSE_IF": "false_if", "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false",
-    "HUMAN": "human", "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to",
-    "IF": "if", "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do",
-    "AFTER": "after", "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
-    "NEVER": "never", "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any",
-    "NO": "no", "ROBOT": "robot",
+    "EACH": "each", "PATROL": "patrol", "EVERY": "every", "BY": "by", "BEFORE": "before", "OR": "or",
+    "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
+    "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
+    "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
+    "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
+    "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves", "NEVER": "never",
+    "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
+    "ROBOT": "robot",
 }  # fmt: skip
 """The words of the language, by token."""
 
@@ -51,7 +53,7 @@ MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
-    "ALWAYS": "always", "EACH": "each",
+    "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "EVERY": "every", "BY": "by",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 

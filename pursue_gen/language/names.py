@@ -8,7 +8,7 @@ from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.conditions import conditions_of, names_in
 from pursue_gen.language.messages import RESERVED, shown
-from pursue_gen.language.scenario import Ref, RuleBody, Scenario
+from pursue_gen.language.scenario import Patrol, Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
 from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
@@ -170,6 +170,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
         for field in ("first", "second"):
             yield from all_of("agent", [getattr(objective, field, None)])
         yield from all_of("POI", [getattr(objective, "place", None)])
+        yield from all_of("agent", [objective.who.agent] if isinstance(objective, Patrol) else [])
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -6,14 +6,14 @@ import os
 import select
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, FrozenSet, List, Optional, Tuple
+from typing import Any, FrozenSet, List, Optional, Tuple, Union
 
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.condition_trees import condition_of
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import Condition, Who
 from pursue_gen.language.messages import shown
 from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
@@ -95,7 +95,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     statements = cut(text, file)
     builder = _Builder(file)
-    parts = [part for part in (builder.part(tree) for tree in statements.trees) if part is not None]
+    parts = [part for tree in statements.trees for part in builder.parts(tree)]
     findings = statements.findings + builder.findings
 
     def only(*kinds: type) -> Tuple[Any, ...]:
@@ -112,7 +112,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         states=only(pml.State),
         dependencies=only(pml.Dependency),
         agents=only(pml.Agent),
-        safety=only(pml.Respond, pml.Avoid, pml.NeverWith, pml.Always),
+        safety=only(pml.Respond, pml.Avoid, pml.NeverWith, pml.Always, pml.Patrol),
         reach=only(pml.Reach),
         travels=only(pml.Travel),
         assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
@@ -135,6 +135,11 @@ class _Builder:
     def __init__(self, file: str) -> None:
         self.file = file
         self.findings: List[Diagnostic] = []
+
+    def parts(self, tree: Any) -> Tuple[Any, ...]:
+        """The parts that a statement declares: a patrol of several places is several objectives."""
+        part = self.part(tree)
+        return part if isinstance(part, tuple) else () if part is None else (part,)
 
     def part(self, tree: Any) -> Any:
         """The part that a statement declares; None for the tail that the original's tools leave."""
@@ -257,8 +262,12 @@ class _Builder:
             span=span_of(name, self.file),
         )
 
-    def _safety(self, objective: Any, span: Span) -> pml.Safety:
+    def _safety(self, objective: Any, span: Span) -> Union[pml.Safety, Tuple[pml.Patrol, ...]]:
         children = objective.children
+        if objective.data == "patrol":
+            every, who = self._number(children[1]), children[2].children
+            agent = None if isinstance(who[0], Token) else self._ref(who[0])
+            return tuple(pml.Patrol(place, every, Who(agent, agent is None), span) for place in self._refs(children[0]))
         if objective.data == "respond":
             return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)
         if objective.data == "avoid" and children[0].data == "ref":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.conditions import Condition, Not
+from pursue_gen.language.conditions import Condition, Not, Who
 
 
 @dataclass(frozen=True)
@@ -266,7 +266,20 @@ class Always:
         return Not(self.condition) if self.holds else self.condition
 
 
-Safety = Union[Respond, Avoid, NeverWith, Always]
+@dataclass(frozen=True)
+class Patrol:
+    """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
+
+    `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    """
+
+    place: Ref
+    every: int
+    who: Who
+    span: Span
+
+
+Safety = Union[Respond, Avoid, NeverWith, Always, Patrol]
 
 
 @dataclass(frozen=True)
@@ -366,6 +379,11 @@ class Scenario:
         named = set(names(rule.body)) if rule.each else set()
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
+
+    def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
+        """The agents of whom one has to be at the place."""
+        who = patrol.who.agent
+        return tuple(agent for agent in self.agents if (agent.is_robot if who is None else agent.name == who.name))
 
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
         """From and to of each movement that the agent can make, and between which times it arrives."""

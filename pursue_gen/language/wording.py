@@ -13,6 +13,7 @@ from pursue_gen.language.scenario import (
     Avoid,
     Leaves,
     NeverWith,
+    Patrol,
     Reach,
     Respond,
     Scenario,
@@ -40,6 +41,8 @@ def _sentence(objective: StatedObjective) -> str:
     if isinstance(objective, NeverWith):
         where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.name}"
         return f"{objective.first.name} and {objective.second.name} are never {where}."
+    if isinstance(objective, Patrol):
+        return f"{patroller(objective)} is at {objective.place.name} at least every {units(str(objective.every))}."
     if isinstance(objective, Always):
         return f"It {'always' if objective.holds else 'never'} holds that {condition_words(objective.condition)}."
     after = f" later than {units(str(objective.after))} after the start" if objective.after else ""
@@ -47,6 +50,11 @@ def _sentence(objective: StatedObjective) -> str:
     verb = "happens" if len(objective.events) == 1 else "happen, in any order,"
     when = f"{after} and{within}" if after and within else after or within
     return f"{listed(ref.name for ref in objective.events)} {verb}{when}".rstrip(",") + "."
+
+
+def patroller(patrol: Patrol) -> str:
+    """Who is to be at the place: an agent's name, or `any robot`."""
+    return "any robot" if patrol.who.agent is None else patrol.who.agent.name
 
 
 def listed(names: Iterable[str]) -> str:
@@ -69,6 +77,8 @@ def objective_text(objective: StatedObjective) -> str:
     if isinstance(objective, NeverWith):
         place = "" if objective.place is None else f" at {objective.place.name}"
         return f"{objective.first.name} never_with {objective.second.name}{place}"
+    if isinstance(objective, Patrol):
+        return f"patrol {objective.place.name} every {objective.every} by {patroller(objective)}"
     if isinstance(objective, Always):
         return f"{'always' if objective.holds else 'avoid'} {condition_text(objective.condition)}"
     after = f" after {objective.after}" if objective.after else ""

@@ -166,7 +166,9 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
     if set(SUBJECTS) <= set(kinds_behind(place.behind)):
         names_hide -= {"ANY", "NO"}
     if [token.type for token in place.behind] == ["OBJECTIVE", "COLON"]:
-        names_hide.discard("ALWAYS")
+        names_hide -= {"ALWAYS", "PATROL"}
+    if "BY" in (token.type for token in place.behind):
+        names_hide.discard("ANY")
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:
             continue  # it says something behind collaborative only

@@ -36,6 +36,9 @@ MEANINGS: Dict[str, str] = {
     "AT_MOST": "How many times it happens in the whole mission, and no more.",
     "TIMES": "In the whole mission.",
     "FOR": "A rule for each of several: each of them has its own turn.",
+    "PATROL": "Places at which somebody has to be again and again.",
+    "EVERY": "So many units of time after somebody left, or after the start, somebody is there again.",
+    "BY": "Who has to be there: an agent, or any robot.",
     "EACH": "A rule for each of several: each of them has its own turn.",
     "BEFORE": "First this, then that, and then the first again.",
     "OR": "Either of the two, round after round; in a condition: at least one holds.",
@@ -127,6 +130,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
         Form("never while …", "objective: avoid {agent} at {POI} and {agent} on_way"),
         Form("what always holds", "objective: always any robot at {POI}"),
         Form("two who never meet", "objective: {agent} never_with {agent}"),
+        Form("somebody who comes again and again", "objective: patrol {POI} every {=60} by {agent}"),
         Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
     ),
     "REACH_OBJECTIVE": (

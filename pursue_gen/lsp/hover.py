@@ -259,6 +259,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str
         return "\n".join(lines + _listed(ways))
     if word == "WITHIN" and part.kind == "ASSUME":
         return f"It has set off {units(number)} of time after it came, or after the start."
+    if word == "EVERY":
+        return f"Somebody is there again {units(number)} of time after the last one left, or after the start."
     if word == "WAITS":
         return f"The next one begins {units(number)} of time after the end of the last, or later."
     if word == "AT_MOST" and part.kind == "ASSUME":

@@ -45,6 +45,8 @@ _USED: Dict[Tuple[str, str], str] = {
     ("ASSUME", "AT"): "POI",
     ("OBJECTIVE", "OBJECTIVE"): "agent",
     ("OBJECTIVE", "NEVER_WITH"): "agent",
+    ("OBJECTIVE", "PATROL"): "POI",
+    ("OBJECTIVE", "BY"): "agent",
     ("OBJECTIVE", "AT"): "POI",
     ("OBJECTIVE", "IF"): "event",
     ("OBJECTIVE", "THEN"): "event",
@@ -147,7 +149,7 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         opens = index == 2 and tokens[0].type == "OBJECTIVE"
-        begins = opens and token.type == "ALWAYS" and following != "NEVER_WITH"
+        begins = opens and token.type in ("ALWAYS", "PATROL") and following != "NEVER_WITH"
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named
 

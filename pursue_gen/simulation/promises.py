@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, List, Optional, Set
 
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Safety, Scenario
+from pursue_gen.language.conditions import At
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Safety, Scenario
 from pursue_gen.language.wording import objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
@@ -67,6 +68,12 @@ class Promises:
             here = safety.place is None or spots[0] == {safety.place.name}
             return state.status != WON and here and spots[0] == spots[1]
         since = self._since.get(number)
+        if isinstance(safety, Patrol):
+            if holds(At(safety.who, safety.place), self._scenario, state.locations, state.values):
+                self._since.pop(number, None)
+            else:
+                self._since.setdefault(number, latest)
+            return since is not None and latest - since > safety.every
         missed = since is not None and latest - since > safety.deadline
         if event == safety.response.name:
             self._since.pop(number, None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterable, Iterator, Mapping, Optional, Tuple
+from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language.clauses import Value
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
@@ -28,6 +28,8 @@ class Surroundings:
     positions: Positions
     rules: Tuple[Tuple[str, Turns], ...]
     conditions: Conditions
+    awaited: FrozenSet[Tuple[str, str]] = frozenset()
+    """Agents with the POIs to whose arrival there an objective listens."""
 
     def event(self, name: str) -> Event:
         """The event of that name. Raises KeyError."""
@@ -150,7 +152,8 @@ class _Shape:
     def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, ...]:
         """Setting off from a, as far as it ever can, and arriving at b."""
         codes, on_the_way, name = self.around.positions, names.going(a, b), self.agent.name
-        end = self._edge(on_the_way, b, None, window[0], (), codes.at(b))
+        channel = names.arrival(name, a, b) if (name, b) in self.around.awaited else None
+        end = self._edge(on_the_way, b, channel, window[0], (), codes.at(b))
         condition = self.around.conditions.setting_off(name, a, b)
         if condition is None:
             return (end,)

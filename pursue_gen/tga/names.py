@@ -92,6 +92,14 @@ def movement(agent: str, a: str, b: str) -> str:
     return f"{agent}_{a}2{b}"
 
 
+def arrival(agent: str, a: str, b: str) -> str:
+    """The channel on which an agent arrives at b from a, where somebody listens to that; else that edge has none.
+
+    It is the word that the edge has in any case.
+    """
+    return f"{agent}_{going(a, b)}2{b}"
+
+
 def done(event: str) -> str:
     """The channel on which an event with a duration ends."""
     return f"{event}DONE"

@@ -6,11 +6,22 @@ from itertools import combinations
 from typing import Dict, List, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Reach, Respond, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import (
+    Always,
+    Avoid,
+    NeverWith,
+    Patrol,
+    Reach,
+    Respond,
+    Safety,
+    Scenario,
+    StatedObjective,
+)
 from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.names import AT_RISK, IDLE, LOSE, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
+from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.positions import Positions
 
 _START, _UNLOCKED, _WIN = "initial_location", "unlocked", "win"
@@ -82,9 +93,10 @@ def events_done(location: str) -> Tuple[int, ...]:
 
 
 def safety_automaton(
-    safety: Safety, happened: Happened, positions: Positions, conditions: Conditions, number: int = 0
+    safety: Safety, scenario: Scenario, positions: Positions, conditions: Conditions, number: int = 0
 ) -> Automaton:
-    """The automaton that goes to `lose` when the safety objective is broken."""
+    """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
+    happened = {event.name: names.has_happened(event) for event in scenario.events}
     name, clock = names.safety_objective(number), names.safety_clock(number)
     locations: Tuple[Location, ...] = (Location(IDLE), Location(LOSE))
     if isinstance(safety, Respond):
@@ -93,6 +105,8 @@ def safety_automaton(
     if isinstance(safety, Avoid):
         lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
         return Automaton(name, locations, IDLE, (lose,))
+    if isinstance(safety, Patrol):
+        return patrol_automaton(safety, scenario, positions, number)
     if isinstance(safety, Always):
         broken = conditions.ways_to_hold(safety.broken_if)
         edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)

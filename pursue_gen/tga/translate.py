@@ -15,6 +15,7 @@ from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
 from pursue_gen.tga.own_turns import bound, own_turns
+from pursue_gen.tga.patrols import arrivals, awaited
 from pursue_gen.tga.positions import positions
 from pursue_gen.tga.rules import rule_automaton
 from pursue_gen.tga.states import states_automaton
@@ -33,12 +34,12 @@ def translate(scenario: Scenario) -> Network:
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
     turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
     conditions = Conditions(scenario, codes)
-    around = Surroundings(scenario, codes, turns, conditions)
+    around = Surroundings(scenario, codes, turns, conditions, awaited(scenario))
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
     automata += [assumed(bound(agent_automaton(agent, around), own), scenario) for agent in scenario.agents]
-    automata += [safety_automaton(each, happened, codes, conditions, k) for k, each in enumerate(scenario.safety)]
+    automata += [safety_automaton(each, scenario, codes, conditions, k) for k, each in enumerate(scenario.safety)]
     automata += [reach_automaton(each, happened, k) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
@@ -92,7 +93,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
     ]
     for event in scenario.events:
         channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]
-    return tuple(channels)
+    return (*channels, *arrivals(scenario))
 
 
 def _check_names(network: Network) -> None:

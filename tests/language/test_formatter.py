@@ -249,6 +249,9 @@ def texts(draw: st.DrawFn) -> str:
                 ["does", other, "at_most", number, "times"], ["waits", number, "between", other],
                 ["leaves", other, "within", number], ["never", "at", other],
             )))]  # fmt: skip
+        if kind == 7 and draw(st.booleans()):
+            who = draw(st.sampled_from(([name], ["any", "robot"])))
+            return ["objective", ":", "patrol", *refs(), "every", number, "by", *who]
         if kind == 7:
             return ["objective", ":", "if", name, "then", other, "within", number]
         if kind == 8:

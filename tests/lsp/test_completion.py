@@ -102,7 +102,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('agent "new" |', ["location", "human", "controllable", "mobile"]),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
-        ("objective: |", ["if", "avoid", "always"]),
+        ("objective: |", ["patrol", "if", "avoid", "always"]),
         ('rule "new": work |', ["and", "before", "or"]),
         ("stateDependency: work only_if tired |", ["is_true", "is_false"]),
         ("reach_objective: do work |", ["and", "within", "after"]),

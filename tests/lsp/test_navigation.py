@@ -74,7 +74,6 @@ def test_renaming_a_robot_changes_its_poses() -> None:
         ("3rd", "cannot become"),
         ("event", "word of the language"),
         ("while", "word of Python"),
-        ("clock", "word of UPPAAL"),
         ("observer", "generated"),
         ("workDONE", "DONE"),
         ("bot", "line 10 declares an agent of this name"),

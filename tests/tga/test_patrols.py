@@ -1,0 +1,131 @@
+"""Patrols in the network: an automaton for each place listens to who arrives there and who leaves."""
+
+from __future__ import annotations
+
+import random
+from typing import Dict, List
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import ClockBound, Edge, Guard, Location, Sync
+from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.workspace.model_file import model_data
+from pursue_runtime.model import Model
+
+WATCH = """\
+poi "gate"
+poi "hall"
+poi "vault"
+connect gate and hall distance 2
+connect hall and vault distance 3
+event "rest"
+agent "bot1" controllable mobile 1 location gate can_do rest
+agent "bot2" controllable mobile 2 location vault can_do rest
+objective: {}
+"""
+
+
+def scenario(objective: str) -> Scenario:
+    return parse(WATCH.format(objective), "watch.pur", "watch")
+
+
+def won(objective: str) -> bool:
+    try:
+        return bool(solve_scenario(scenario(objective), Rules()).strategy.blocks)
+    except PursueError as problem:
+        assert problem.exit_status == 4
+        return False
+
+
+def test_a_statement_with_several_places_is_several_objectives() -> None:
+    safety = scenario("patrol gate, vault every 30 by bot1").safety
+    assert all(isinstance(each, Patrol) for each in safety)
+    assert [(each.place.name, each.every) for each in safety if isinstance(each, Patrol)] == [
+        ("gate", 30), ("vault", 30),
+    ]
+
+
+def test_it_listens_to_arrivals_which_have_a_channel_only_then() -> None:
+    network = translate(scenario("patrol gate every 30 by bot1"))
+    arrives = "bot1_going_hall_to_gate2gate"
+    assert network.automaton("obj").edges == (
+        Edge("idle", "atRisk", Guard(), Sync("bot1_gate2hall", False), resets=("Cobj",)),
+        Edge("atRisk", "idle", sync=Sync(arrives, False)),
+        Edge("atRisk", "lose"),
+    )
+    assert network.automaton("obj").initial == "idle"
+    due = network.automaton("obj").locations[-1]
+    assert due == Location("atRisk", (ClockBound("Cobj", "<=", 30),))
+    channels = [edge.sync and edge.sync.channel for edge in network.automaton("bot1").edges]
+    assert channels.count(arrives) == 1 and channels.count(None) == 3, "the other arrivals are silent"
+    plain = translate(scenario("avoid rest"))
+    assert arrives not in plain.channels and network.channels == (*plain.channels, arrives)
+
+
+def test_a_place_where_nobody_starts_is_due_from_the_start() -> None:
+    assert translate(scenario("patrol hall every 30 by bot1")).automaton("obj").initial == "atRisk"
+    assert translate(scenario("patrol vault every 30 by any robot")).automaton("obj").initial == "idle"
+
+
+def test_uppaal_reads_it_back() -> None:
+    story = scenario("patrol gate, vault every 30 by any robot")
+    made = translate(story)
+    assert read_network(write_network(made, scenario_objective(story)), "x.xml") == made
+
+
+@pytest.mark.parametrize(
+    ("objective", "can"),
+    [
+        ("patrol gate, vault every 20 by bot1", True),
+        ("patrol gate, vault every 14 by bot1", False),
+        ("patrol gate, hall, vault every 20 by bot1", True),
+        ("patrol gate every 2 by any robot", True),
+        ("patrol hall every 2 by bot2", False),
+    ],
+)
+def test_it_is_won_where_the_way_round_takes_no_longer(objective: str, can: bool) -> None:
+    assert won(objective) == can
+
+
+@given(st.integers(0, 10**6), st.sampled_from(["bot1", "bot2", "any robot"]), st.sampled_from(["gate", "hall"]))
+def test_the_deadline_runs_exactly_while_nobody_of_them_is_there(seed: int, who: str, place: str) -> None:
+    """Random plays: the automaton's location and clock against where the robots are."""
+    story = scenario(f"patrol {place} every 1000 by {who}")
+    rules = Rules()
+    model = Model(model_data(played(translate(story), rules), scenario_objective(story), story, rules.reaction))
+    names = [agent.name for agent in story.agents] if who == "any robot" else [who]
+    rng, here, now, left = random.Random(seed), model.initial(), 0.0, 0.0
+    there = any(here.locations[name] == place for name in names)
+    for _ in range(30):
+        assert here.locations["obj"] == ("idle" if there else "atRisk")
+        assert there or here.clocks["Cobj"] == pytest.approx(now - left)
+        delay = rng.choice((0.3, 1.1, 2.0))
+        aged = here.aged(delay)
+        words: Dict[str, List[str]] = {}
+        for word in model.possible(aged, timed=True):
+            words.setdefault(word, []).append(word)
+        able = [word for word in words if not word.startswith("obj") and word != "rest"]
+        stays = model.automaton("bot1").invariants, model.automaton("bot2").invariants
+        late = any(
+            aged.clocks[bound.left] > bound.bound
+            for bounds, name in zip(stays, ("bot1", "bot2"))
+            for bound in bounds[here.locations[name]]
+        )
+        if late:
+            break
+        here, now = aged, now + delay
+        if not able:
+            continue
+        moves = model.joint_move(here, rng.choice(able))
+        assert moves is not None
+        here = model.after(moves, here)
+        was, there = there, any(here.locations[name] == place for name in names)
+        left = now if was and not there else left
