@@ -14,7 +14,7 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
 from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Scenario
+from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
 from pursue_gen.language.wording import events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
@@ -274,7 +274,8 @@ def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
     place = listed(each.place.name for each in together)
 
     def make(k: int) -> Variant:
-        changed = tuple(replace(each, every=k) if each in together else each for each in scenario.safety)
+        rarer: Dict[Safety, Safety] = {each: replace(each, every=k) for each in together}
+        changed = tuple(rarer.get(each, each) for each in scenario.safety)
         return replace(scenario, safety=changed), rules
 
     def say(k: int) -> str:

@@ -21,9 +21,6 @@ from pursue_gen.zones.scale import least_common_multiple
 STATES = 20_000
 """Symbolic states of the checker that a worst-case time may take."""
 
-PROOF = 50_000
-"""Symbolic states of the checker that the proof of a strategy may take which is not needed: there is another one."""
-
 _NOT_PROVEN, _LIMIT_HIT = 4, 5
 """The exit statuses of strategies that do not win, and of errors at a limit."""
 
@@ -64,7 +61,7 @@ def proven_in_time(won: Solution, faster: Faster, options: SolveOptions, states:
 
 
 def better(
-    won: Solution, known: Guarantee, faster: Faster, options: SolveOptions, states: int = PROOF
+    won: Solution, known: Guarantee, faster: Faster, options: SolveOptions, states: int = LIMIT
 ) -> Optional[Solution]:
     """The solution with the faster strategy; None where that is not proven in looks of so many symbolic states."""
     try:
