@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <queue>
+#include <set>
 #include <tuple>
 
 #include "zone_graph.hpp"
@@ -25,8 +26,37 @@ class Fixpoint : public ZoneGraph<Z> {
 
     std::size_t evaluations() const { return evaluations_; }
 
-    // What to do in the states that a play by the plans may come to, by one hull of the clocks of each.
+    // What to do in the states that a play by the plans may come to: in a reach game by one hull of the clocks of each.
+    // In a safety game whatever the clocks: such a strategy is its own certificate, which has to be closed.
     std::map<int, std::vector<Piece<Z>>> followed() {
+        return game_.kind == Kind::safety ? followed_at_any_clocks() : followed_by_hulls();
+    }
+
+  private:
+    std::map<int, std::vector<Piece<Z>>> followed_at_any_clocks() {
+        std::map<int, std::vector<Piece<Z>>> plans;
+        std::deque<int> queue{0};
+        std::vector<bool> met(nodes_.size(), false);
+        for (met[0] = true; !queue.empty();) {
+            const int k = queue.front();
+            queue.pop_front();
+            this->check_limits();
+            std::vector<Piece<Z>> pieces = plan(k);
+            if (pieces.empty()) continue;
+            std::set<int> commanded;
+            for (const Piece<Z>& piece : pieces) commanded.insert(piece.joint);
+            for (const Transition& transition : nodes_[k].transitions) {
+                if (met[transition.target] || !nodes_[transition.target].reached) continue;
+                if (joints_[transition.joint].controllable && !commanded.count(transition.joint)) continue;
+                met[transition.target] = true;
+                queue.push_back(transition.target);
+            }
+            plans.emplace(k, std::move(pieces));
+        }
+        return plans;
+    }
+
+    std::map<int, std::vector<Piece<Z>>> followed_by_hulls() {
         std::map<int, std::vector<Piece<Z>>> plans;
         std::map<int, Z> met;
         std::deque<int> queue{0};
