@@ -268,8 +268,8 @@ def test_a_strategy_with_something_amiss_is_reported() -> None:
 
 
 def test_a_file_of_another_format_is_reported(tmp_path: Path) -> None:
-    (tmp_path / "strategy.yaml").write_text("format: 2")
-    with pytest.raises(DataError, match=r"strategy\.yaml has format 2, and pursue_runtime [\d.]+ reads format 1: put"):
+    (tmp_path / "strategy.yaml").write_text("format: 3")
+    with pytest.raises(DataError, match=r"strategy\.yaml has format 3, and pursue_runtime [\d.]+ reads format"):
         read_data(str(tmp_path / "strategy.yaml"))
     for text in ("format: 0", "[1, 2]", "format: [", "{"):
         (tmp_path / "strategy.yaml").write_text(text)
