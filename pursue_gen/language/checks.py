@@ -70,7 +70,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_assumptions(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
-    return _presentable(in_order(findings))
+    return _presentable(in_order(dict.fromkeys(findings)))  # a statement may be several objectives
 
 
 def _presentable(findings: Tuple[Diagnostic, ...]) -> Tuple[Diagnostic, ...]:

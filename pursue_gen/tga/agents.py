@@ -16,8 +16,9 @@ from pursue_gen.tga.rules import Turns
 Assign = Tuple[Tuple[str, int], ...]
 """Variables with the values that an edge gives them."""
 
-_PAUSE = 1
+PAUSE = 1
 """Time units that an agent rests after an action or a movement, before it can begin the next."""
+
 
 @dataclass(frozen=True)
 class Surroundings:
@@ -157,7 +158,7 @@ class _Shape:
         condition = self.around.conditions.setting_off(name, a, b)
         if condition is None:
             return (end,)
-        return self._edge(a, on_the_way, names.movement(name, a, b), _PAUSE, condition, codes.going(a, b)), end
+        return self._edge(a, on_the_way, names.movement(name, a, b), PAUSE, condition, codes.going(a, b)), end
 
     def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, ...]:
         """Beginning an event at a POI, as far as the agent ever can, and ending it."""
@@ -168,7 +169,7 @@ class _Shape:
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
-        start = self._edge(poi, at_work, event.name, _PAUSE, conditions, codes.doing(poi))
+        start = self._edge(poi, at_work, event.name, PAUSE, conditions, codes.doing(poi))
         start = replace(start, assign=(*start.assign, *working.begins(self.agent.name, event.name, poi)))
         if not self.around.is_contested(event):
             return start, ending
@@ -203,7 +204,7 @@ class _Shape:
         for poi in self.places(event):
             conditions = self._conditions(event, codes.at(poi), Value("at", poi))
             if conditions is not None:
-                yield self._edge(poi, poi, event.name, _PAUSE, conditions, None)
+                yield self._edge(poi, poi, event.name, PAUSE, conditions, None)
         if event.location is None:
             for a, b in ways:
                 here = names.going(a, b)

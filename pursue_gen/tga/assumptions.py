@@ -11,10 +11,8 @@ from typing import Callable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, Scenario, Waits
 from pursue_gen.tga import names
+from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Location, Test
-
-_PAUSE = 1
-"""Time units that an agent rests before it can set off."""
 
 
 def assumed(automaton: Automaton, scenario: Scenario) -> Automaton:
@@ -117,7 +115,7 @@ def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
         if edge.source != place or names.is_going(edge.target):
             return [edge]
         lasts = 0 if edge.target == place else takes[edge.target]
-        in_time = _with(edge, bound=ClockBound(clock, "<", most - _PAUSE - lasts))
+        in_time = _with(edge, bound=ClockBound(clock, "<", most - PAUSE - lasts))
         return [in_time, _when_broken(edge, number)]
 
     return _each(replace(automaton, locations=locations), edges)

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.mission import GOAL, HELD, SAFE, Settings, simulate_mission
 from pursue_gen.simulation.stage import stage_of
-from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import solution, solve_scenario
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import STOPPED, SystemState
+from tests.solving.verdicts import SCENARIOS, is_won
 
-SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 STATUE = (SCENARIOS / "museum" / "guarded_statue.pur").read_text(encoding="utf-8")
 DOOR = (SCENARIOS / "hotel" / "staff_door.pur").read_text(encoding="utf-8")
 
@@ -71,16 +66,6 @@ CORRIDOR = (SCENARIOS / "hotel" / "quiet_corridor.pur").read_text(encoding="utf-
 
 
 MEETING = "avoid any robot at corridor and guest at corridor"
-
-
-def is_won(text: str, engine: str) -> bool:
-    read = parse(text, "x.pur", "x")
-    try:
-        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
-    except PursueError as problem:
-        assert problem.exit_status == 4, problem
-        return False
-    return True
 
 
 BUSY = " only_if no robot doing inspect"

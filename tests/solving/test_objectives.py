@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import List
 
 import pytest
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
 from pursue_gen.simulation.stage import stage_of
-from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import fastest_solution, guaranteed, solution, solve_scenario
+from pursue_gen.solving.solution import fastest_solution, guaranteed, solve_scenario
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options
-
-SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
-
-
-def text(name: str) -> str:
-    return (SCENARIOS / f"{name}.pur").read_text(encoding="utf-8")
-
-
-def is_won(source: str, engine: str = "native") -> bool:
-    read = parse(source, "x.pur", "x")
-    try:
-        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
-    except PursueError as problem:
-        assert problem.exit_status == 4, problem
-        return False
-    return True
+from tests.solving.verdicts import is_won, text
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])

@@ -2,38 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.report.recording import simulated
 from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
 from pursue_gen.simulation.runs import case_of
 from pursue_gen.simulation.stage import stage_of
-from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import solution, solve_scenario
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
-
-SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
-
-
-def text(name: str) -> str:
-    return (SCENARIOS / f"{name}.pur").read_text(encoding="utf-8")
-
-
-def is_won(source: str, engine: str) -> bool:
-    read = parse(source, "x.pur", "x")
-    try:
-        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
-    except PursueError as problem:
-        assert problem.exit_status == 4, problem
-        return False
-    return True
-
+from tests.solving.verdicts import is_won, text
 
 TRAVEL = "travel visitor from gallery to hall takes 12 to 20\n"
 

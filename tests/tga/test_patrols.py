@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
+from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import solve_scenario
@@ -51,6 +52,14 @@ def test_a_statement_with_several_places_is_several_objectives() -> None:
     assert [(each.place.name, each.every) for each in safety if isinstance(each, Patrol)] == [
         ("gate", 30), ("vault", 30),
     ]
+
+
+@pytest.mark.parametrize(("objective", "code"), [
+    ("patrol gate, vault every 1 by bot1", "PML143"), ("patrol gate, vault every 30 by bot9", "PML110"),
+    ("patrol gate, cellar every 30 by bot1", "PML110"), ("patrol gate, gate every 30 by bot1", "PML220"),
+])  # fmt: skip
+def test_what_is_wrong_with_a_statement_is_reported_once(objective: str, code: str) -> None:
+    assert [finding.code for finding in check(scenario(objective))] == [code]
 
 
 def test_it_listens_to_arrivals_which_have_a_channel_only_then() -> None:
