@@ -11,7 +11,10 @@ from pursue_runtime.words import FINISH, Word, parse_report, parse_word
 
 @dataclass(frozen=True)
 class RecordedWord:
-    """A word on pursue/events: when it was received (seconds), and the node that published it ("": not known)."""
+    """A word on pursue/events: when it was received (seconds), and the node that published it ("": not known).
+
+    `seq` and `as_of` are as in Word.
+    """
 
     at: float
     text: str
@@ -19,6 +22,7 @@ class RecordedWord:
     agent: str = ""
     event: str = ""
     seq: Optional[int] = None
+    as_of: Optional[int] = None
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,7 @@ def read_word(at: float, text: str, node: str = "") -> RecordedWord:
     bare = text.strip()
     report = parse_report(bare)
     if report is not None:
-        return RecordedWord(at, bare, node, report.agent, report.event)
+        return RecordedWord(at, bare, node, report.agent, report.event, as_of=report.as_of)
     word = Word("", FINISH) if bare == FINISH else parse_word(bare) or Word("", "")
     return RecordedWord(at, bare, node, *word)
 

@@ -33,6 +33,25 @@ APART = 60.0
 """Seconds by which the recorder may have received a report earlier or later than the observer: links may be cut."""
 
 
+class Arrivals:
+    """In which states automata came to their locations."""
+
+    def __init__(self, states: Sequence[SystemState]) -> None:
+        self._numbers: Dict[str, List[int]] = {}
+        here: Dict[str, str] = {}
+        for state in states:
+            for name, location in state.locations.items():
+                if here.get(name, location) != location:
+                    self._numbers.setdefault(name, []).append(state.seq)
+            here.update(state.locations)
+
+    def are_after(self, word: RecordedWord, agent: str, seq: int) -> bool:
+        """True for a report of what the agent had begun before it came to where it is in the state of this number."""
+        numbers = self._numbers.get(agent, [])
+        place = bisect.bisect(numbers, seq)
+        return word.as_of is not None and place > 0 and word.as_of < numbers[place - 1]
+
+
 @dataclass(frozen=True)
 class WordMatches:
     """The word of each step (by the number of its state), the states by number, and the words that led to nothing.
@@ -44,6 +63,7 @@ class WordMatches:
     states: Mapping[int, SystemState]
     unmatched: Tuple[RecordedWord, ...]
     standing: FrozenSet[int] = frozenset()
+    arrivals: Optional[Arrivals] = None
 
     def of(self, seq: int) -> Optional[RecordedWord]:
         """The word that led to this state."""
@@ -65,6 +85,7 @@ def match_words(
         words.sort()
     used: Set[int] = set()
     found: Dict[int, RecordedWord] = {}
+    arrivals = Arrivals(record.states)
     for since, before, state in steps:
         numbers = (*range(before.seq, since.seq - 1, -1), None)
         for words in (received.get((state.event, number), []) for number in numbers):
@@ -72,8 +93,9 @@ def match_words(
             members = moves.sharing(place_of(before), state.event, state.agent) or (state.agent,)
             nearest: Dict[str, int] = {}
             for _, place in sorted(near, key=lambda entry: abs(entry[0] - state.stamp)):
-                agent = record.words[place].agent or state.agent
-                if agent in members and place not in used:
+                word = record.words[place]
+                agent = word.agent or state.agent
+                if agent in members and place not in used and not arrivals.are_after(word, agent, before.seq):
                     nearest.setdefault(agent, place)
             if nearest:
                 used.update(nearest.values())
@@ -84,7 +106,7 @@ def match_words(
         states.setdefault(state.seq, state)
     left = [word for place, word in enumerate(record.words) if place not in used and not _control(word)]
     standing = frozenset(before.seq for since, before, _ in steps if since.seq != before.seq)
-    return WordMatches(found, states, tuple(left), standing)
+    return WordMatches(found, states, tuple(left), standing, arrivals)
 
 
 def _control(word: RecordedWord) -> bool:
@@ -123,6 +145,10 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
     if not word.event:
         return now.seq, "it is no word"
     if word.seq is None:
+        doer = next((move[0][0] for move in moves.of(place_of(now), word.event, word.agent)), "")
+        agent = word.agent or doer
+        if said.arrivals is not None and said.arrivals.are_after(word, agent, now.seq):
+            return now.seq, f"it reports the end of what {agent} had begun before state {now.seq}"
         if moves.sharing(place_of(now), word.event, word.agent):
             return now.seq, "it was noted, and others had not finished yet"
         return now.seq, _impossible(now, word, moves) or "its moment had not come, or the observer did not receive it"

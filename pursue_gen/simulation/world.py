@@ -17,6 +17,7 @@ from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.locations import action_of, is_action
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
 from pursue_runtime.state import SystemState
+from pursue_runtime.words import FAILED, RobotReport, format_report
 
 INSIDE = 1e-3
 """Time units by which the earliest end is inside its window, which opens with a strict bound."""
@@ -106,7 +107,7 @@ class SimulatedAgent:
         self._broken = True
         self._fault_plan.count("failed" if breakdown.reported else "silent")
         if breakdown.reported:
-            self._publish(self.agent, f"{self.agent}:_failed_")
+            self._publish(self.agent, format_report(RobotReport(self.agent, FAILED, as_of=begun)))
         if breakdown.back is not None:
             self._events.schedule(self._events.now + breakdown.back, lambda: self._repair(begun))
 
@@ -115,7 +116,7 @@ class SimulatedAgent:
         self._broken = False
         window = self._window()
         if window is not None and self._since == begun:
-            self._publish(self.agent, report_word(self._stage.model, self.agent, window.event))
+            self._publish(self.agent, report_word(self._stage.model, self.agent, window.event, begun))
 
     def _window(self) -> Optional[EndWindow]:
         """When what it does ends by its model."""

@@ -13,7 +13,18 @@ from pursue_runtime.controller.reports import Report
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
 from pursue_runtime.locations import is_action
-from pursue_runtime.words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, RobotReport, format_report
+from pursue_runtime.words import (
+    BACK,
+    BLOCKED,
+    DISPLACED,
+    FAILED,
+    HELD,
+    RESUME,
+    RobotReport,
+    Word,
+    format_report,
+    format_word,
+)
 
 GRACE = 2.0
 """Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""
@@ -21,7 +32,8 @@ GRACE = 2.0
 
 class View(NamedTuple):
     """What a state says about one robot: its location ("": the mission does not run), and the movement (`way`) or the
-    place (`post`) that it stands for. The last four are the lists of the state that name the robot."""
+    place (`post`) that it stands for; `lost` to `returning` are the lists of the state that name the robot. `seq` is
+    the number of the state."""
 
     location: str = ""
     way: Optional[Movement] = None
@@ -31,6 +43,7 @@ class View(NamedTuple):
     held: bool = False
     displaced: bool = False
     returning: bool = False
+    seq: int = 0
 
 
 class Action(NamedTuple):
@@ -85,6 +98,7 @@ class Navigation:
         self.trouble = ""  # what an operator should know
         self._log = log
         self._view = View()
+        self._as_of = 0  # the number of the first state that has the robot at its location
         self._trip: Optional[Trip] = None
         self._goal = GoalTracker(settings)
         self._at = Whereabouts(settings)
@@ -242,6 +256,7 @@ class Navigation:
         """Begin with another location: whatever belonged to the one before is over."""
         self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
         self._action = self._report = self._doubt = None
+        self._as_of = view.seq
         self.trouble = ""
         self._goal.drop()
         if view.way:
@@ -289,7 +304,8 @@ class Navigation:
         poi = trip.movement.place.poi
         self._at.on_arrival(poi)
         trip.has_arrived, trip.goal_at, self.trouble = True, None, ""
-        self._report = Report(f"{self.name}_{trip.movement.location}2{poi}", self.reaction)
+        word = Word("", f"{self.name}_{trip.movement.location}2{poi}", as_of=self._as_of)
+        self._report = Report(format_word(word), self.reaction)
 
     def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
         what = self._what(trip, how, text)
@@ -318,7 +334,7 @@ class Navigation:
     # Reports ----------------------------------------------------------------------------------------------------------
 
     def _word(self, event: str, text: str = "") -> str:
-        return format_report(RobotReport(self.name, event, text))
+        return format_report(RobotReport(self.name, event, text, self._as_of))
 
     def _reports(self, event: str) -> bool:
         """Return True if the present report is of this kind."""

@@ -118,9 +118,10 @@ class Exeggutor:
     def _view(self, name: str, state: SystemState) -> View:
         """What the state says about this robot."""
         here = state.locations.get(name, "") if state.status in LIVE else ""
-        lists = (name in names for names in (state.lost, state.held, state.displaced, state.returning))
+        lost, held, displaced = (name in names for names in (state.lost, state.held, state.displaced))
         way, post = self._ways[name].get(here), self._places[name].get(poi_of(here, self._places[name]))
-        return View(here, way, post, state.status == RUNNING, *lists)
+        running, returning = state.status == RUNNING, name in state.returning
+        return View(here, way, post, running, lost, held, displaced, returning, state.seq)
 
     def is_placed(self, name: str) -> bool:
         """Return True if the robot is known to be where the state has it, or the state says that it is not."""

@@ -95,8 +95,8 @@ def values_of(message: SystemState) -> Dict[str, str]:
 
 
 def event_of(word: str) -> str:
-    """`agent:event@seq` without agent and number."""
-    return word.split("@")[0].split(":")[-1]
+    """`agent:event@seq` or `agent:event#seq` without agent and number."""
+    return word.split("@")[0].split("#")[0].split(":")[-1]
 
 
 def enabled(edge: Mapping[str, Any], before: Mapping[str, str]) -> bool:

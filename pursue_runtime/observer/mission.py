@@ -9,6 +9,7 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Assumption, Model, Move, Position
 from pursue_runtime.observer.assumptions import Breach, breach, broken_reason, overstayed
 from pursue_runtime.observer.automata import Automata
+from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.observer.planning import Planning, PlanRequest, covers, stays, uncovered
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
@@ -84,6 +85,7 @@ class Mission:
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
         self._on_uncovered, self._lost_after = on_uncovered, lost_after
         self._early: Dict[Word, float] = {}  # and their moments
+        self._beginnings = Beginnings()
         self._planning = Planning(controllers)
         self._warned = False
         self._shown = self.robots.revision()  # in the newest state
@@ -246,6 +248,7 @@ class Mission:
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
         self.shared_ends.adopt(state)
+        self._beginnings.forget()
         self._commanded = state.commanded
         self._shown = self.robots.revision()
         return [self.state(now), *self._status_changes(now)]
@@ -353,12 +356,13 @@ class Mission:
             before = self.state(now)
             self._automata.take(moves, now)
             self.robots.on_moves(moves)
-            for name in self.shared_ends.on_moves(moves, self.lost):
+            for name in self.shared_ends.on_moves(moves, self.lost, self._beginnings):
                 self.late.discard(name)
                 self.lost.pop(name, None)
                 self.ways.turns.pop(name, None)
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
+            self._beginnings.on_moves(moves, self.seq)
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
@@ -493,11 +497,14 @@ class Mission:
             self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
         self.ways.turns.clear()
         self._update_status(now, self._tolerance)
+        self._beginnings.on_moves(turns, self.seq + 1)
         return self._new_state(now)
 
     def _on_robot_report(self, report: RobotReport, now: float) -> List[SystemState]:
         """Take a report about a robot (failed, held, resumes, displaced, back in place) or a way (blocked, free)."""
         agent, location, wrong = report.agent, self._automata.location_of(report.agent), ""
+        if self._is_over(agent, report.as_of, report.event):
+            return []
         if report.event in (BLOCKED, FREE):
             wrong, why = self.ways.on_report(report, location, agent in self.lost)
             if why:
@@ -519,6 +526,8 @@ class Mission:
         if self.shared_ends.settles(word):
             self.lost.pop(word.agent, None)
             return self._status_changes(now)
+        if self._is_over(word.agent or self._doer_of(word.event, now), word.as_of, word.event):
+            return []
         counts = self.shared_ends.take(word, self.position(now), self.lost)
         if counts is not None:
             return self._take(self._moves_of(counts, now), now)
@@ -527,6 +536,19 @@ class Mission:
         self.late.discard(word.agent)
         self.lost.pop(word.agent, None)
         return self._status_changes(now) or [self.state(now)]
+
+    def _is_over(self, agent: str, as_of: Optional[int], event: str) -> bool:
+        """Return True, and count it, for a report of what the agent has left since: a cut link brings it late."""
+        if not self._beginnings.is_over(agent, as_of):
+            return False
+        begun = self._beginnings.of(agent)
+        self._reject("stale", f"{event}#{as_of}: {agent} came in state {begun} to what it does now", level="info")
+        return True
+
+    def _doer_of(self, event: str, now: float) -> str:
+        """Return who reports an event without its name; "" if it cannot happen."""
+        moves = self.model.joint_move(self.position(now), event, timed=False)
+        return moves[0].automaton if moves else ""
 
     def _after_losses(self, now: float) -> List[SystemState]:
         """Take an end that does not wait for lost agents any more; return new states, if there are any."""

@@ -6,6 +6,7 @@ from typing import Collection, Dict, List, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Edge, Model, Move, Position
+from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.state import SystemState
 from pursue_runtime.words import Word
 
@@ -22,17 +23,24 @@ class Group(NamedTuple):
     robots: Tuple[str, ...]
 
 
+class OwedReport(NamedTuple):
+    """The word of an end that a partner has not reported, and the number of the state in which it began that."""
+
+    event: str
+    begun: int
+
+
 class SharedEnds:
     """The reports of the ends of events that go on.
 
-    `finished`: those who have reported the end; `owing`: partners that were lost when it came, with its word: where
-    they report it later, they count again. Only robots report for themselves; people and other agents take part until
+    `finished`: those who have reported the end; `owing`: partners that were lost when it came: where they report it
+    later, they count again. Only robots report for themselves; people and other agents take part until
     the one who does the event has ended it.
     """
 
     def __init__(self, model: Model, whose: str = ALL) -> None:
         self.finished: Set[str] = set()
-        self.owing: Dict[str, str] = {}
+        self.owing: Dict[str, OwedReport] = {}
         self._whose = whose
         self._partners: Dict[str, List[str]] = {}  # by location
         self._doers: Dict[str, List[Tuple[str, str]]] = {}  # by location; the word of the end
@@ -74,14 +82,17 @@ class SharedEnds:
                 return tuple(member for member in members if member not in self.finished)
         return (name,)
 
-    def on_moves(self, moves: Tuple[Move, ...], lost: Collection[str]) -> Set[str]:
-        """Take the moves of an event; return who has acted or reported: others were moved by what these did."""
+    def on_moves(self, moves: Tuple[Move, ...], lost: Collection[str], beginnings: Beginnings) -> Set[str]:
+        """Take the moves of an event; return who has acted or reported: others were moved by what these did.
+
+        `beginnings`: those of the locations that the moves leave.
+        """
         acting: Set[str] = set()
         for name, edge in moves:
             if edge.sync != "receive" or name in self.finished:
                 acting.add(name)
             elif _ends_with_another(edge) and name in lost:
-                self.owing[name] = edge.word
+                self.owing[name] = OwedReport(edge.word, beginnings.of(name))
             self.finished.discard(name)
         for name in acting:
             self.owing.pop(name, None)
@@ -89,7 +100,8 @@ class SharedEnds:
 
     def settles(self, word: Word) -> bool:
         """Return True for a report that its robot owes: it is not lost any more."""
-        if self.owing.get(word.agent) != word.event:
+        owed = self.owing.get(word.agent)
+        if owed is None or owed.event != word.event or (word.as_of is not None and word.as_of < owed.begun):
             return False
         del self.owing[word.agent]
         return True

@@ -36,7 +36,10 @@ class EndWindow(NamedTuple):
 
 @dataclass
 class Activity:
-    """A movement or an action that goes on; moments are seconds of ROS time, `sent` of the real clock."""
+    """A movement or an action that goes on; moments are seconds of ROS time, `sent` of the real clock.
+
+    `word` reports its end, with the number of the first state that has shown it.
+    """
 
     location: str
     since: float
@@ -74,10 +77,11 @@ def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
     return None
 
 
-def report_word(model: Model, agent: str, event: str) -> str:
-    """Return the word that reports an event, with the agent's name only if another agent has the same event."""
+def report_word(model: Model, agent: str, event: str, as_of: Optional[int] = None) -> str:
+    """Return the word that reports an event, with the agent's name only if another agent has the same event; `as_of`
+    as in Word."""
     able = {a.name for a in model.automata for edge in a.edges if edge.word == event and reports(a, edge)}
-    return format_word(Word(agent if able - {agent} else "", event))
+    return format_word(Word(agent if able - {agent} else "", event, as_of=as_of))
 
 
 def reports(automaton: Automaton, edge: Edge) -> bool:
@@ -198,7 +202,7 @@ class Simulator:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
         activity = Activity(
-            location, since, report_word(self._model, name, window.event), window.low * state.unit,
+            location, since, report_word(self._model, name, window.event, state.seq), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
             under_way=automaton.kind != "robot" or newborn,
         )

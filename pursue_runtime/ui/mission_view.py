@@ -339,7 +339,7 @@ def read_line(
         if offer.opens > MARGIN:
             return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
         return offer.word, ""
-    event = text.partition("@")[0].rpartition(":")[2]
+    event = text.partition("@")[0].partition("#")[0].rpartition(":")[2]
     if event in words or event.startswith("_") or text == "Finish!":
         return text, ""
     return text, f"{text} is not a word of this scenario; it was published anyway" if text else ""

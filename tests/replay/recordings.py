@@ -93,7 +93,7 @@ def mission(play: Play = PLAY, unit: float = 1.0) -> Mission:
     show(START, 1)
     for seq, (units, word, node) in enumerate(play, start=2):
         at = START + units * unit
-        agent, _, event = word.rstrip("@").rpartition(":")
+        agent, _, event = word.rstrip("@").partition("#")[0].rpartition(":")
         move = next(moves.of(place, event, agent))
         place, resets = after(move, place)
         zeros.update(dict.fromkeys(resets, at))

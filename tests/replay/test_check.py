@@ -151,6 +151,18 @@ def test_what_was_said_twice_late_or_in_vain_is_reported_and_harms_nothing() -> 
     assert any("it is no word" in note for note in notes)
 
 
+def test_a_report_from_before_what_a_robot_does_now_is_said_to_lead_to_nothing() -> None:
+    """A recording of before reports had numbers is read as well: all other tests here are such."""
+    play = tuple((at, f"{word}#3" if word == "bot1_going_c_to_b2b" else word, node) for at, word, node in PLAY)
+    made = mission(play)
+    made.say(made.states[8].stamp - 0.05, "bot1_inbDONE#5", "simulator")
+    findings = found(made)
+    assert findings.kept and findings.won
+    assert [step.word.text for step in findings.steps if step.word and step.word.as_of] == ["bot1_going_c_to_b2b#3"]
+    (note,) = (f.text for f in findings.findings if f.kind == "dropped")
+    assert "it reports the end of what bot1 had begun before state 7" in note
+
+
 def test_a_command_that_the_strategy_does_not_have_is_a_fault() -> None:
     assert ("command", 7) in kinds(found(play_with(11.02, "bot1_inb")), FAULT)
 

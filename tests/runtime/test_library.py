@@ -14,7 +14,7 @@ from pursue_runtime import zones as runtime_zones
 from pursue_runtime.data import DataError, Package, data_file, read_data
 from pursue_runtime.state import SystemState, format_state, older, parse_state
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import Word, format_word, parse_word
+from pursue_runtime.words import BACK, FAILED, RobotReport, Word, format_report, format_word, parse_report, parse_word
 from pursue_runtime.zones import due, parse_zone
 from tests.runtime.texts import read
 
@@ -135,6 +135,13 @@ def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
 def test_words_come_back(agent: str, event: str, seq: object) -> None:
     word = Word(agent, event, seq)
     assert parse_word(format_word(word)) == word
+    assert parse_word(format_word(word._replace(seq=None, as_of=seq))) == (agent, event, None, seq)
+
+
+@given(names, st.sampled_from((FAILED, BACK)), st.none() | st.integers(0, 10**6), st.sampled_from(("", "no way", "#7")))
+def test_reports_about_robots_come_back(robot: str, event: str, as_of: object, why: str) -> None:
+    report = RobotReport(robot, event, why, as_of)
+    assert parse_report(format_report(report)) == report
 
 
 @pytest.mark.parametrize(
@@ -145,14 +152,16 @@ def test_words_come_back(agent: str, event: str, seq: object) -> None:
         ("polBot2:catch@7", "polBot2", "catch", 7),
         (" bot1_c2b! ", "", "bot1_c2b", None),
         ("catch@99999999999999999999", "", "catch", 10**20 - 1),
+        ("polBot2:catchDONE#7", "polBot2", "catchDONE", None),
     ],
 )
 def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: object) -> None:
-    assert parse_word(text) == (agent, event, seq)
+    assert parse_word(text) == (agent, event, seq, 7 if "#" in text else None)
 
 
 @pytest.mark.parametrize(
-    "text", ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…", "a@" + 5000 * "9"]
+    "text",
+    ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…", "a@" + 5000 * "9", "a@1#2", "a#", "a#1@2"],
 )
 def test_what_is_no_word_is_none(text: str) -> None:
     assert parse_word(text) is None

@@ -114,6 +114,16 @@ def test_a_command_as_late_as_without_faults_is_no_cause() -> None:
     assert "was due for" not in outcome.cause and "outside the model's window" in outcome.cause
 
 
+@pytest.mark.parametrize("seed", [17, 37, 187, 260, 316, 357, 392])
+def test_a_report_that_comes_late_does_not_end_what_was_begun_after_it(seed: int) -> None:
+    """In these missions the end of `clean` came once more when the robot had begun to clean again."""
+    on, times, settings = stage("home/spills"), remaining("home/spills"), Settings(faults=tuple(FAULTS))
+    bound = times.bound()
+    settings = replace(settings, bound=bound, span=0.6 * (bound or 0.0), margin=margin("home/spills"))
+    outcome = simulate_mission(on, settings, seed, times)
+    assert outcome.end in (GOAL, STOPPED), outcome.reason
+
+
 def test_robots_off_their_model_are_no_wrong_commands() -> None:
     outcomes = missions(THIEF, 20, Settings("random", ("late",)))
     assert sum(outcome.off_model for outcome in outcomes) > 0

@@ -55,7 +55,7 @@ def test_an_order_for_what_is_over_begins_nothing_else(location: str, after: boo
     robot.enter(2, THERE)
     robot.order(THERE, 2)
     robot.wait(12.0)
-    assert set(robot.reports) == {"bot1_going_c_to_b2b"}
+    assert set(robot.reports) == {"bot1_going_c_to_b2b#2"}
     robot.enter(3, "b")
     robot.reports.clear()
     if not after:
@@ -78,14 +78,14 @@ def test_a_robot_breaks_down_in_what_it_does_and_ends_nothing_else_when_it_can_g
     assert robot.reports == []  # it has not begun
     robot.order(THERE, 2)
     robot.wait(5.0)
-    assert robot.reports == ["bot1:_failed_"]
+    assert robot.reports == ["bot1:_failed_#2"]
     robot.enter(3, "b")  # a person has reported its arrival
     robot.enter(4, ACTION)
     robot.wait(10.0)
-    assert robot.reports == ["bot1:_failed_"]
+    assert robot.reports == ["bot1:_failed_#2"]
     robot.order(ACTION, 4)
     robot.wait(5.0)
-    assert robot.reports[1:2] == ["bot1_inbDONE"]
+    assert robot.reports[1:2] == ["bot1_inbDONE#4"]
 
 
 def test_a_robot_that_can_go_on_ends_what_it_was_at() -> None:
@@ -94,9 +94,9 @@ def test_a_robot_that_can_go_on_ends_what_it_was_at() -> None:
     robot.order(THERE, 2)
     robot.order(THERE, 2)
     robot.wait(30.0)
-    assert robot.reports == ["bot1:_failed_"]
+    assert robot.reports == ["bot1:_failed_#2"]
     robot.wait(6.0)
-    assert robot.reports[1:2] == ["bot1_going_c_to_b2b"]
+    assert robot.reports[1:2] == ["bot1_going_c_to_b2b#2"]
 
 
 def test_a_robot_that_has_been_quick_breaks_down_no_more() -> None:
@@ -109,4 +109,4 @@ def test_a_robot_that_has_been_quick_breaks_down_no_more() -> None:
     robot.enter(4, BACK)
     robot.order(BACK, 4)
     robot.wait(20.0)
-    assert set(robot.reports) == {"bot1_going_b_to_c2c"}
+    assert set(robot.reports) == {"bot1_going_b_to_c2c#4"}

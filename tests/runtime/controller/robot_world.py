@@ -34,8 +34,8 @@ class World:
 
     @property
     def words(self) -> List[str]:
-        """What was published, without the texts that say why."""
-        return [text.split(" ")[0] for text in self.texts]
+        """What was published, without the numbers of states and the texts that say why."""
+        return [text.split(" ")[0].partition("#")[0] for text in self.texts]
 
     def act(self) -> None:
         goal, action, word = self.robot.due(self.now, self.now)

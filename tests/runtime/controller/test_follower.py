@@ -12,7 +12,7 @@ from pursue_runtime.data import DataError
 from pursue_runtime.missions import Missions
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import format_word
+from pursue_runtime.words import Word, format_word
 from tests.runtime.texts import read
 
 A, B, C = "a" * 12, "b" * 12, "c" * 12
@@ -247,7 +247,7 @@ def test_a_plan_is_learned_for_its_own_mission_only() -> None:
     bot = begun(SECOND)
     bot.see(3, 10.0, A, plan=1)
     assert learn(bot, plan("wrong", B), 10.0) is None and bot.says(10.0) == ""
-    assert learn(bot, plan("right", A), 10.0) == ("controller_bot", "_plan_", 1)
+    assert learn(bot, plan("right", A), 10.0) == Word("controller_bot", "_plan_", 1)
     assert bot.says(10.0) == "bot:right@3"
 
 

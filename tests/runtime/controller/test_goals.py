@@ -131,7 +131,7 @@ def test_the_status_shows_failures_of_simple_goals_too() -> None:
     robot.go()
     robot.status(Answer("/move_base-1", robot.now, ACTIVE))
     robot.status(Answer("/move_base-1", robot.now, ABORTED, "Robot is oscillating."))
-    assert robot.texts == [f"{BLOCKED} on its way to b: aborted: Robot is oscillating.; given up after 1 goal"]
+    assert robot.texts == [f"{BLOCKED}#0 on its way to b: aborted: Robot is oscillating.; given up after 1 goal"]
 
 
 # Cancelled by somebody else -------------------------------------------------------------------------------------------

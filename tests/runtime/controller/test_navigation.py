@@ -43,6 +43,22 @@ def test_the_result_of_its_goal_is_its_end(results: World) -> None:
     assert results.words == [END] and len(results.goals) == 1
 
 
+def test_a_report_has_the_number_of_the_first_state_that_shows_what_it_is_about() -> None:
+    robot = World(goals="action", ends="result", retries=0)
+    robot.state(seq=7)
+    robot.robot.start(WAY, robot.now)
+    robot.act()
+    robot.state(seq=8)
+    robot.result(SUCCEEDED)
+    assert robot.texts == [f"{END}#7"]
+    robot.stay(seq=9)
+    robot.state(seq=12)
+    robot.robot.start(WAY, robot.now)
+    robot.act()
+    robot.result(ABORTED)
+    assert robot.texts[-1].startswith(f"{BLOCKED}#12 on its way to b")
+
+
 def test_an_end_before_its_window_is_reported_at_once(results: World) -> None:
     results.result(SUCCEEDED)
     assert results.words == [END]

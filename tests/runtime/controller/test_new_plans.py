@@ -6,6 +6,7 @@ from typing import Any
 
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.strategy import Plans, Strategy
+from pursue_runtime.words import Word
 from tests.runtime.controller.test_scheduler import STRATEGY, state
 from tests.runtime.texts import read
 
@@ -23,7 +24,7 @@ def plan(text: str = LATER) -> Any:
 def test_it_says_that_it_has_a_plan_and_plays_on_until_a_state_names_it() -> None:
     bot = player()
     bot.on_state(state(1, 100.0), 100.0)
-    assert bot.add_plan(1, plan(), 101.0) == ("controller_bot", "_plan_", 1)
+    assert bot.add_plan(1, plan(), 101.0) == Word("controller_bot", "_plan_", 1)
     assert bot.next_wakeup() == (105.0, None)
     bot.on_state(state(2, 102.0, clock=2.0)._replace(plan=1), 102.0)
     assert bot.next_wakeup() == (108.0, None)
@@ -59,7 +60,7 @@ def test_it_says_again_that_it_has_the_plan_while_the_mission_may_wait_for_that(
     bot.on_state(state(1, 100.0, status="holding"), 100.0)
     assert bot.repeated_receipt() is None
     bot.add_plan(3, plan(), 100.5)
-    assert bot.repeated_receipt() == ("controller_bot", "_plan_", 3)
+    assert bot.repeated_receipt() == Word("controller_bot", "_plan_", 3)
     bot.on_state(state(2, 101.0)._replace(plan=3), 101.0)
     assert bot.repeated_receipt() is None
 

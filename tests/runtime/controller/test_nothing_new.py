@@ -10,6 +10,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.environment import IdleEnvironment
 from pursue_runtime.ui.mission_view import MissionView
+from pursue_runtime.words import Word
 from tests.runtime.models import model_data, mover
 from tests.runtime.texts import read
 
@@ -41,17 +42,17 @@ def test_a_command_that_waits_for_its_moment_names_the_newest_state() -> None:
     bot.on_state(state(1, 100.0), 100.0)
     bot.on_state(state(2, 102.0, "guest_a2b", "guest", (2.0, 0.0)), 102.0)
     assert bot.next_wakeup() == (105.0, None)
-    assert bot.on_timer(105.0) == ("bot", "bot_a2b", 2)
+    assert bot.on_timer(105.0) == Word("bot", "bot_a2b", 2)
 
 
 def test_a_word_that_is_on_its_way_is_sent_again_where_time_has_left_its_zone() -> None:
     bot = player()
     bot.on_state(state(1, 100.0), 100.0)
-    assert bot.on_timer(105.0) == ("bot", "bot_a2b", 1)
+    assert bot.on_timer(105.0) == Word("bot", "bot_a2b", 1)
     patience = bot.next_wakeup()[1]
     bot.on_state(state(2, 105.1, "guest_a2b", "guest", (5.1, 0.0)), 105.1)
     assert not bot.is_new and bot.next_wakeup() == (None, patience)
-    assert bot.on_timer(105.15) == ("bot", "bot_a2b", 2)
+    assert bot.on_timer(105.15) == Word("bot", "bot_a2b", 2)
 
 
 def test_what_the_strategy_sees_is_decided_anew() -> None:
@@ -79,10 +80,10 @@ def test_what_the_strategy_sees_is_decided_anew() -> None:
 def test_a_move_after_which_nothing_has_changed_is_none() -> None:
     bot = player()
     bot.on_state(state(1, 100.0), 100.0)
-    assert bot.on_timer(105.0) == ("bot", "bot_a2b", 1)
+    assert bot.on_timer(105.0) == Word("bot", "bot_a2b", 1)
     same = state(1, 105.1, "wave", "bot", (5.1, 5.1))._replace(seq=2)
     bot.on_state(same, 105.1)
-    assert bot.on_timer(105.15) == ("bot", "bot_a2b", 2)
+    assert bot.on_timer(105.15) == Word("bot", "bot_a2b", 2)
 
 
 def test_instructions_of_people_stand_as_well() -> None:
@@ -119,10 +120,10 @@ def test_a_clock_that_somebody_else_starts_again_is_new_where_its_agent_is_named
     for clocks, stands in (((0.0, 5.1), False), ((5.1, 0.0), True)):
         bot = player()
         bot.on_state(state(1, 100.0), 100.0)
-        assert bot.on_timer(105.0) == ("bot", "bot_a2b", 1)
+        assert bot.on_timer(105.0) == Word("bot", "bot_a2b", 1)
         bot.on_state(state(2, 105.1, "guest_a2b", "guest", clocks), 105.1)
         assert bot.is_new is not stands
-        assert (bot.on_timer(105.15) == ("bot", "bot_a2b", 2)) is stands
+        assert (bot.on_timer(105.15) == Word("bot", "bot_a2b", 2)) is stands
 
 
 def test_instructions_follow_the_stage_that_has_begun() -> None:

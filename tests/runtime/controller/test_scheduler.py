@@ -9,6 +9,7 @@ import pytest
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
+from pursue_runtime.words import Word
 from tests.runtime.texts import read
 
 STRATEGY = """
@@ -40,7 +41,7 @@ def test_it_waits_for_the_moment_and_speaks_for_the_state_it_knows() -> None:
     assert bot.on_state(state(1, 100.0), 100.0) == []
     assert bot.next_wakeup() == (105.0, None)
     assert bot.on_timer(104.9) is None and bot.next_wakeup() == (105.0, None)
-    assert bot.on_timer(105.0) == ("bot", "bot_c2b", 1)
+    assert bot.on_timer(105.0) == Word("bot", "bot_c2b", 1)
 
 
 def test_it_does_nothing_before_the_mission_runs_nor_after() -> None:
@@ -66,7 +67,7 @@ def test_a_word_that_is_not_answered_is_sent_again_ever_more_slowly() -> None:
     for step in range(6):
         patience.append(bot.next_wakeup()[1])
         assert bot.next_wakeup()[0] is None
-        assert bot.on_timer(106.0 + step) == ("bot", "bot_c2b", 1)
+        assert bot.on_timer(106.0 + step) == Word("bot", "bot_c2b", 1)
     assert patience == pytest.approx([0.04, 0.04, 0.04, 0.08, 0.16, 0.32])
     assert bot.counts["sent_again"] == 6
 
@@ -117,7 +118,7 @@ def test_what_was_due_when_the_state_began_is_said_until_the_reaction_is_over(
     bot = player(TWO)
     bot.on_state(state(1, 100.0, clock=clock), 100.0 + late)
     assert bot.next_wakeup()[0] <= 100.0 + late
-    assert bot.on_timer(100.0 + late) == ("bot", event, 1)
+    assert bot.on_timer(100.0 + late) == Word("bot", event, 1)
 
 
 def test_a_lost_word_is_said_again_before_another_one_that_is_due_meanwhile() -> None:
@@ -129,7 +130,7 @@ def test_a_lost_word_is_said_again_before_another_one_that_is_due_meanwhile() ->
 def test_a_window_that_is_still_open_is_used_however_late() -> None:
     bot = player()
     bot.on_state(state(1, 100.0), 100.0)
-    assert bot.on_timer(105.9) == ("bot", "bot_c2b", 1)
+    assert bot.on_timer(105.9) == Word("bot", "bot_c2b", 1)
     assert bot.counts["too_late"] == 0
 
 
@@ -188,7 +189,7 @@ def test_a_burst_of_late_states_changes_nothing() -> None:
     for late in (*history, *reversed(history)):
         assert bot.on_state(late, 112.0) == [], "no robot moves on it"
         assert bot.state == history[2] and bot.next_wakeup() == wake
-    assert bot.on_timer(wake[0]) == ("bot", "catch", 3)
+    assert bot.on_timer(wake[0]) == Word("bot", "catch", 3)
     assert bot.counts["old"] == 4
 
 
@@ -229,7 +230,7 @@ def test_a_state_that_is_said_again_is_no_news() -> None:
 def test_a_state_that_takes_the_whole_reaction_is_not_too_late() -> None:
     bot = player()
     bot.on_state(state(1, 100.0, clock=6.0), 100.2 + 1e-7)
-    assert bot.on_timer(100.2 + 1e-7) == ("bot", "bot_c2b", 1)
+    assert bot.on_timer(100.2 + 1e-7) == Word("bot", "bot_c2b", 1)
 
 
 def test_the_robot_does_what_wins_the_mission_where_that_is_done_at_once() -> None:

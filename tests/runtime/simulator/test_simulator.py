@@ -18,6 +18,8 @@ from tests.together import model as hotel
 MODEL = Model(model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("nurse", "human")))
 EVERYBODY = ["bot", "thief", "nurse"]
 ARRIVAL = "bot_going_a_to_b2b"
+THIEF_ARRIVES = "thief_going_a_to_b2b#2"
+"""With the number of the state in which it set off."""
 
 
 def simulator(reports=EVERYBODY, delays: str = "middle", seed: int = 0, model=MODEL):
@@ -38,7 +40,7 @@ def test_a_robot_stays_until_its_goal_comes() -> None:
     assert world.due(200.0, 2.0) == []
     world.on_order("bot", 105.0)
     assert world.due(113.9, 3.0) == []
-    assert world.due(115.0, 3.0) == [ARRIVAL]
+    assert world.due(115.0, 3.0) == [f"{ARRIVAL}#2"]
 
 
 def test_a_goal_may_be_received_before_the_state() -> None:
@@ -117,8 +119,8 @@ def test_a_late_goal_makes_the_robot_late() -> None:
 def test_people_and_agents_need_no_goal() -> None:
     world = simulator()
     world.on_state(leaves(bot="a", thief="going_a_to_b", nurse="doing_screw_in_s"), real=1.0)
-    assert world.due(109.0, 2.0) == ["screwDONE"]
-    assert world.due(126.0, 2.0) == ["thief_going_a_to_b2b"]
+    assert world.due(109.0, 2.0) == ["screwDONE#2"]
+    assert world.due(126.0, 2.0) == [THIEF_ARRIVES]
 
 
 def test_only_those_that_it_reports_for() -> None:
@@ -141,7 +143,7 @@ def test_an_unknown_choice_of_delays_is_refused() -> None:
 def test_each_end_is_reported_once_when_the_state_follows() -> None:
     world = simulator()
     world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
-    assert world.due(126.0, 2.0) == ["thief_going_a_to_b2b"]
+    assert world.due(126.0, 2.0) == [THIEF_ARRIVES]
     assert world.due(126.0, 2.1) == []
     world.on_state(state(MODEL, 3, 126.0, {"Cthief": 0.0}, thief="b"), real=2.2)
     assert world.due(200.0, 60.0) == []
@@ -173,7 +175,7 @@ def test_news_of_others_give_the_report_more_time() -> None:
     assert world.due(126.0, 2.0)
     world.on_state(state(MODEL, 3, 126.0, {"Cthief": 21.0}, thief="going_a_to_b"), real=2.4)
     assert world.due(126.0, 2.6) == []
-    assert world.due(126.0, 2.9) == ["thief_going_a_to_b2b"]
+    assert world.due(126.0, 2.9) == [THIEF_ARRIVES]
 
 
 def test_the_same_state_again_changes_nothing() -> None:
@@ -190,7 +192,7 @@ def test_the_same_movement_again_is_a_new_one() -> None:
     assert world.due(126.0, 2.0)
     world.on_state(state(MODEL, 9, 170.0, {"Cthief": 0.0}, thief="going_a_to_b"), real=3.0)
     assert world.due(171.0, 9.0) == []
-    assert world.due(191.0, 9.0) == ["thief_going_a_to_b2b"]
+    assert world.due(191.0, 9.0) == ["thief_going_a_to_b2b#9"], "with a number of its own"
 
 
 def test_a_restarted_simulator_goes_on_with_robots_that_are_on_their_way() -> None:
@@ -211,7 +213,7 @@ def test_the_agent_is_named_where_two_could_mean_it() -> None:
     model = Model(model_data(worker("bot", "robot"), worker("human", "agent")))
     world = simulator(["human"], model=model)
     world.on_state(state(model, 2, 105.0, {}, human="doing_screw_in_s"), real=1.0)
-    assert world.due(109.0, 1.0) == ["human:screwDONE"]
+    assert world.due(109.0, 1.0) == ["human:screwDONE#2"]
 
 
 def test_time_units_are_not_seconds() -> None:
@@ -274,16 +276,16 @@ def test_each_robot_that_takes_part_reports_the_end_for_itself() -> None:
         world.on_order(robot, 105.0, "ride")
     world.on_state(riding(), real=1.0)
     assert world.due(108.9, 2.0) == []
-    assert sorted(world.due(109.5, 2.0)) == ["porter:rideDONE", "waiter:rideDONE"]
+    assert sorted(world.due(109.5, 2.0)) == ["porter:rideDONE#2", "waiter:rideDONE#2"]
     assert world.next_moments()[1] is not None, "they are published again"
     world.on_state(riding(stamp=109.6, finished=("porter",)), real=2.1)
-    assert world.due(120.0, 100.0) == ["waiter:rideDONE"], "the state shows that the porter has finished"
+    assert world.due(120.0, 100.0) == ["waiter:rideDONE#2"], "the state shows that the porter has finished"
 
 
 def test_who_is_no_robot_does_not_report_what_another_one_does() -> None:
     people = hotel(HOTEL.replace('agent "waiter" controllable', 'agent "waiter" human controllable'))
     world = Simulator(people, ["porter", "waiter"], Delays("middle"))
     world.on_state(riding(), real=1.0)
-    assert world.due(120.0, 2.0) == ["rideDONE"]
+    assert world.due(120.0, 2.0) == ["rideDONE#2"]
     window = end_window(people, people.automaton("waiter"), RIDE)
     assert window is not None and (window.clock, window.low, window.high) == ("Cwaiter", 4.0, 5.0)
