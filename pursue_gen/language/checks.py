@@ -55,7 +55,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
     findings += check_objectives(scenario)
-    for part in (_numbers, _connections, _travels, _agents, _objectives, _order):
+    for part in (_numbers, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if not whole:
@@ -176,6 +176,15 @@ def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML146", message, way.span, hint)
         for direction in way.directions:
             seen.setdefault(direction, way.span)
+
+
+def _states(scenario: Scenario) -> Iterator[Diagnostic]:
+    for state in scenario.states:
+        true_if = {event.name for event in state.true_if}
+        for event in state.false_if:
+            if event.name in true_if:
+                message = f"{event.name} would make {state.name} both true and false"
+                yield error("PML320", message, event.span, "take it out of true_if or of false_if")
 
 
 def _agents(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -52,6 +52,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML180": meaning.human_ally,
     "PML190": meaning.sort_statements,
     "PML220": meaning.delete_statement,
+    "PML320": meaning.delete_listed,
 }
 
 

@@ -193,6 +193,9 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         ("PML161", 7, "hand waits for a state that never has the value", ""),
         ("PML162", 9, "hand can never happen: tired never becomes true", "start it as true"),
     ]),
+    ({"state": 'state "tired": initially false, true_if work, rest false_if rest'}, [
+        ("PML320", 8, "rest would make tired both true and false", "out of true_if or of false_if"),
+    ]),
     # agents and objectives
     ({"agent_bot": BOT.replace("controllable ", "")}, [("PML131", 10, "nobody in this scenario", "controllable")]),
     ({"agent_man": MAN.replace("location", "human location")}, [("PML180", 11, "human but not controllable", "ally")]),

@@ -86,6 +86,8 @@ MISTAKES = {
     "PML159": changed('"work" location', '"work" together location'),
     "PML159 without a duration": changed('"hand" collaborative', '"hand" collaborative together'),
     "PML220": SMALL + SMALL.rstrip().rsplit("\n", 1)[-1] + "\n",
+    "PML320": changed("true_if work", "true_if work, rest"),
+    "PML320 in a list": changed("true_if work false_if rest", "true_if work false_if work, rest"),
     "PML171": re.sub("(reach_)?objective.*\n", "", SMALL),
     "PML180": changed('agent "man"', 'agent "man" human'),
     "PML190": 'agent "early" location a // it waits\n' + SMALL,
