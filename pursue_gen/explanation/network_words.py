@@ -11,9 +11,10 @@ from pursue_gen.synthesis.plan_text import constraint_texts, number_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
-from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
+from pursue_gen.tga.status_words import turn_words
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
 
@@ -116,11 +117,11 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     turns = {}
     for own in own_turns(scenario):
         for location in own.order.locations:
-            turns[own.name, location.name] = _turn(own.order, location.name)
+            turns[own.name, location.name] = turn_words(own.order, location.name)
     for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
         for location in automaton.locations:
-            turns[rule.name, location.name] = _turn(automaton, location.name)
+            turns[rule.name, location.name] = turn_words(automaton, location.name)
     for event, most in counted(scenario):
         automaton = network.automaton(names.count(event.name))
         for number, location in enumerate(automaton.locations):
@@ -148,13 +149,6 @@ def words_of(scenario: Scenario, network: Network) -> Words:
 def zone_texts(zone: Zone) -> str:
     """The zone exactly, as plans and strategy files have it."""
     return " && ".join(constraint_texts(zone, space=" ")) or "always"
-
-
-def _turn(automaton: Automaton, location: str) -> str:
-    """What a rule waits for in a location."""
-    channels = [edge.sync.channel for edge in automaton.edges if edge.source == location and edge.sync]
-    shown = (f"the end of {c[:-4]}" if c.endswith("DONE") else c for c in dict.fromkeys(channels))
-    return "next: " + " or ".join(shown)
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:

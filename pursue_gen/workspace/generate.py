@@ -21,6 +21,7 @@ from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.status_words import statuses
 from pursue_gen.tga.uppaal_write import write_network, write_query
 from pursue_gen.tga.words import event_word
 from pursue_gen.workspace import context, deploy, expected, game_file, model_file
@@ -70,7 +71,7 @@ def generate(
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
-        "ui": _ui_settings(values, scenario),
+        "ui": _ui_settings(values, scenario, network),
         "controllers": _controllers(values),
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
@@ -200,14 +201,18 @@ def _expected(
     return expected.expected(network, objective, owner, commands, nodes)
 
 
-def _ui_settings(values: Mapping[str, Any], scenario: Scenario) -> bytes:
-    """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends the simulator reports, and the
-    connections of the map with their lengths."""
+def _ui_settings(values: Mapping[str, Any], scenario: Scenario, network: Network) -> bytes:
+    """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends the simulator reports, the
+    connections of the map with their lengths, and what rules, states and objectives are at, in words."""
     data = {
         "format": 1,
         "nodes": inline(("observer", *values["controllers"], "simulator")),
         "reports": inline(values["reported"]),
         "connections": inline([_connection(way) for way in scenario.connections]),
+        "statuses": [
+            inline({"of": each.of, "label": each.label, "texts": dict(each.texts)})
+            for each in statuses(scenario, network)
+        ],
     }
     head = f"Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
     return yaml_text(data, [head]).encode()

@@ -16,6 +16,7 @@ from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.phrases import begin_of, phrase, sentence
+from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
@@ -91,9 +92,12 @@ class Facts(NamedTuple):
 class Page:
     """What there is to show, from the states of one mission."""
 
-    def __init__(self, model: Model, plan: FloorPlan, reporters: Sequence[str] = ()) -> None:
-        """`reporters`: the agents whose ends are reported on the page."""
+    def __init__(
+        self, model: Model, plan: FloorPlan, reporters: Sequence[str] = (), statuses: Sequence[Status] = ()
+    ) -> None:
+        """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents."""
         self._model = model
+        self._statuses = statuses
         self._plan = plan
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
@@ -133,6 +137,7 @@ class Page:
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
             "clocks": {name: _round(value) for name, value in state.clocks.items()},
+            "statuses": status_texts(self._statuses, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
         }

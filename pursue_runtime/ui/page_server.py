@@ -13,6 +13,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
+from pursue_runtime.ui.statuses import read_statuses
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
@@ -86,7 +87,8 @@ def open_page(
         what = f"--web needs tornado, and {problem}: install python3-tornado, or leave --web out"
         raise ParameterError(what) from None
     poses = source.read("poses.yaml")
-    board = PageServer(Page(model, read_floor_plan(poses, settings), reporters(model, options.ends, settings)), node)
+    people = reporters(model, options.ends, settings)
+    board = PageServer(Page(model, read_floor_plan(poses, settings), people, read_statuses(settings)), node)
     try:
         board.web = Web(
             STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present

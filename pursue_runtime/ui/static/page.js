@@ -15,7 +15,7 @@ let socket = null;
 let heard = 0; // number of the last entry of the log
 let following = true; // whether the end of the log is kept in sight
 let patience = 1000; // ms until the next try to connect
-const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), clocks: new Map(), rest: new Map() };
+const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), clocks: new Map(), rest: new Map(), statuses: new Map() };
 const map = { points: new Map(), marks: new Map(), moving: false, last: 0 };
 
 function make(tag, kind, text) {
@@ -324,6 +324,9 @@ function setView(fresh) {
   say($("turn"), view.turn);
   pairs(widgets.rest, $("rest"), Object.keys(view.rest));
   pairs(widgets.clocks, $("clocks"), Object.keys(view.clocks));
+  pairs(widgets.statuses, $("statuses"), Object.keys(view.statuses));
+  $("stands").hidden = widgets.statuses.size === 0;
+  for (const [name, text] of Object.entries(view.statuses)) say(widgets.statuses.get(name), text);
   for (const [name, value] of Object.entries(view.rest)) say(widgets.rest.get(name), String(value));
   refresh();
   if (!map.moving) animate(performance.now());

@@ -1,0 +1,108 @@
+"""What rules, counts, states, assumptions and objectives are at, in words: what a location or value of each means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Mapping, Tuple
+
+from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
+from pursue_gen.language.wording import assumption_words, events_words, listed, objective_text
+from pursue_gen.tga import names
+from pursue_gen.tga.counts import counted
+from pursue_gen.tga.network import Automaton, Network
+from pursue_gen.tga.objectives import events_done, stated
+from pursue_gen.tga.own_turns import own_turns
+
+_END = names.done("")
+
+
+@dataclass(frozen=True)
+class Status:
+    """The words for one automaton or variable: what it is called, and a text for each location or value of it."""
+
+    of: str
+    label: str
+    texts: Mapping[str, str]
+
+
+def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
+    """The words for all of a scenario but its agents, in the order of the scenario's statements."""
+    found: List[Status] = []
+    for event, most in counted(scenario):
+        automaton = network.automaton(names.count(event.name))
+        left = {place.name: _left(most - number) for number, place in enumerate(automaton.locations)}
+        found.append(Status(automaton.name, event.name, left))
+    for rule in (rule for rule in scenario.rules if not rule.each):
+        automaton = network.automaton(rule.name)
+        texts = {place.name: _turn(automaton, place.name) for place in automaton.locations}
+        found.append(Status(rule.name, rule.name, texts))
+    for own in own_turns(scenario):
+        texts = {str(number): _turn(own.order, place.name) for number, place in enumerate(own.order.locations)}
+        found.append(Status(own.variable, own.name, texts))
+    variables = {name for name, _ in network.variables}
+    for state in scenario.states:
+        if names.state_value(state.name) in variables:
+            found.append(Status(names.state_value(state.name), state.name, {"0": "false", "1": "true"}))
+    found += _assumptions(scenario)
+    for name, objective in stated(scenario).items():
+        places = [place.name for place in network.automaton(name).locations]
+        found.append(Status(name, objective_text(objective), {place: _duty(objective, place) for place in places}))
+    return tuple(found)
+
+
+def turn_words(automaton: Automaton, location: str) -> str:
+    """What a rule waits for in a location, as in `next: load or wait`."""
+    shown = (f"the end of {_event(c)}" if c.endswith(_END) else c for c in _channels(automaton, location, leaving=True))
+    return "next: " + " or ".join(shown)
+
+
+def _turn(automaton: Automaton, location: str) -> str:
+    """What has been done last, and what is next; or what goes on."""
+    following = _channels(automaton, location, leaving=True)
+    if following and all(channel.endswith(_END) for channel in following):
+        return " and ".join(f"{_event(channel)} goes on" for channel in following)
+    before = [_event(channel) for channel in _channels(automaton, location, leaving=False)]
+    done = f"{before[0]} done, " if len(before) == 1 and location != automaton.initial else ""
+    return done + turn_words(automaton, location)
+
+
+def _channels(automaton: Automaton, location: str, leaving: bool) -> List[str]:
+    """The channels of the edges that leave a location, or that lead to it, each once."""
+    edges = (edge for edge in automaton.edges if (edge.source if leaving else edge.target) == location)
+    return list(dict.fromkeys(edge.sync.channel for edge in edges if edge.sync))
+
+
+def _event(channel: str) -> str:
+    return channel[: -len(_END)] if channel.endswith(_END) else channel
+
+
+def _left(number: int) -> str:
+    if not number:
+        return "may not be done any more"
+    return f"may be done {number} more time{'' if number == 1 else 's'}"
+
+
+def _assumptions(scenario: Scenario) -> Iterator[Status]:
+    for number, assumption in enumerate(scenario.assumptions, start=1):
+        holds = {"1": "assumed", "0": "broken: not assumed any more"}
+        yield Status(names.assumption(number), assumption_words(assumption), holds)
+        if isinstance(assumption, AtMost) and assumption.times:
+            label = f"{assumption.event.name} by {assumption.agent.name}"
+            done = {str(times): f"{times} of {assumption.times} times" for times in range(assumption.times + 1)}
+            yield Status(names.assumption_count(number), label, done)
+
+
+def _duty(objective: StatedObjective, location: str) -> str:
+    """What an objective is at in a location of its automaton."""
+    texts: Dict[str, str] = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
+    if isinstance(objective, Reach):
+        done = [objective.events[number].name for number in events_done(location)]
+        found = f"{listed(done)} done" if done else "not counting yet"
+        texts = {"win": "reached", "unlocked": f"{events_words(objective)} to be done", names.LATE: "too late"}
+        return texts.get(location, found)
+    if isinstance(objective, Respond):
+        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{objective.response.name} is due"})
+    elif isinstance(objective, Patrol):
+        who = "a robot" if objective.who.agent is None else objective.who.agent.name
+        texts.update({names.IDLE: f"{who} is there", names.AT_RISK: "a visit is due"})
+    return texts.get(location, location)
