@@ -1,4 +1,4 @@
-"""A mission as a timeline: one lane for each agent, and lanes for states, rules' turns, deadlines and plans."""
+"""A mission as a timeline: a lane for each agent, and lanes for states, turns, conditions, deadlines and plans."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
-from pursue_gen.language.scenario import Patrol, Reach, Respond
+from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
 from pursue_gen.language.wording import events_words
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
+from pursue_gen.report.statuses import broken, changes, conditions, holding
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
@@ -80,8 +81,12 @@ def draw(recording: Recording, ident: str = _ID) -> str:
 def section(recording: Recording, ident: str = _ID) -> Section:
     """The timeline as a part of a page, with a table of all steps."""
     words = words_of(recording.scenario, recording.network)
-    rows = [(_time(step.at), step.agent, _step_text(step, words, recording.network)) for step in recording.steps]
-    steps = table(("Time", "Who", "What"), rows, "All steps; times in time units since the start")
+    rows = [
+        (_time(step.at), step.agent, _step_text(step, words, recording.network), changed)
+        for step, changed in zip(recording.steps, changes(recording))
+    ]
+    heads = ("Time", "Who", "What", "What that changes")
+    steps = table(heads, rows, "All steps; times in time units since the start")
     caption = "Bars are movements and actions, lines are waits; times are in time units since the start."
     picture = (
         f'<figure><div class="wide picture {safe(ident)}-wide" tabindex="0" role="region" aria-label="Timeline">'
@@ -122,7 +127,8 @@ def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
     lanes = [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules)]
     lanes += [own.name for own in own_turns(scenario)]
-    return [*lanes, *(names.count(event.name) for event, _ in counted(scenario)), "deadline"]
+    lanes += [names.count(event.name) for event, _ in counted(scenario)]
+    return [*lanes, *conditions(scenario), *_due(scenario).values()]
 
 
 def _heading(recording: Recording, title: str, description: str) -> Iterator[str]:
@@ -176,7 +182,11 @@ def _lanes(
         name = names.count(event.name)
         counts = tuple(_line(scale, stay, words.place(name, stay.what)) for stay in stays(recording, name))
         lanes.append(Lane(name, counts))
+    for words_of_it, condition in conditions(recording.scenario).items():
+        parts = [_box(scale, stay, "holds", f"{words_of_it} holds") for stay in holding(recording, condition)]
+        lanes.append(Lane(words_of_it, tuple(parts)))
     lanes += _deadlines(recording, scale)
+    lanes += [Lane("broken", (_box(scale, stay, says, f"broken: {says}"),)) for says, stay in broken(recording)]
     lanes += _course(recording, scale)
     return lanes
 
@@ -217,22 +227,40 @@ def _turns(name: str, found: Sequence[Stay], words: Words, scale: Scale) -> Lane
 
 
 def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
-    """When the clocks of `within` objectives ran, and when they would have run out."""
-    for automaton, objective in stated(recording.scenario).items():
-        found = stays(recording, automaton)
+    """When the clocks of `within` and `every` objectives ran, and when they would have run out."""
+    objectives = stated(recording.scenario)
+    for automaton, name in _due(recording.scenario).items():
+        found, objective = stays(recording, automaton), objectives[automaton]
         if isinstance(objective, Respond):
             risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
-            yield _deadline(recording, scale, risks, objective.response.name)
+            yield Lane(name, _deadline(recording, scale, risks, objective.response.name))
         elif isinstance(objective, Patrol):
             risks = [(stay, stay.start + objective.every) for stay in found if stay.what == names.AT_RISK]
-            yield _deadline(recording, scale, risks, f"a visit of {objective.place.name}")
+            there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
+            yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {objective.place.name}"))
         elif isinstance(objective, Reach) and objective.within is not None:
             before = [stay for stay in found if stay.what not in ("win", names.LATE)]
             whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []
-            yield _deadline(recording, scale, [(stay, objective.within) for stay in whole], events_words(objective))
+            risks = [(stay, float(objective.within)) for stay in whole]
+            yield Lane(name, _deadline(recording, scale, risks, events_words(objective)))
 
 
-def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str) -> Lane:
+def _due(scenario: Scenario) -> Dict[str, str]:
+    """The automata of objectives with deadlines, and the names of their lanes; what is due, where there are several."""
+    found: Dict[str, str] = {}
+    for automaton, objective in stated(scenario).items():
+        if isinstance(objective, Respond):
+            found[automaton] = f"deadline: {objective.response.name}"
+        elif isinstance(objective, Patrol):
+            found[automaton] = f"visits: {objective.place.name}"
+        elif isinstance(objective, Reach) and objective.within is not None:
+            found[automaton] = f"deadline: {events_words(objective)}"
+    return found if len(found) > 1 else dict.fromkeys(found, "deadline")
+
+
+def _deadline(
+    recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str
+) -> Tuple[str, ...]:
     """How long something was due, and by when."""
     parts: List[str] = []
     for stay, due in risks:
@@ -241,7 +269,7 @@ def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, fl
             x = scale.x(due)
             parts.append(tag("path", d=f"M{x:.1f},18 V40 M{x - 5:.1f},18 H{x + 5:.1f} M{x - 5:.1f},40 H{x + 5:.1f}",
                              stroke="#1b1f24", stroke_width=2.5, fill="none", class_="due"))
-    return Lane("deadline", tuple(parts))
+    return tuple(parts)
 
 
 def _course(recording: Recording, scale: Scale) -> Iterator[Lane]:
