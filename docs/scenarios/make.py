@@ -224,7 +224,7 @@ def row(found: Facts) -> str:
 
 def _wanted(scenario: Scenario) -> List[str]:
     """The objectives, as the scenario has them."""
-    return [objective_text(objective) for objective in scenario.objectives]
+    return [objective_text(statement[0]) for statement in scenario.statements]
 
 
 def index(text: str, rows: Mapping[str, str]) -> str:

@@ -47,9 +47,13 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
         found.append(Part(name, _dependency(need.event.name, need.state.name)))
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
-    if len(scenario.objectives) > 1:
-        found += [Part(f"objective {objective_text(safety)}", _without(safety)) for safety in scenario.safety]
-        found += [Part(f"reach_objective {_reach_text(reach)}", _without(reach)) for reach in scenario.reach]
+    if len(scenario.statements) > 1:
+        for first, *_ in scenario.statements:
+            if isinstance(first, Reach):
+                text = f"reach_objective {_reach_text(first)}"
+            else:
+                text = f"objective {objective_text(first)}"
+            found.append(Part(text, _without(first)))
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -141,11 +145,12 @@ def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
 
 
 def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:
-    """The scenario without the objective; None where it has no other one."""
-    if scenario.objectives == (objective,):
+    """The scenario without the objective and what has no meaning without it; None where it has no other one."""
+    kept = [other for statement in scenario.statements if objective not in statement for other in statement]
+    if not kept:
         return None
-    safety = tuple(other for other in scenario.safety if other != objective)
-    return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other != objective))
+    safety = tuple(other for other in scenario.safety if other in kept)
+    return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other in kept))
 
 
 def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenario]]:

@@ -107,7 +107,8 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         if isinstance(each, Respond):
             clocks[clock_of(scenario, name)] = f"the last {each.trigger.name} or {each.response.name}"
         elif isinstance(each, Patrol):
-            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.name}, or the start"
+            in_turn = " in its turn" if each.order else ""
+            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.name}{in_turn}, or the start"
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
             clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s last {assumption.event.name}"

@@ -10,7 +10,7 @@ from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import events_words, listed, patroller
+from pursue_gen.language.wording import events_words, listed, patroller, visited
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
@@ -179,7 +179,7 @@ def _broken(objective: Optional[StatedObjective], play: Play) -> str:
     if isinstance(objective, Respond):
         return f"too late: no {objective.response.name} within {objective.deadline} of {objective.trigger.name}"
     if isinstance(objective, Patrol):
-        return f"too late: not {patroller(objective)} at {objective.place.name} for {objective.every}"
+        return f"too late: not {patroller(objective)} at {visited(objective)} for {objective.every}"
     if isinstance(objective, Reach):
         return f"too late: {events_words(objective)} not done within {objective.within} of the start"
     return "the objective is broken"

@@ -43,17 +43,20 @@ def conflict(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Confl
 
     What must always hold is left out first: without anything to reach it would have to hold for ever.
     """
-    if len(scenario.objectives) < 2:
+    statements = scenario.statements
+    if len(statements) < 2:
         return None
     kept: List[StatedObjective] = list(scenario.objectives)
     least = True
-    for objective in scenario.objectives:
-        fewer = [other for other in kept if other is not objective]
+    for statement in statements:
+        fewer = [other for other in kept if not any(other is one for one in statement)]
         won = _won(scenario, fewer, rules, budget) if fewer else True
         if won is False:
             kept = fewer
         least = least and won is not None
-    return Conflict(tuple(kept), least, len(scenario.objectives))
+    # Of a patrol in order the first place stands for all of them: they have one text.
+    firsts = tuple(statement[0] for statement in statements if any(statement[0] is one for one in kept))
+    return Conflict(firsts, least, len(statements))
 
 
 def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, budget: Budget) -> Optional[bool]:

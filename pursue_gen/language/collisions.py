@@ -9,7 +9,7 @@ from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Patrol, Scenario
 
 Word = Tuple[str, str, Span]
 """A word, what it means, and where the name stands that it is made of."""
@@ -110,6 +110,9 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
     words = ["Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"]
     for number, _ in enumerate(scenario.safety[1:], 2):
         words += [f"obj{number}", f"Cobj{number}"]
+    for number, safety in enumerate(scenario.safety, 1):
+        if isinstance(safety, Patrol) and safety.order:
+            words.append("Pobj" if number == 1 else f"Pobj{number}")
     for number, _ in enumerate(scenario.reach[1:], 2):
         words += [f"reachObj{number}", f"Creach{number}", f"reachObj{number}_going_initial_location2unlocked"]
     for word in words:

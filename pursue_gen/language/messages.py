@@ -25,7 +25,7 @@ FORMS: Dict[str, str] = {
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
     "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e (or a condition: avoid open is_true) · "
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
-    "objective: patrol a, b every 60 by bot1 (or: by any robot)",
+    "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order is optional)",
     "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",
 }
 """What each statement looks like, by the token that begins it."""
@@ -38,7 +38,8 @@ KEYWORDS: Dict[str, str] = {
     "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
     "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
     "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
-    "EACH": "each", "PATROL": "patrol", "EVERY": "every", "BY": "by", "BEFORE": "before", "OR": "or",
+    "EACH": "each", "PATROL": "patrol", "IN": "in", "ORDER": "order", "EVERY": "every", "BY": "by",
+    "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
     "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
@@ -53,7 +54,7 @@ MAY_BE_NAMES: Dict[str, str] = {
     "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
-    "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "EVERY": "every", "BY": "by",
+    "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Dict, Iterator, Set
 
 from pursue_gen.diagnostics import Diagnostic, error
-from pursue_gen.language.scenario import Avoid, Reach, Scenario
+from pursue_gen.language.scenario import Avoid, Patrol, Reach, Scenario
 from pursue_gen.language.wording import objective_text
 
 MOST_EVENTS = 5
@@ -15,19 +15,34 @@ MOST_EVENTS = 5
 def check_objectives(scenario: Scenario) -> Iterator[Diagnostic]:
     """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
     lines: Dict[str, int] = {}
-    for objective in sorted(scenario.objectives, key=lambda each: (each.span.line, each.span.column)):
+    statements = [statement[0] for statement in scenario.statements]
+    for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
         text = objective_text(objective)
         if text in lines:
             message = f"the same objective stands in line {lines[text]} already"
             yield error("PML220", message, objective.span, "delete one of the two")
         lines.setdefault(text, objective.span.line)
     avoided = {safety.event.name: safety for safety in scenario.safety if isinstance(safety, Avoid)}
+    for patrol in statements:
+        if isinstance(patrol, Patrol) and patrol.order:
+            yield from _order(patrol)
     for reach in scenario.reach:
         for ref in reach.events:
             if ref.name in avoided:
                 message = f"{ref.name} is to be done, and line {avoided[ref.name].span.line} has it avoided"
                 yield error("PML221", message, ref.span, "delete one of the two, or name another event")
         yield from _reach(reach)
+
+
+def _order(patrol: Patrol) -> Iterator[Diagnostic]:
+    """An order of one place, or one that could not tell whose turn it is."""
+    again = next((name for k, name in enumerate(patrol.order) if name in patrol.order[:k]), "")
+    if again:
+        message = f"{again} stands twice in this patrol in order: expected each place once in a round"
+        yield error("PML261", message, patrol.span, "delete one of the two")
+    elif len(patrol.order) < 2:
+        message = "in order says nothing about one place: expected two or more"
+        yield error("PML260", message, patrol.span, "name the other places, or delete in order")
 
 
 def _reach(reach: Reach) -> Iterator[Diagnostic]:

@@ -265,9 +265,7 @@ class _Builder:
     def _safety(self, objective: Any, span: Span) -> Union[pml.Safety, Tuple[pml.Patrol, ...]]:
         children = objective.children
         if objective.data == "patrol":
-            every, who = self._number(children[1]), children[2].children
-            agent = None if isinstance(who[0], Token) else self._ref(who[0])
-            return tuple(pml.Patrol(place, every, Who(agent, agent is None), span) for place in self._refs(children[0]))
+            return self._patrol(children, span)
         if objective.data == "respond":
             return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)
         if objective.data == "avoid" and children[0].data == "ref":
@@ -276,6 +274,13 @@ class _Builder:
             return pml.Always(condition_of(children[0], self._ref), objective.data == "always", span)
         place = None if children[2] is None else self._ref(children[2])
         return pml.NeverWith(self._ref(children[0]), self._ref(children[1]), span, place)
+
+    def _patrol(self, children: List[Any], span: Span) -> Tuple[pml.Patrol, ...]:
+        refs, in_order, _, every, by = children
+        places, time, (first, *_rest) = self._refs(refs), self._number(every), by.children
+        agent = None if isinstance(first, Token) else self._ref(first)
+        order = () if in_order is None else tuple(place.name for place in places)
+        return tuple(pml.Patrol(place, time, Who(agent, agent is None), span, order) for place in places)
 
     def _reach(self, events: Any, after: Optional[Token], within: Optional[Token], span: Span) -> pml.Reach:
         return pml.Reach(

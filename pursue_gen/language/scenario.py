@@ -271,12 +271,14 @@ class Patrol:
     """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
 
     `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    `order`: the places of the statement, where each counts in its turn only (`in order`); () where all count always.
     """
 
     place: Ref
     every: int
     who: Who
     span: Span
+    order: Tuple[str, ...] = ()
 
 
 Safety = Union[Respond, Avoid, NeverWith, Always, Patrol]
@@ -379,6 +381,15 @@ class Scenario:
         named = set(names(rule.body)) if rule.each else set()
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
+
+    @property
+    def statements(self) -> Tuple[Tuple[StatedObjective, ...], ...]:
+        """All objectives, those in one part that have a meaning together only: the places of a patrol in order."""
+        found: Dict[object, Tuple[StatedObjective, ...]] = {}
+        for number, each in enumerate(self.objectives):
+            key = each.span if isinstance(each, Patrol) and each.order else number
+            found[key] = (*found.get(key, ()), each)
+        return tuple(found.values())
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""

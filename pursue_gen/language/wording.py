@@ -29,7 +29,7 @@ def units(amount: str) -> str:
 
 def objective_words(scenario: Scenario) -> List[str]:
     """What is wanted, a sentence for each objective."""
-    return [_sentence(objective) for objective in scenario.objectives]
+    return [_sentence(statement[0]) for statement in scenario.statements]
 
 
 def _sentence(objective: StatedObjective) -> str:
@@ -42,7 +42,10 @@ def _sentence(objective: StatedObjective) -> str:
         where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.name}"
         return f"{objective.first.name} and {objective.second.name} are never {where}."
     if isinstance(objective, Patrol):
-        return f"{patroller(objective)} is at {objective.place.name} at least every {units(str(objective.every))}."
+        every = f"at least every {units(str(objective.every))}"
+        if objective.order:
+            return f"{patroller(objective)} visits {listed(objective.order)} in this order, each {every}."
+        return f"{patroller(objective)} is at {objective.place.name} {every}."
     if isinstance(objective, Always):
         return f"It {'always' if objective.holds else 'never'} holds that {condition_words(objective.condition)}."
     after = f" later than {units(str(objective.after))} after the start" if objective.after else ""
@@ -57,6 +60,11 @@ def patroller(patrol: Patrol) -> str:
     return "any robot" if patrol.who.agent is None else patrol.who.agent.name
 
 
+def visited(patrol: Patrol) -> str:
+    """Where a visit is due: a place, in its turn where the places have an order."""
+    return f"{patrol.place.name}, in its turn," if patrol.order else patrol.place.name
+
+
 def listed(names: Iterable[str]) -> str:
     """`a`, `a and b`, `a, b and c`."""
     *others, last = names
@@ -69,7 +77,8 @@ def events_words(reach: Reach) -> str:
 
 
 def objective_text(objective: StatedObjective) -> str:
-    """An objective as its author may write it, without the word that begins the statement."""
+    """An objective as its author may write it, without the word that begins the statement; of a patrol in order the
+    whole statement."""
     if isinstance(objective, Respond):
         return f"if {objective.trigger.name} then {objective.response.name} within {objective.deadline}"
     if isinstance(objective, Avoid):
@@ -78,7 +87,8 @@ def objective_text(objective: StatedObjective) -> str:
         place = "" if objective.place is None else f" at {objective.place.name}"
         return f"{objective.first.name} never_with {objective.second.name}{place}"
     if isinstance(objective, Patrol):
-        return f"patrol {objective.place.name} every {objective.every} by {patroller(objective)}"
+        places = f"{', '.join(objective.order)} in order" if objective.order else objective.place.name
+        return f"patrol {places} every {objective.every} by {patroller(objective)}"
     if isinstance(objective, Always):
         return f"{'always' if objective.holds else 'avoid'} {condition_text(objective.condition)}"
     after = f" after {objective.after}" if objective.after else ""

@@ -11,7 +11,7 @@ from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import events_words, listed, patroller
+from pursue_gen.language.wording import events_words, listed, patroller, visited
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
@@ -108,7 +108,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
             yield f"deadline: {objective.response.name} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.every
-            yield f"deadline: {patroller(objective)} at {objective.place.name} by {time_text(due)} at the latest"
+            yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"
         if isinstance(objective, Reach) and objective.within is not None and place != "win":
@@ -164,7 +164,7 @@ def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
         if isinstance(passed, Respond):
             return f"no {passed.response.name} within {passed.deadline} of {passed.trigger.name}"
         if isinstance(passed, Patrol):
-            return f"not {patroller(passed)} at {passed.place.name} for {passed.every}"
+            return f"not {patroller(passed)} at {visited(passed)} for {passed.every}"
         if isinstance(passed, Reach):
             return f"{events_words(passed)} not done within {passed.within} of the start"
     if late:

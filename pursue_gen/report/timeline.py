@@ -8,7 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import events_words
+from pursue_gen.language.wording import events_words, visited
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.report.statuses import broken, changes, conditions, holding
@@ -237,7 +237,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
         elif isinstance(objective, Patrol):
             risks = [(stay, stay.start + objective.every) for stay in found if stay.what == names.AT_RISK]
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
-            yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {objective.place.name}"))
+            yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {visited(objective)}".rstrip(",")))
         elif isinstance(objective, Reach) and objective.within is not None:
             before = [stay for stay in found if stay.what not in ("win", names.LATE)]
             whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, List, Optional, Set
 
+from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import At
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Safety, Scenario
 from pursue_gen.language.wording import objective_text
@@ -30,6 +31,8 @@ class Promises:
         self._places = [poi.name for poi in scenario.pois]
         self._done: List[Set[str]] = [set() for _ in scenario.reach]
         self._since: Dict[int, float] = {}
+        self._turns: Dict[Span, int] = {}
+        self._where: Dict[str, str] = {}
         self._broken: Dict[str, float] = {}
         self._begun: Optional[float] = None
         self._seq = 0
@@ -45,9 +48,12 @@ class Promises:
         latest = at + EPSILON if state.status == LOST else at - EPSILON
         event = self._events.get(state.event, "") if state.seq > self._seq else ""
         self._seq = max(self._seq, state.seq)
+        visited = self._visited(state)
         for number, safety in enumerate(self._scenario.safety):
             if self._breaks(number, safety, event, latest, state):
                 self._broken.setdefault(objective_text(safety), at)
+            if number in visited:
+                self._since.pop(number, None)
         for reach, done in zip(self._scenario.reach, self._done):
             in_time = reach.within is None or latest <= reach.within
             if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
@@ -69,9 +75,10 @@ class Promises:
             return state.status != WON and here and spots[0] == spots[1]
         since = self._since.get(number)
         if isinstance(safety, Patrol):
-            if holds(At(safety.who, safety.place), self._scenario, state.locations, state.values):
+            there = holds(At(safety.who, safety.place), self._scenario, state.locations, state.values)
+            if there and not safety.order:
                 self._since.pop(number, None)
-            else:
+            elif not there:
                 self._since.setdefault(number, latest)
             return since is not None and latest - since > safety.every
         missed = since is not None and latest - since > safety.deadline
@@ -80,6 +87,26 @@ class Promises:
         elif event == safety.trigger.name:
             self._since.setdefault(number, latest)
         return missed
+
+    def _visited(self, state: SystemState) -> Set[int]:
+        """The numbers of the places of patrols in order at which one of them arrives now, in its turn."""
+        first, before = not self._where, self._where
+        self._where = {name: place_of(location, self._places) for name, location in state.locations.items()}
+        found: Set[int] = set()
+        for number, patrol in enumerate(self._scenario.safety):
+            if not isinstance(patrol, Patrol) or patrol.place.name != "".join(patrol.order[:1]):
+                continue
+            names = [agent.name for agent in self._scenario.on_patrol(patrol)]
+            come = {self._where.get(name, "") for name in names if self._where.get(name) != before.get(name)}
+            turn, count = self._turns.get(patrol.span, 0), len(patrol.order)
+            for _ in range(count if first else 1):
+                if patrol.order[turn] in come:
+                    found.add(number + turn)
+                    turn = (turn + 1) % count
+            self._turns[patrol.span] = turn
+            if first:
+                self._since.update((other, 0.0) for other in range(number, number + count) if other not in found)
+        return found
 
     def _check(self, state: SystemState) -> None:
         if state.status == WON:

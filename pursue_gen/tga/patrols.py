@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import FrozenSet, Iterator, List, Sequence, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 
 from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
+
+_NOTHING: Tuple[Tuple[str, int], ...] = ()
 
 
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
@@ -26,24 +28,54 @@ def arrivals(scenario: Scenario) -> Iterator[str]:
                 yield names.arrival(agent.name, a, b)
 
 
+def turns(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
+    """For each patrol in order the variable that says which of its places is next, the first being 0, and its value at
+    the start."""
+    found: Dict[str, int] = {}
+    for patrol in (each for each in scenario.safety if isinstance(each, Patrol) and each.order):
+        found.setdefault(_turn(patrol, scenario), _begun(patrol, scenario) % len(patrol.order))
+    return tuple(found.items())
+
+
+def _turn(patrol: Patrol, scenario: Scenario) -> str:
+    """The variable of a patrol in order: it has the name of the first automaton of its statement."""
+    first = next(number for number, each in enumerate(scenario.safety) if each.span == patrol.span)
+    return names.rule_turn(names.safety_objective(first))
+
+
+def _begun(patrol: Patrol, scenario: Scenario) -> int:
+    """How many places of a patrol in order are visited at the start, one after the other, by those who stand there."""
+    occupied = {agent.location.name for agent in scenario.on_patrol(patrol)}
+    return next((k for k, place in enumerate(patrol.order) if place not in occupied), len(patrol.order))
+
+
 def patrol_automaton(patrol: Patrol, scenario: Scenario, positions: Positions, number: int) -> Automaton:
     """`patrol p every T by A`: idle while A, or one of the robots, is there; else a deadline is running.
 
-    It runs from the moment at which the last one leaves, or from the start.
+    It runs from the moment at which the last one leaves, or from the start. In order, an arrival counts only when it is
+    the place's turn, and makes it that of the next one.
     """
     clock, place, agents = names.safety_clock(number), patrol.place.name, scenario.on_patrol(patrol)
     due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.every),))
+    there = any(agent.location.name == place for agent in agents)
+    guard, assign = Guard(), _NOTHING
+    if patrol.order:
+        turn, k = _turn(patrol, scenario), patrol.order.index(place)
+        guard, assign = Guard(integers=((Test(turn, k),),)), ((turn, (k + 1) % len(patrol.order)),)
+        there = k < _begun(patrol, scenario)
     edges: List[Edge] = []
     for agent in agents:
         others = [_elsewhere(other, place, positions) for other in agents if other is not agent]
         for a, b in scenario.movements(agent):
             if b == place:
-                edges.append(Edge(AT_RISK, IDLE, sync=Sync(names.arrival(agent.name, a, b), sends=False)))
+                comes = Sync(names.arrival(agent.name, a, b), sends=False)
+                edges.append(Edge(AT_RISK, IDLE, guard, comes, assign))
+                if patrol.order and others:  # somebody is there still, and the others have been at all other places
+                    edges.append(Edge(IDLE, IDLE, guard, comes, assign))
             if a == place:
                 left = Sync(names.movement(agent.name, a, b), sends=False)
                 edges.append(Edge(IDLE, AT_RISK, Guard(integers=tuple(others)), left, resets=(clock,)))
     edges.append(Edge(AT_RISK, LOSE))
-    there = any(agent.location.name == place for agent in agents)
     name = names.safety_objective(number)
     return Automaton(name, (Location(IDLE), Location(LOSE), due), IDLE if there else AT_RISK, tuple(edges))
 

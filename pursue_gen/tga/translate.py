@@ -15,7 +15,7 @@ from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton
 from pursue_gen.tga.own_turns import bound, own_turns
-from pursue_gen.tga.patrols import arrivals, awaited
+from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
 from pursue_gen.tga.rules import rule_automaton
 from pursue_gen.tga.states import states_automaton
@@ -32,9 +32,9 @@ def translate(scenario: Scenario) -> Network:
     rules = [rule_automaton(rule, lasting) for rule in scenario.rules if not rule.each]
     own = tuple(own_turns(scenario))
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
-    turns = tuple((names.rule_turn(automaton.name), turns) for automaton, turns in rules)
+    in_turn = tuple((names.rule_turn(automaton.name), turn) for automaton, turn in rules)
     conditions = Conditions(scenario, codes)
-    around = Surroundings(scenario, codes, turns, conditions, awaited(scenario))
+    around = Surroundings(scenario, codes, in_turn, conditions, awaited(scenario))
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
@@ -43,7 +43,7 @@ def translate(scenario: Scenario) -> Network:
     automata += [reach_automaton(each, happened, k) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
-    variables += assumption_variables(scenario)
+    variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)

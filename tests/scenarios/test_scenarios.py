@@ -23,6 +23,7 @@ AGAIN = "run: python -m docs.scenarios.make"
 LOST = {
     "closed_gate", "early_breakfast", "extinguisher", "lift_ride", "long_night", "own_load", "quiet_corridor",
     "restless", "room_service", "roundabout", "staff_door", "two_hasty_bells", "two_officers", "two_rolling_bins",
+    "wrong_way_round",
 }  # fmt: skip
 """Kept on purpose."""
 OF_TWO = {

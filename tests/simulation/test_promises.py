@@ -97,6 +97,31 @@ def test_a_mission_is_lost_with_what_is_broken(objectives: str, steps: List[Step
     assert ended(objectives, "lost", *steps) == []
 
 
+ROUND = "objective: patrol hall, lab in order every 5 by bot"
+TO_LAB = "bot_hall2lab"
+
+
+@pytest.mark.parametrize(
+    ("steps", "broken"),
+    [
+        ([(1, TO_LAB, "going_hall_to_lab", "lab"), (3, "x", "lab", "lab"), (5.9, "y", "lab", "lab")], False),
+        ([(1, TO_LAB, "going_hall_to_lab", "lab"), (3, "x", "lab", "lab"), (6.5, "y", "lab", "lab")], True),
+        ([(5.5, "x", "hall", "lab")], True),
+        # to come back to the hall, whose turn it is not, and to leave it again gives it no more time
+        (
+            [
+                (1, TO_LAB, "going_hall_to_lab", "lab"), (2, "x", "hall", "lab"),
+                (3, TO_LAB, "going_hall_to_lab", "lab"), (4, "x", "lab", "lab"), (6.5, "y", "lab", "lab"),
+            ],
+            True,
+        ),
+    ],
+)  # fmt: skip
+def test_a_patrol_in_order_counts_visits_in_their_turn(steps: List[Step], broken: bool) -> None:
+    excused: List[str] = [] if broken else ["the mission is lost, but no objective is broken"]
+    assert ended(ROUND, "lost", *steps) == excused
+
+
 def test_simulated_missions_are_held_against_the_objectives() -> None:
     text = f"{PLACES}reach_objective: do load and wave\n"
     read = parse(text, "x.pur", "x")

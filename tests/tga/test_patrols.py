@@ -6,17 +6,19 @@ import random
 from typing import Dict, List
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.lesser import without_objective
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.wording import objective_text
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import ClockBound, Edge, Guard, Location, Sync
+from pursue_gen.tga.network import ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.workspace.model_file import model_data
 from pursue_runtime.model import Model
@@ -102,6 +104,81 @@ def test_uppaal_reads_it_back() -> None:
 )
 def test_it_is_won_where_the_way_round_takes_no_longer(objective: str, can: bool) -> None:
     assert won(objective) == can
+
+
+IN_ORDER = "patrol gate, vault, hall in order every 40 by {}"
+
+
+def test_in_order_the_places_share_a_variable_that_says_whose_turn_it_is() -> None:
+    network = translate(scenario(IN_ORDER.format("bot1")))
+    assert ("Pobj", 1) in network.variables, "bot1 starts at the gate: the vault is next"
+    comes = Sync("bot1_going_hall_to_vault2vault", False)
+    assert Edge("atRisk", "idle", Guard(integers=((Test("Pobj", 1),),)), comes, (("Pobj", 2),)) in network.automaton(
+        "obj2"
+    ).edges
+    last = [edge.assign for edge in network.automaton("obj3").edges if edge.target == "idle"]
+    assert last == [(("Pobj", 0),)] * 2, "after the last place it is the first one's turn"
+    assert [network.automaton(name).initial for name in ("obj", "obj2", "obj3")] == ["idle", "atRisk", "atRisk"]
+
+
+@pytest.mark.parametrize(
+    ("order", "who", "turn", "idle"),
+    [
+        ("gate, vault, hall", "any robot", 2, [True, True, False]),
+        ("vault, gate", "any robot", 0, [True, True]),
+        ("hall, gate, vault", "any robot", 0, [False, False, False]),
+        ("vault, gate, hall", "bot2", 1, [True, False, False]),
+    ],
+)
+def test_who_stands_at_the_first_places_has_visited_them(order: str, who: str, turn: int, idle: List[bool]) -> None:
+    network = translate(scenario(f"patrol {order} in order every 40 by {who}"))
+    assert dict(network.variables)["Pobj"] == turn
+    watching = [automaton for automaton in network.automata if automaton.name.startswith("obj")]
+    assert [automaton.initial == "idle" for automaton in watching] == idle
+
+
+def test_in_order_is_won_where_a_round_takes_no_longer() -> None:
+    """On a line of three rooms the way there and back visits all in any order that begins with it."""
+    assert won("patrol gate, hall, vault in order every 20 by bot1")
+    assert not won("patrol gate, vault, hall in order every 12 by bot1")
+    assert not won("patrol hall, gate, vault in order every 12 by bot1")
+
+
+def test_lesser_scenarios_keep_or_lose_a_patrol_in_order_as_a_whole() -> None:
+    story = scenario("patrol gate, hall in order every 40 by bot1\nobjective: avoid rest")
+    assert [len(statement) for statement in story.statements] == [2, 1]
+    fewer = without_objective(story, story.safety[1])
+    assert fewer is not None and [objective_text(each) for each in fewer.safety] == ["avoid rest"]
+    assert without_objective(scenario("patrol gate, hall in order every 40 by bot1"), story.safety[0]) is None
+
+
+@given(st.integers(0, 10**6), st.sampled_from(["bot1", "any robot"]), st.permutations(["gate", "hall", "vault"]))
+@settings(max_examples=30)
+def test_the_turn_goes_round_with_the_arrivals(seed: int, who: str, order: List[str]) -> None:
+    """Random plays: whose turn it is, and what is due, against who came where."""
+    story = scenario(f"patrol {', '.join(order)} in order every 1000 by {who}")
+    rules = Rules()
+    model = Model(model_data(played(translate(story), rules), scenario_objective(story), story, rules.reaction))
+    names = [agent.name for agent in story.agents] if who == "any robot" else [who]
+    rng, here, turn, visited = random.Random(seed), model.initial(), 0, set()
+    while turn < 3 and order[turn] in [here.locations[name] for name in names]:
+        visited.add(order[turn])
+        turn += 1
+    for _ in range(25):
+        for number, place in enumerate(order, 1):
+            location = here.locations["obj" if number == 1 else f"obj{number}"]
+            assert location == ("idle" if place in visited else "atRisk"), (place, here)
+        assert here.values["Pobj"] == turn % 3
+        able = [word for word in model.possible(here, timed=False) if not word.startswith("obj") and word != "rest"]
+        moves = model.joint_move(here, rng.choice(able), timed=False)
+        assert moves is not None
+        before, here = here, model.after(moves, here)
+        for name in names:
+            place = here.locations[name]
+            if place != before.locations[name] and place == order[turn % 3]:
+                visited.add(place)
+                turn += 1
+        visited &= {here.locations[name] for name in names}
 
 
 @given(st.integers(0, 10**6), st.sampled_from(["bot1", "bot2", "any robot"]), st.sampled_from(["gate", "hall"]))
