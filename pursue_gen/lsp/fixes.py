@@ -7,6 +7,7 @@ from typing import Callable, Dict, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.lsp import fixes_meaning as meaning
+from pursue_gen.lsp import fixes_numbers as numbers
 from pursue_gen.lsp import fixes_syntax as syntax
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.tokens import Statement
@@ -51,7 +52,21 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML171": meaning.add_objective,
     "PML180": meaning.human_ally,
     "PML190": meaning.sort_statements,
+    "PML200": numbers.later_end,
+    "PML201": numbers.possible_movement,
+    "PML202": meaning.delete_statement,
+    "PML204": numbers.fewer_times,
+    "PML205": numbers.bind_others,
     "PML220": meaning.delete_statement,
+    "PML221": numbers.done_or_avoided,
+    "PML222": numbers.to_be_done_once,
+    "PML223": numbers.later_deadline,
+    "PML232": numbers.without_condition,
+    "PML250": meaning.delete_statement,
+    "PML251": numbers.possible_number,
+    "PML252": meaning.delete_statement,
+    "PML253": meaning.delete_statement,
+    "PML254": meaning.delete_statement,
     "PML320": meaning.delete_listed,
 }
 

@@ -6,14 +6,17 @@ import difflib
 import re
 from typing import Iterator, List, Optional, Tuple
 
-from lark import Token
-
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.messages import MAY_BE_NAMES, RESERVED
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.usable import proposal, well_formed
 from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.edits import bare as _bare
+from pursue_gen.lsp.edits import behind as _behind
+from pursue_gen.lsp.edits import cut as _cut
+from pursue_gen.lsp.edits import first as _token
+from pursue_gen.lsp.edits import pair as _pair
 from pursue_gen.lsp.navigation import rename
 from pursue_gen.lsp.statements import deleted, inserted, ordered
 from pursue_gen.lsp.tokens import Occurrence, Statement, end_of
@@ -261,37 +264,13 @@ def _uses(document: Document, part: Statement) -> Iterator[Occurrence]:
     return (o for o in document.occurrences if o.statement == number and not o.declares)
 
 
-def _bare(token: Optional[Token]) -> str:
-    return str(token)[1:-1] if token is not None else ""
-
 
 def _is(name: str, part: Statement) -> bool:
     return _bare(part.name) == name
 
 
-def _token(part: Optional[Statement], kind: str) -> Optional[Token]:
-    """The first token of that kind."""
-    return next((token for token in part.tokens if token.type == kind), None) if part is not None else None
 
 
-def _pair(part: Optional[Statement], word: str) -> Optional[Tuple[Token, Token]]:
-    """The word and the number behind it."""
-    tokens = part.tokens if part is not None else ()
-    for token, number in zip(tokens, tokens[1:]):
-        if token.type == word and number.type == "NUMBER":
-            return token, number
-    return None
-
-
-def _behind(token: Token, text: str) -> Edit:
-    return Edit(end_of(token), end_of(token), text)
-
-
-def _cut(document: Document, first: Token, last: Token) -> Edit:
-    """Deletes from a token to another, with the blanks before."""
-    start = first.start_pos or 0
-    kept = len(document.text[:start].rstrip(" \t"))
-    return Edit(kept, end_of(last), "")
 
 
 def _listed(agent: Statement, word: str, event: str) -> Edit:
