@@ -56,6 +56,20 @@ def a_number(least: int, most: int, why: str = "") -> Callable[[str], int]:
     return accept
 
 
+def nothing_or_a_number(least: int, most: int, why: str = "") -> Callable[[str], int]:
+    """0 for nothing, or a whole number within limits; `why` as in `a_number`."""
+
+    def accept(answer: str) -> int:
+        if answer == "0":
+            return 0
+        try:
+            return a_number(least, most, why)(answer)
+        except ValueError as problem:
+            raise ValueError(str(problem).replace("expected", "expected 0, or", 1)) from None
+
+    return accept
+
+
 def one_of(choices: Sequence[str]) -> Callable[[str], str]:
     """One of these names."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from dataclasses import replace
 from typing import Callable, List, Optional, Tuple, TypeVar
 
 from pursue_gen.authoring import answers
@@ -15,7 +16,9 @@ from pursue_gen.authoring.requirements import (
     MOST_MOBILE,
     MOST_PLACES,
     MOST_ROBOTS,
+    MOST_TIME,
     NEVER_WITH,
+    PATROL,
     REACH,
     RESPOND,
     Requirements,
@@ -24,6 +27,8 @@ from pursue_gen.authoring.requirements import (
     allowed_places,
     fewest_places,
     may_stand,
+    shortest_every,
+    shortest_within,
     slow_enough,
     unused,
 )
@@ -86,7 +91,7 @@ def ask_requirements(dialog: Dialog, kind: Optional[str], places: Optional[str],
     taken = Requirements(kind, found, distances, team).names
     other, event = _other(dialog, kind, taken, team)
     mobile = _pace(dialog, kind, found, distances, team, other) if kind in (AVOID, CATCH) else None
-    return Requirements(kind, found, distances, team, other, mobile, event)
+    return _times(dialog, Requirements(kind, found, distances, team, other, mobile, event))
 
 
 def _places(dialog: Dialog, kind: str, given: Optional[str]) -> Tuple[str, ...]:
@@ -109,7 +114,7 @@ def _team(dialog: Dialog, kind: str, places: Tuple[str, ...], names: Tuple[str, 
         task: Optional[Task] = None
         if kind == AVOID:
             task = team[0].task if team else _task(dialog, "What prevents it?", "lock", places[:-1], 0, taken)
-        elif kind != CATCH:
+        elif kind not in (CATCH, PATROL):
             allowed = allowed_places(kind, places, number)
             task = _task(dialog, f"What does {name} do?", _EVENTS[number], allowed, number + 1, taken)
             taken += (task.event,)
@@ -145,6 +150,8 @@ def _other(dialog: Dialog, kind: str, taken: Tuple[str, ...], team: Tuple[Robot,
         question = "Does somebody you do not control wait for it, to be handed something? (a name, or nobody)"
         other = dialog.ask(question, "", answers.a_name_or_nobody(taken))
         return other, unused("handOver", (*taken, other)) if other else ""
+    if kind == PATROL:
+        return "", ""
     if kind == NEVER_WITH and len(team) > 1:
         dialog.show(f"{team[0].name} and {team[1].name} will never meet.")
         return "", ""
@@ -154,6 +161,24 @@ def _other(dialog: Dialog, kind: str, taken: Tuple[str, ...], team: Tuple[Robot,
         return other, ""
     taken = (*taken, other)
     return other, dialog.ask(_WHAT[kind], unused(_THEIR_EVENT[kind], taken), answers.a_name(taken))
+
+
+def _times(dialog: Dialog, given: Requirements) -> Requirements:
+    """The requirements with a deadline, with what is assumed of the other, or with the time between two visits."""
+    if given.kind == REACH:
+        least, why = shortest_within(given), "in less time the robots may not be done"
+        question = f"By when, in units of time from the start? (0: at any time; at least {least})"
+        within = dialog.ask(question, "0", answers.nothing_or_a_number(least, MOST_TIME, why))
+        return replace(given, within=within or None)
+    if given.kind == RESPOND:
+        question = f"How long does {given.other} wait at least between one {given.event} and the next? (0: unknown)"
+        return replace(given, waits=dialog.ask(question, "0", answers.a_number(0, MOST_TIME)) or None)
+    if given.kind == PATROL:
+        least = shortest_every(given.distances, given.robots)
+        why = "the way to all places and back takes that long"
+        question = f"How long may a place be left alone, in units of time? (at least {least})"
+        return replace(given, every=dialog.ask(question, str(least), answers.a_number(least, MOST_TIME, why)))
+    return given
 
 
 def _pace(

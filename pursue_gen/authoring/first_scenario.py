@@ -10,6 +10,7 @@ from pursue_gen.authoring.requirements import (
     CATCH,
     KINDS,
     NEVER_WITH,
+    PATROL,
     REACH,
     RESPOND,
     Requirements,
@@ -34,7 +35,8 @@ _WORK = 50_000_000
 
 def scenario_text(given: Requirements, file: str) -> str:
     """A scenario that meets the requirements, laid out; `file` is its name in the comments."""
-    parts = [_head(given, file), _places(given), _events(given), _order(given), _agents(given), _goal(given)]
+    parts = [_head(given, file), _places(given), _events(given), _order(given), _agents(given)]
+    parts += [_assumption(given), _goal(given)]
     return format_text("\n\n".join("\n".join(part) for part in parts if part), file)
 
 
@@ -62,6 +64,8 @@ def _event(task: Task) -> str:
 
 
 def _events(given: Requirements) -> List[str]:
+    if given.kind == PATROL:
+        return []
     lines = ["// What can happen. Without a location: anywhere. Without a duration: it takes no time."]
     lines += [_event(task) for task in given.tasks]
     if given.kind == RESPOND:
@@ -112,12 +116,22 @@ def _agents(given: Requirements) -> List[str]:
         start = last if given.kind == NEVER_WITH and number == 1 else first
         if robot.mobile is None and robot.task is not None:
             start = robot.task.place
-        lines.append(_agent(robot.name, "controllable", robot.mobile, start, f"can_do {', '.join(can)}"))
+        part = f"can_do {', '.join(can)}" if can else ""
+        lines.append(_agent(robot.name, "controllable", robot.mobile, start, part))
     if given.other:
         lines += ["", "// Not controllable: does what it likes, also the worst."]
         part = {RESPOND: "can_do", AVOID: "can_do", REACH: "reacts_to", CATCH: "reacts_to"}.get(given.kind, "")
         lines.append(_agent(given.other, "", given.mobile, last, f"{part} {given.event}" if part else ""))
     return lines
+
+
+def _assumption(given: Requirements) -> List[str]:
+    if given.waits is None:
+        return []
+    return [
+        "// What the plan may rely on. A mission watches it: if it is broken, another plan is looked for.",
+        f"assume: {given.other} waits {given.waits} between {given.event}",
+    ]
 
 
 def _agent(name: str, controllable: str, mobile: Optional[int], location: str, part: str) -> str:
@@ -146,7 +160,14 @@ def _goal(given: Requirements) -> List[str]:
             f"objective: {given.robots[0].name} never_with {second}",
             f"reach_objective: do {tasks[-1].event}",
         ]
-    return ["// What is wanted.", f"reach_objective: do {given.event or tasks[-1].event}"]
+    if given.kind == PATROL:
+        who = given.robots[0].name if len(given.robots) == 1 else "any robot"
+        return [
+            "// What has to hold always: in each place again, at most so many units of time after it was left.",
+            f"objective: patrol {', '.join(given.places)} every {given.every} by {who}",
+        ]
+    within = f" within {given.within}" if given.within is not None else ""
+    return ["// What is wanted.", f"reach_objective: do {given.event or tasks[-1].event}{within}"]
 
 
 def place_for(name: str, output: Optional[Path]) -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, Optional, Tuple
 
-REACH, RESPOND, AVOID, NEVER_WITH, CATCH = "reach", "respond", "avoid", "never-with", "catch"
+REACH, RESPOND, AVOID, NEVER_WITH, CATCH, PATROL = "reach", "respond", "avoid", "never-with", "catch", "patrol"
 
 KINDS: Dict[str, str] = {
     REACH: "the robots do something, one after the other",
@@ -13,11 +13,12 @@ KINDS: Dict[str, str] = {
     AVOID: "something must never happen, and a robot prevents it",
     NEVER_WITH: "the robots do something, and two of those who are there never meet",
     CATCH: "the robots catch somebody who runs away",
+    PATROL: "the robots are at each place again and again",
 }
 """The goals that a first scenario can have, in words."""
 
 MOST_PLACES, MOST_ROBOTS = 20, 9
-MOST_DISTANCE, MOST_MOBILE, MOST_DURATION = 100, 20, 500
+MOST_DISTANCE, MOST_MOBILE, MOST_DURATION, MOST_TIME = 100, 20, 500, 1_000_000
 """The largest answers: with them every number of the scenario is one that the language has."""
 
 _BETWEEN = 3
@@ -36,7 +37,8 @@ class Task:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot; `mobile`: time units per unit of distance, None: stands where its task is; `task`: None in `catch`."""
+    """A robot; `mobile`: time units per unit of distance, None: stands where its task is; `task`: None where all
+    robots do the same (`catch`, `patrol`)."""
 
     name: str
     mobile: Optional[int]
@@ -51,6 +53,8 @@ class Requirements:
     still. `event`: what the other does or takes part in (reach: the hand-over, respond: the call, avoid: what must
     not happen, catch: the catch). In `avoid` all robots have the one task that prevents it. Robots that move start in
     the first place, the other in the last one; never-with: the second robot in the last one, too.
+    Times, in time units: `within`: by when all is done (reach); `waits`: how long the other is assumed to wait between
+    two calls (respond); None: nothing is demanded or assumed; `every`: how long a place may be left alone (patrol).
     """
 
     kind: str
@@ -60,6 +64,9 @@ class Requirements:
     other: str = ""
     mobile: Optional[int] = None
     event: str = ""
+    within: Optional[int] = None
+    waits: Optional[int] = None
+    every: int = 0
 
     @property
     def names(self) -> Tuple[str, ...]:
@@ -92,14 +99,31 @@ def allowed_places(kind: str, places: Tuple[str, ...], robot: int) -> Tuple[str,
 
 def may_stand(kind: str) -> bool:
     """True where a robot need not move. Who catches or makes way has to."""
-    return kind not in (NEVER_WITH, CATCH)
+    return kind not in (NEVER_WITH, CATCH, PATROL)
+
+
+def shortest_within(given: Requirements) -> int:
+    """Time units in which the robots can surely have done everything (kind reach): each goes all the way when it is
+    its turn."""
+    turns = [(robot.mobile, robot.task.duration if robot.task else 0) for robot in given.robots]
+    turns += [(given.robots[-1].mobile, 0)] if given.event else []
+    return sum(_travel(given.distances, mobile) + duration + _BETWEEN for mobile, duration in turns)
+
+
+def shortest_every(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
+    """Time units after which the fastest robot is surely in the same place again if it walks to and fro."""
+    return 2 * _travel(distances, min(robot.mobile or 1 for robot in robots))
+
+
+def _travel(distances: Iterable[int], mobile: Optional[int]) -> int:
+    """Time units that the way through all places takes; none where it stands."""
+    return sum(distance * mobile + _BETWEEN for distance in distances) if mobile else 0
 
 
 def deadline(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
     """Time units in which the robots can answer a call, at any moment: all go to their places first, and stay there."""
     slowest = max(robot.mobile or 0 for robot in robots)
-    travel = sum(distance * slowest + _BETWEEN for distance in distances) if slowest else 0
-    return travel + sum((robot.task.duration if robot.task else 0) + _BETWEEN for robot in robots)
+    return _travel(distances, slowest) + sum((robot.task.duration if robot.task else 0) + _BETWEEN for robot in robots)
 
 
 def slow_enough(kind: str, places: Tuple[str, ...], distances: Tuple[int, ...], robots: Tuple[Robot, ...]) -> int:
@@ -109,7 +133,7 @@ def slow_enough(kind: str, places: Tuple[str, ...], distances: Tuple[int, ...], 
         return fastest + -(-_BETWEEN // min(distances))
     (task,) = {robot.task for robot in robots if robot.task is not None}
     at = places.index(task.place)
-    travel = sum(distance * fastest + _BETWEEN for distance in distances[:at]) if fastest else 0
+    travel = _travel(distances[:at], fastest)
     return max(1, -(-(travel + task.duration + _BETWEEN) // sum(distances[at:])))
 
 

@@ -23,6 +23,7 @@ class Goal(str, Enum):
     AVOID = "avoid"
     NEVER_WITH = "never-with"
     CATCH = "catch"
+    PATROL = "patrol"
 
 
 @guarded

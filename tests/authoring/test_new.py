@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 from unittest import mock
@@ -12,14 +13,24 @@ import pytest
 
 from pursue_gen.authoring.dialog import ask_requirements
 from pursue_gen.authoring.first_scenario import scenario_text
-from pursue_gen.authoring.requirements import KINDS, Requirements, Robot, Task, deadline, fewest_places, slow_enough
+from pursue_gen.authoring.requirements import (
+    KINDS,
+    Requirements,
+    Robot,
+    Task,
+    deadline,
+    fewest_places,
+    shortest_every,
+    shortest_within,
+    slow_enough,
+)
 from pursue_gen.cli.app import main
 from pursue_gen.cli.dialog import StreamDialog
 from pursue_gen.cli.new import Goal
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, load, parse
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.scenario import Avoid, NeverWith, Reach, Respond, Scenario
+from pursue_gen.language.scenario import Avoid, NeverWith, Patrol, Reach, Respond, Scenario
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 
@@ -58,6 +69,7 @@ def test_every_combination_of_options_is_won(kind: str, robots: int, places: int
     assert [poi.name for poi in scenario.pois] == list(ROW[:places])
     assert sum(agent.controllable for agent in scenario.agents) == robots
     kinds = {"reach": Reach, "catch": Reach, "respond": Respond, "avoid": Avoid, "never-with": NeverWith}
+    kinds["patrol"] = Patrol
     assert isinstance(scenario.objectives[0], kinds[kind])
 
 
@@ -97,11 +109,12 @@ def test_the_deadline_can_be_kept(
 
 ANSWERS: Dict[str, List[str]] = {
     "reach": ["1", "ward, lab, store", "5", "6", "carrier, arm", "take", "lab", "0", "2", "pack", "store", "4", "0",
-              "nurse"],
-    "respond": ["respond", "ward,lab", "7", "carrier", "bring", "lab", "2", "1", "patient", "ring"],
+              "nurse", "150"],
+    "respond": ["respond", "ward,lab", "7", "carrier", "bring", "lab", "2", "1", "patient", "ring", "25"],
     "avoid": ["3", "ward, lab, store", "5", "6", "keeper", "shut", "lab", "2", "1", "cat", "eatMouse", "5"],
     "never-with": ["4", "ward, lab, store", "5", "6", "a, b", "take", "ward", "0", "2", "give", "lab", "1", "1"],
     "catch": ["catch", "ward, lab", "5", "dog1, dog2", "1", "2", "cat", "grab", "4"],
+    "patrol": ["6", "ward, lab, store", "5", "6", "guard", "2", "60"],
 }  # fmt: skip
 
 
@@ -133,8 +146,8 @@ def test_what_is_given_is_not_asked() -> None:
 @pytest.mark.parametrize(
     ("answer", "expected"),
     [
-        ("7", "a number from 1 to 5"),
-        ("²", "a number from 1 to 5"),
+        ("7", "a number from 1 to 6"),
+        ("²", "a number from 1 to 6"),
         ("", ""),
     ],
 )
@@ -164,6 +177,8 @@ def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
         ("Where", "shelve", "did you mean shelf?"),
         ("does bot1 need", "fast", "a whole number from 0 to 20"),
         ("somebody you do not control", "fetch", "fetch is taken already"),
+        ("By when", "3", "expected 0, or a whole number from"),
+        ("By when", "tomorrow", "the robots may not be done"),
     ],
 )
 def test_a_bad_answer_is_reported_and_asked_again(question: str, answer: str, expected: str) -> None:
@@ -176,6 +191,49 @@ def test_a_bad_answer_is_reported_and_asked_again(question: str, answer: str, ex
     assert ask_requirements(StreamDialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
     assert expected in screen.getvalue()
     assert screen.getvalue().count(asked[place].strip()) == usual.getvalue().count(asked[place].strip()) + 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "answers", "expected"),
+    [
+        ("respond", ["-1", "soon", "40"], "a whole number from 0 to"),
+        ("patrol", ["0", "27", "28"], "a whole number from 28 to 1000000, not '27': the way to all places"),
+    ],
+)
+def test_a_time_that_cannot_be_is_asked_again(kind: str, answers: List[str], expected: str) -> None:
+    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
+    usual, screen = ask_requirements(quiet, kind, "a,b,c", 1), io.StringIO()
+    before = {"respond": 8, "patrol": 3}[kind]
+    lines = io.StringIO("\n".join([""] * before + answers))
+    found = ask_requirements(StreamDialog(lines, screen), kind, "a,b,c", 1)
+    assert found == (replace(usual, waits=40) if kind == "respond" else usual) and usual.every in (0, 28)
+    assert expected in screen.getvalue() and screen.getvalue().count("whole number from") == 2
+
+
+@pytest.mark.parametrize(("distances", "mobile"), [((1,), (1,)), ((7, 2), (2, 1)), ((3,), (None, 3))])
+@pytest.mark.parametrize("other", ["", "nurse"])
+def test_the_earliest_deadline_that_is_accepted_can_be_kept(
+    distances: Tuple[int, ...], mobile: Tuple[Optional[int], ...], other: str
+) -> None:
+    places = ROW[: len(distances) + 1]
+    robots = tuple(Robot(f"bot{k}", m, Task(f"work{k}", places[-1 - k], 2 * k)) for k, m in enumerate(mobile))
+    given = Requirements("reach", places, distances, robots, other, None, "handOver" if other else "")
+    least = shortest_within(given)
+    scenario = sound_and_won(scenario_text(replace(given, within=least), "floor.pur"))
+    (reach,) = scenario.reach
+    assert isinstance(reach, Reach) and reach.within == least
+
+
+@pytest.mark.parametrize(("distances", "mobile"), [((1,), (1,)), ((7, 2), (2,)), ((3, 1), (4, 1))])
+def test_the_shortest_patrol_that_is_accepted_can_be_walked(
+    distances: Tuple[int, ...], mobile: Tuple[int, ...]
+) -> None:
+    places, robots = ROW[: len(distances) + 1], tuple(Robot(f"bot{k}", speed) for k, speed in enumerate(mobile))
+    every = shortest_every(distances, robots)
+    scenario = sound_and_won(
+        scenario_text(Requirements("patrol", places, distances, robots, every=every), "floor.pur")
+    )
+    assert {safety.every for safety in scenario.safety if isinstance(safety, Patrol)} == {every}
 
 
 def test_who_is_too_fast_to_be_caught_is_asked_again() -> None:
