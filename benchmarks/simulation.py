@@ -27,6 +27,7 @@ from pursue_gen.simulation.faults import read_faults
 from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import Settings, simulate_mission
 from pursue_gen.simulation.runs import Case, MissionRunner
+from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
@@ -62,7 +63,7 @@ def bundled() -> List[str]:
 
 def case_for(name: str, faults: str = "all") -> Optional[Case]:
     """The case of a scenario with these faults; None where the objective cannot be met."""
-    scenario = load(SCENARIOS / f"{name}.pur")
+    scenario = least_period(load(SCENARIOS / f"{name}.pur"), Rules())
     try:
         won = solve_scenario(scenario, Rules())
     except PursueError:

@@ -28,12 +28,13 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import objective_text
+from pursue_gen.language.wording import objective_text, periods_found
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.least_time import Guarantee
+from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
@@ -59,10 +60,14 @@ _SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 3, "reach_object
 
 @dataclass(frozen=True)
 class Facts:
-    """What was found out about a scenario in the default game; `won` is None where it is lost."""
+    """What was found out about a scenario in the default game; `won` is None where it is lost.
+
+    `settled` is the scenario with the periods that had to be found.
+    """
 
     name: str
     scenario: Scenario
+    settled: Scenario
     states: int
     won: Optional[Solution]
     guarantee: Optional[Guarantee]
@@ -76,12 +81,13 @@ def scenario_files() -> Dict[str, Path]:
 def facts(path: Path) -> Facts:
     """Solves a scenario and proves the strategy."""
     scenario = load(path)
-    verdict = _verdict(scenario)
+    settled = least_period(scenario, Rules())
+    verdict = _verdict(settled)
     states = verdict.stats.discrete_states
     if verdict.strategy is None:
-        return Facts(path.stem, scenario, states, None, None)
-    won = solved(translate(scenario), scenario_objective(scenario), Rules())
-    return Facts(path.stem, scenario, states, won, won.guarantee)
+        return Facts(path.stem, scenario, settled, states, None, None)
+    won = solved(translate(settled), scenario_objective(settled), Rules())
+    return Facts(path.stem, scenario, settled, states, won, won.guarantee)
 
 
 def _verdict(scenario: Scenario) -> Verdict:
@@ -94,7 +100,7 @@ def case(found: Facts) -> Case:
     """What is simulated: the workspace as `pursue-gen ws` writes it, against all kinds of opponents."""
     assert found.won is not None, f"{found.name} is lost"
     goal = found.won.objective.kind is not Kind.SAFETY
-    return case_of(found.scenario, found.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
+    return case_of(found.settled, found.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
 
 
 # Pages ----------------------------------------------------------------------------------------------------------------
@@ -119,11 +125,13 @@ def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     looked = f"The solver looked at {found.states:,} states"
     command = f"    pursue-gen solve {file}"
     if found.won is None:
-        return f"**It cannot be done**: the others can always prevent it. {looked}.\n\n{command}"
+        periods = "".join(f" {text}" for text in periods_found(found.settled, won=False))
+        return f"**It cannot be done**: the others can always prevent it.{periods} {looked}.\n\n{command}"
     count = sum(len(block.commands) for block in found.won.strategy.blocks)
     has = f"{looked}; the strategy has {count} commands, and a second program has proven it."
     if found.guarantee is None:
         promise = "**It can be done**, whatever the others do, and for as long as one likes."
+        promise += "".join(f" {text}" for text in periods_found(found.settled))
     else:
         promise = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
     see = f"    pursue-gen sim {file}\n    ./run mission {file} web:=true"
@@ -174,7 +182,8 @@ def _if(text: str, changes: str) -> str:
     changed = edited(text, changes)
     if changed == text:
         raise ValueError(f"this changes nothing: {changes}")
-    return "cannot be done" if _verdict(parse(changed, "changed.pur", "changed")).strategy is None else "can be done"
+    scenario = least_period(parse(changed, "changed.pur", "changed"), Rules())
+    return "cannot be done" if _verdict(scenario).strategy is None else "can be done"
 
 
 def edited(text: str, changes: str) -> str:

@@ -93,13 +93,14 @@ def mission_of_scenario(
 
     `explain`: where the scenario is not won, why is printed.
     """
+    from pursue_gen.cli.inputs import with_periods
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.language import load
     from pursue_gen.solving.verdict import margin_text, margins
     from pursue_gen.transport.bundles import make_mission, placed
     from pursue_gen.workspace.spots import spots_in_one
 
-    scenario = placed(load(file), poses.file, poses.computed)
+    scenario = with_periods(placed(load(file), poses.file, poses.computed), request)
     show(spots_in_one(scenario, poses.spot_distance))
     won = solve_and_print(scenario, request, explain)
     info(margin_text(won, margins(won, False, request.options.limits)[0]))

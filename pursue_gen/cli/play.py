@@ -43,6 +43,7 @@ def play(
 
     Commands are read from stdin, with or without a terminal; help lists them. The exit status is 0.
     """
+    from pursue_gen.cli.inputs import with_periods
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.cli.solution import naming_costs
     from pursue_gen.language import load
@@ -51,7 +52,7 @@ def play(
     from pursue_gen.play.session import answer, farewell, opening
     from pursue_gen.tga import translate
 
-    read = load(scenario)
+    read = with_periods(load(scenario), request)
     rules = request.rules(translate(read))
     with naming_costs(read, request), progress_line() as progress:
         session = session_of(read, rules, seed, request.options.limits, progress)

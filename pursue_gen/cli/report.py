@@ -68,7 +68,7 @@ def report(
     _check_options(seen, html, file, output, floor, as_json_)
     solving = replace(request.options, within=request.deadline)
     if not seen:
-        read = scenario_from(scenario)
+        read = scenario_from(scenario, request, as_json_)
         with naming_costs(read, request, as_json_):
             _print_tables(read, reach_obj, solving, as_json_)
         return
@@ -77,7 +77,7 @@ def report(
         _check_target(target)
     under = None if floor is None else read_floor(floor)
     options = ReportOptions(reach_obj, runs if html else 0, under)
-    read = scenario_from(scenario)
+    read = scenario_from(scenario, request)
     if under is not None:
         show(check_spots(read, under, DEFAULT_DISTANCE))
     made = _made(read, options, solving)

@@ -66,6 +66,7 @@ def sim(
     The exit status is 1 where a mission failed: without faults it did not reach the goal (or did not
     stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
     """
+    from pursue_gen.cli.inputs import with_periods
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.cli.solution import naming_costs
@@ -84,7 +85,7 @@ def sim(
     check_until(until)
     if timeline is not None:
         _check_timeline(timeline, runs, seed)
-    read = load(scenario)
+    read = with_periods(load(scenario), request, as_json_)
     with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
         won = solution_of(*game_of(read), request, progress)
     show(won.warnings)

@@ -9,7 +9,7 @@ from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import condition_of_promise
+from pursue_gen.language.wording import condition_of_promise, periods_found
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.solving.rules import rules_text
@@ -35,14 +35,15 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) ->
     show(won.warnings)
     if request.plan is None:
         info(verdict_text(won))
-        show_assumptions(scenario)
+        show_terms(scenario)
     elif not won.warnings:
         info(f"{request.plan} wins: {rules_text(won.rules)}")
     return won
 
 
-def show_assumptions(scenario: Scenario) -> None:
-    """Prints what the verdict assumes of others, if anything."""
+def show_terms(scenario: Scenario) -> None:
+    """Prints which periods were found, and what the verdict assumes of others, if anything."""
+    show_periods(scenario)
     assumed = condition_of_promise(scenario)
     if assumed:
         info(f"This holds {assumed}.")
@@ -62,6 +63,7 @@ def explained(
         from pursue_gen.explanation.explain import as_json, explain, render
 
         show(problem.diagnostics)
+        show_periods(scenario, won=False)
         info("Looking for what would change that (--no-explain leaves it out) …")
         with progress_line(quiet) as progress:
             explanation = explain(scenario, rules, limits, progress)
@@ -78,6 +80,12 @@ def explained(
         info(costs.in_words(found))
         return {"costs": costs.as_json(found)}
     return {}
+
+
+def show_periods(scenario: Scenario, won: bool = True) -> None:
+    """Prints which periods were found for patrols that name none."""
+    for sentence in periods_found(scenario, won):
+        info(sentence)
 
 
 @contextlib.contextmanager

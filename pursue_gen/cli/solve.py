@@ -42,17 +42,15 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained, show_assumptions
+    from pursue_gen.cli.solution import explained, show_terms
     from pursue_gen.files import write_texts
-    from pursue_gen.language import load
-    from pursue_gen.solving.inputs import are_scenario
     from pursue_gen.solving.request import solution_of
     from pursue_gen.solving.solvers import keep_counter
-    from pursue_gen.solving.verdict import margin_text, margins, verdict_json, verdict_text
+    from pursue_gen.solving.verdict import margin_text, margins, periods_json, verdict_json, verdict_text
     from pursue_gen.synthesis.plan import write_plan
 
     printed, output = _plan_to(plan_, output, as_json_)
-    network, objective = game_from(files)
+    network, objective, scenario = game_from(files, request, as_json_)
     rules, limits = request.rules(network), request.options.limits
     try:
         with progress_line(as_json_) as progress:
@@ -61,8 +59,8 @@ def solve(
         kept = keep_counter(problem, network, objective, output)
         if kept is not None:
             info(f"The counter-strategy is in {kept}")
-        wanted = explain and problem.exit_status in (4, 5) and are_scenario(files)
-        why = explained(problem, load(files[0]), request, as_json_) if wanted else {}
+        wanted = explain and problem.exit_status in (4, 5)
+        why = explained(problem, scenario, request, as_json_) if wanted and scenario is not None else {}
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **why}, indent=1))
         if why:  # its findings are printed
@@ -73,12 +71,13 @@ def solve(
         write_texts({output: plan})
     found = margins(won, margin, limits)
     if as_json_:
-        print(json.dumps(verdict_json(rules, won, (), *found), indent=1))
+        periods = {} if scenario is None else periods_json(scenario)
+        print(json.dumps({**verdict_json(rules, won, (), *found), **periods}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
-    if are_scenario(files):
-        show_assumptions(load(files[0]))
+    if scenario is not None:
+        show_terms(scenario)
     info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")

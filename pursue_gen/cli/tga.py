@@ -34,7 +34,7 @@ def tga(
     from pursue_gen.solving.rules import played
     from pursue_gen.tga.uppaal import write_network, write_query
 
-    network, objective = game_of(scenario_from(scenario))
+    network, objective = game_of(scenario_from(scenario, request))
     network = played(network, replace(request, reaction="0").rules(network))
     model, query = folder / "TGA.xml", folder / "TCTL.q"
     write_texts({model: write_network(network, objective), query: write_query(objective)})

@@ -34,7 +34,7 @@ def verify(
 
     if len(files) < 2:
         raise usage_error("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
-    network, objective = game_from(files[:-1])
+    network, objective, _ = game_from(files[:-1], request)
     with progress_line() as progress:
         options = replace(request.options, progress=progress)
         tried = try_plan(files[-1], network, objective, request.games(network), options)

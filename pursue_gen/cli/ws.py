@@ -45,7 +45,7 @@ def ws(
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.workspace.make import Extras, make_workspace
 
-    read = scenario_from(scenario)
+    read = scenario_from(scenario, request)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     won = solve_and_print(read, request, explain)

@@ -270,7 +270,7 @@ def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
 
 
 def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
-    every, together = patrol.every, _of_one_statement(scenario, patrol)
+    every, together = patrol.period, _of_one_statement(scenario, patrol)
     place = listed(each.place.name for each in together) + (" in order" if patrol.order else "")
 
     def make(k: int) -> Variant:

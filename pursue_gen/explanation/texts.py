@@ -109,7 +109,7 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
             elif play.game.origins[k].target == names.IDLE:
                 yield " (in time)"
         if isinstance(safety, Patrol) and play.game.origins[k].target == names.AT_RISK:
-            yield f" ({patroller(safety)} has to be back by {time_text(step.at + safety.every)})"
+            yield f" ({patroller(safety)} has to be back by {time_text(step.at + safety.period)})"
 
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:

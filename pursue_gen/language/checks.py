@@ -127,7 +127,7 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if isinstance(safety, Respond) and safety.deadline < 1:
             message = "within 0 leaves no time to answer: expected 1 or more"
             yield error("PML143", message, safety.span, "write the time units that the answer may take")
-        if isinstance(safety, Patrol) and safety.every < 2:
+        if isinstance(safety, Patrol) and safety.every is not None and safety.every < 2:
             message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
             yield error("PML143", message, safety.span, "write the time units between two visits")
 

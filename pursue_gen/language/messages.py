@@ -25,7 +25,7 @@ FORMS: Dict[str, str] = {
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
     "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e (or a condition: avoid open is_true) · "
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
-    "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order is optional)",
+    "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)",
     "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",
 }
 """What each statement looks like, by the token that begins it."""

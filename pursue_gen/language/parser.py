@@ -277,7 +277,8 @@ class _Builder:
 
     def _patrol(self, children: List[Any], span: Span) -> Tuple[pml.Patrol, ...]:
         refs, in_order, _, every, by = children
-        places, time, (first, *_rest) = self._refs(refs), self._number(every), by.children
+        places, first = self._refs(refs), by.children[0]
+        time = None if every is None else self._number(every)
         agent = None if isinstance(first, Token) else self._ref(first)
         order = () if in_order is None else tuple(place.name for place in places)
         return tuple(pml.Patrol(place, time, Who(agent, agent is None), span, order) for place in places)

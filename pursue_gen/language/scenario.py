@@ -271,14 +271,23 @@ class Patrol:
     """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
 
     `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    `every`: in time units; None: the least that can be promised is to be found by solving (`solving.periods`). Then
+    `least` says that nothing below it can be promised.
     `order`: the places of the statement, where each counts in its turn only (`in order`); () where all count always.
     """
 
     place: Ref
-    every: int
+    every: Optional[int]
     who: Who
     span: Span
     order: Tuple[str, ...] = ()
+    least: Optional[int] = None
+
+    @property
+    def period(self) -> int:
+        """The time units from one visit to the next; they are known from solving on."""
+        assert self.every is not None, "the period of a patrol has to be found first"
+        return self.every
 
 
 Safety = Union[Respond, Avoid, NeverWith, Always, Patrol]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterable, List
+from typing import Iterable, Iterator, List
 
 from pursue_gen.language.conditions import condition_text, condition_words
 from pursue_gen.language.scenario import (
@@ -42,7 +42,7 @@ def _sentence(objective: StatedObjective) -> str:
         where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.name}"
         return f"{objective.first.name} and {objective.second.name} are never {where}."
     if isinstance(objective, Patrol):
-        every = f"at least every {units(str(objective.every))}"
+        every = _every(objective)
         if objective.order:
             return f"{patroller(objective)} visits {listed(objective.order)} in this order, each {every}."
         return f"{patroller(objective)} is at {objective.place.name} {every}."
@@ -53,6 +53,36 @@ def _sentence(objective: StatedObjective) -> str:
     verb = "happens" if len(objective.events) == 1 else "happen, in any order,"
     when = f"{after} and{within}" if after and within else after or within
     return f"{listed(ref.name for ref in objective.events)} {verb}{when}".rstrip(",") + "."
+
+
+def _every(patrol: Patrol) -> str:
+    """How often a place is visited."""
+    if patrol.every is None:
+        return "as often as can be promised"
+    every = f"at least every {units(str(patrol.every))}"
+    if patrol.least is None:
+        return every
+    if patrol.least >= patrol.every:
+        return f"{every}, the least that can be promised"
+    return f"{every}; nothing below {patrol.least} can be promised"
+
+
+def periods_found(scenario: Scenario, won: bool = True) -> List[str]:
+    """A sentence for each patrol whose period was found by solving, as far as the verdict says something about it."""
+    found = (each for each in scenario.safety if isinstance(each, Patrol))
+    return list(dict.fromkeys(sentence for each in found for sentence in _period(each, won)))
+
+
+def _period(patrol: Patrol, won: bool) -> Iterator[str]:
+    who, every, least = f"the patrol by {patroller(patrol)}", patrol.every, patrol.least
+    if every is None or least is None:
+        return
+    if won and least == every:
+        yield f"The least period that can be promised for {who} is {units(str(every))}."
+    elif won:
+        yield f"The least period for {who} is at most {units(str(every))}; nothing below {least} can be promised."
+    elif least > every:
+        yield f"No period up to {units(str(every))} can be promised for {who}."
 
 
 def patroller(patrol: Patrol) -> str:
@@ -87,13 +117,19 @@ def objective_text(objective: StatedObjective) -> str:
         place = "" if objective.place is None else f" at {objective.place.name}"
         return f"{objective.first.name} never_with {objective.second.name}{place}"
     if isinstance(objective, Patrol):
-        places = f"{', '.join(objective.order)} in order" if objective.order else objective.place.name
-        return f"patrol {places} every {objective.every} by {patroller(objective)}"
+        return patrol_text(objective, (objective.place.name,))
     if isinstance(objective, Always):
         return f"{'always' if objective.holds else 'avoid'} {condition_text(objective.condition)}"
     after = f" after {objective.after}" if objective.after else ""
     within = "" if objective.within is None else f" within {objective.within}"
     return f"do {' and '.join(ref.name for ref in objective.events)}{after}{within}"
+
+
+def patrol_text(patrol: Patrol, places: Iterable[str]) -> str:
+    """A patrol of these places, or of those that have an order with its place."""
+    some = f"{', '.join(patrol.order)} in order" if patrol.order else ", ".join(places)
+    every = "" if patrol.every is None else f" every {patrol.every}"
+    return f"patrol {some}{every} by {patroller(patrol)}"
 
 
 def statement_text(objective: StatedObjective) -> str:

@@ -39,7 +39,8 @@ MEANINGS: Dict[str, str] = {
     "PATROL": "Places at which somebody has to be again and again.",
     "IN": "In this order: a visit counts in its turn only.",
     "ORDER": "A visit counts in its turn only: first at the first place, then at the second, round after round.",
-    "EVERY": "So many units of time after somebody left, or after the start, somebody is there again.",
+    "EVERY": "So many units of time after somebody left, or after the start, somebody is there again. Without it, the "
+    "least that can be promised is found.",
     "BY": "Who has to be there: an agent, or any robot.",
     "EACH": "A rule for each of several: each of them has its own turn.",
     "BEFORE": "First this, then that, and then the first again.",
@@ -133,6 +134,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
         Form("what always holds", "objective: always any robot at {POI}"),
         Form("two who never meet", "objective: {agent} never_with {agent}"),
         Form("somebody who comes again and again", "objective: patrol {POI} every {=60} by {agent}"),
+        Form("somebody who comes as often as can be promised", "objective: patrol {POI} by {agent}"),
         Form("somebody who makes rounds", "objective: patrol {POI}, {POI} in order every {=60} by {agent}"),
         Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
     ),

@@ -107,7 +107,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
             yield f"deadline: {objective.response.name} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.every
+            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Optional, Union
 
 from pursue_gen.diagnostics import usage_error
-from pursue_gen.files import read_text
 from pursue_gen.language import load
 from pursue_gen.replay.game import Source, from_data, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.replay.record import MissionRecord
+from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.tga import translate
 
@@ -32,8 +32,8 @@ def source_of(
             raise usage_error("a workspace says which game it plays", hint)
         return from_workspace(workspace)
     if scenario is not None:
-        rules = request.rules(translate(load(str(scenario))))
-        return Source(scenario.stem, read_text(scenario, "a scenario"), str(scenario), rules)
+        read = settled(load(str(scenario)), request)
+        return Source(scenario.stem, read.text, str(scenario), request.rules(translate(read)))
     if not isinstance(found, Journal) and found.game is not None:
         return from_data(found.game, str(file))
     raise usage_error(f"{file} does not hold its scenario", f"pursue-gen replay {file} SCENARIO.pur")

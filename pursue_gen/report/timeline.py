@@ -235,7 +235,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
             risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
             yield Lane(name, _deadline(recording, scale, risks, objective.response.name))
         elif isinstance(objective, Patrol):
-            risks = [(stay, stay.start + objective.every) for stay in found if stay.what == names.AT_RISK]
+            risks = [(stay, stay.start + objective.period) for stay in found if stay.what == names.AT_RISK]
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
             yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {visited(objective)}".rstrip(",")))
         elif isinstance(objective, Reach) and objective.within is not None:

@@ -80,7 +80,7 @@ class Promises:
                 self._since.pop(number, None)
             elif not there:
                 self._since.setdefault(number, latest)
-            return since is not None and latest - since > safety.every
+            return since is not None and latest - since > safety.period
         missed = since is not None and latest - since > safety.deadline
         if event == safety.response.name:
             self._since.pop(number, None)

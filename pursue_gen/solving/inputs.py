@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Iterable, Sequence, Tuple
+from typing import Iterable, Optional, Sequence, Tuple
 
 from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
@@ -12,6 +13,9 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.periods import least_period, longest, with_period, without_period
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.synthesis.limits import Listener
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
 
@@ -49,15 +53,24 @@ def load_scenario(file: Path) -> Scenario:
     return language.load(file)
 
 
+def settled(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Scenario:
+    """The scenario with the least period that can be promised for patrols that name none, in the game of the request.
+
+    Raises PursueError (exit status 2) for a request that makes no sense.
+    """
+    if not without_period(scenario):
+        return scenario
+    rules = request.rules(translate(with_period(scenario, longest(scenario))))
+    return least_period(scenario, rules, replace(request.options, progress=progress))
+
+
 def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
     """The ideal game of a scenario."""
     return translate(scenario), scenario_objective(scenario)
 
 
 def load_game(files: Sequence[Path]) -> Tuple[Network, Objective]:
-    """The ideal game of a scenario's file, or of UPPAAL's two files. Raises PursueError."""
-    if are_scenario(files):
-        return game_of(load_scenario(files[0]))
+    """The ideal game of UPPAAL's two files. Raises PursueError."""
     if len(files) != 2:
         message = "expected one scenario, or a network and its query"
         raise usage_error(message, "pursue-gen solve SCENARIO | TGA.xml TCTL.q")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, as_json, counted
+from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
 from pursue_gen.proof.margin import as_json as margin_json
@@ -78,6 +79,16 @@ def verdict_json(
         result["game_margin"] = margin_json(game_margin)
     result["diagnostics"] = [as_json(finding) for finding in findings]
     return result
+
+
+def periods_json(scenario: Scenario) -> Dict[str, Any]:
+    """The period that was found for patrols that name none, as an entry of the JSON object; else nothing.
+
+    It is `every` time units; nothing below `least` can be promised.
+    """
+    patrols = (each for each in scenario.safety if isinstance(each, Patrol) and each.least is not None)
+    found = [{"every": patrol.every, "least": patrol.least} for patrol in patrols]
+    return {"period": found[0]} if found else {}
 
 
 def _left_out(won: Solution) -> List[str]:

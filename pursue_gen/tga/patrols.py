@@ -56,7 +56,7 @@ def patrol_automaton(patrol: Patrol, scenario: Scenario, positions: Positions, n
     the place's turn, and makes it that of the next one.
     """
     clock, place, agents = names.safety_clock(number), patrol.place.name, scenario.on_patrol(patrol)
-    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.every),))
+    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.period),))
     there = any(agent.location.name == place for agent in agents)
     guard, assign = Guard(), _NOTHING
     if patrol.order:

@@ -46,7 +46,9 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         places = [place.name for place in network.automaton(name).locations]
-        found.append(Status(name, objective_text(objective), {place: _duty(objective, place) for place in places}))
+        in_turn = f": {objective.place.name}" if isinstance(objective, Patrol) and objective.order else ""
+        texts = {place: _duty(objective, place) for place in places}
+        found.append(Status(name, objective_text(objective) + in_turn, texts))
     return tuple(found)
 
 

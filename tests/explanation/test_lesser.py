@@ -12,6 +12,7 @@ from pursue_gen.explanation.lesser import without_agent, without_each
 from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Choice, Ref, RuleBody, Scenario
+from pursue_gen.solving.periods import with_period
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.tga import scenario_objective, translate
 
@@ -122,7 +123,7 @@ def test_one_of_two_objectives_stays() -> None:
 
 @pytest.mark.parametrize("file", SCENARIOS, ids=lambda file: file.stem)
 def test_each_lesser_scenario_is_a_game(file: Path) -> None:
-    for part, lesser in without_each(load(file)):
+    for part, lesser in without_each(with_period(load(file), 30)):
         compile_game(translate(lesser), scenario_objective(lesser))
         errors = [finding.message for finding in check(lesser) if finding.severity is Severity.ERROR]
         assert errors == [], part.name

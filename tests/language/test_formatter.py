@@ -251,7 +251,7 @@ def texts(draw: st.DrawFn) -> str:
             )))]  # fmt: skip
         if kind == 7 and draw(st.booleans()):
             who = draw(st.sampled_from(([name], ["any", "robot"])))
-            return ["objective", ":", "patrol", *refs(), *maybe("in", "order"), "every", number, "by", *who]
+            return ["objective", ":", "patrol", *refs(), *maybe("in", "order"), *maybe("every", number), "by", *who]
         if kind == 7:
             return ["objective", ":", "if", name, "then", other, "within", number]
         if kind == 8:

@@ -103,7 +103,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
         ("objective: |", ["patrol", "if", "avoid", "always"]),
-        ("objective: patrol a, b |", ["in", "every"]),
+        ("objective: patrol a, b |", ["in", "every", "by"]),
         ("objective: patrol a, b in |", ["order"]),
         ('rule "new": work |', ["and", "before", "or"]),
         ("stateDependency: work only_if tired |", ["is_true", "is_false"]),

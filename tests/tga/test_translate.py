@@ -9,6 +9,7 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError, Severity
 from pursue_gen.language import load
+from pursue_gen.solving.periods import with_period
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.uppaal import read_network, read_query
@@ -45,13 +46,13 @@ def test_published_scenarios_need_no_note(reference_dir: Path, name: str) -> Non
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_translation_is_deterministic(path: Path) -> None:
-    assert translate(load(path)) == translate(load(path))
+    assert translate(with_period(load(path), 30)) == translate(with_period(load(path), 30))
 
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_networks_are_closed(path: Path) -> None:
     """Every name that is used is declared, once."""
-    network = translate(load(path))
+    network = translate(with_period(load(path), 30))
     declared = [*network.clocks, *(name for name, _ in network.variables), *network.channels]
     assert len(set(declared)) == len(declared)
     variables = {name for name, _ in network.variables}

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 
 from pursue_gen.language import load
+from pursue_gen.solving.periods import with_period
 from pursue_gen.tga import ends_reported, translate
 from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
 from pursue_gen.tga.uppaal import read_network, read_query, write_network, write_query
@@ -97,7 +98,7 @@ def test_references_read_back_equal(reference_dir: Path, name: str) -> None:
 
 @pytest.mark.parametrize("path", sorted((ROOT / "scenarios").rglob("*.pur")), ids=lambda path: path.stem)
 def test_our_scenarios_read_back_equal(path: Path) -> None:
-    network = ends_reported(translate(load(path)), {})
+    network = ends_reported(translate(with_period(load(path), 30)), {})
     text = write_network(network, REACH)
     assert_follows_the_dtd(text)
     assert read_network(text, "TGA.xml") == network

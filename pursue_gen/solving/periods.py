@@ -1,0 +1,112 @@
+"""The least period of patrols that name none: found by solving, with one period for all of them.
+
+A longer period asks for less. So a period that is lost excludes all shorter ones, and the periods between the longest
+that is lost and the shortest that is won are halved. Periods are whole time units.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import Dict, List, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
+from pursue_gen.language.wording import patrol_text
+from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.tga import scenario_objective, translate
+
+WORK = 200_000_000
+"""The work of the search where no limit is set: some half a minute. Then the shortest period that is won counts."""
+
+_SHARE = 0.4
+"""The part of what is left of the budget that one game may take."""
+
+_WALKS = 2
+"""The longest period that is tried, for each place: walks along all ways there and back, with all events on the way."""
+
+_LIMIT_HIT = 5
+"""The exit status of errors at a limit."""
+
+
+def without_period(scenario: Scenario) -> Tuple[Patrol, ...]:
+    """The patrols whose period is to be found."""
+    return tuple(each for each in scenario.safety if isinstance(each, Patrol) and each.every is None)
+
+
+def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> Scenario:
+    """The scenario with this period, in its text as well, for all patrols without one.
+
+    `least`: nothing below it can be promised, where that is known.
+    """
+    given: Dict[Span, List[Patrol]] = {}
+    for patrol in without_period(scenario):
+        given.setdefault(patrol.span, []).append(replace(patrol, every=every, least=least))
+    text = scenario.text
+    for span, patrols in sorted(given.items(), key=lambda item: (item[0].line, item[0].column), reverse=True):
+        text = _rewritten(text, span, patrols)
+    changed = {(each.span, each.place): each for patrols in given.values() for each in patrols}
+    safety = tuple(
+        changed.get((each.span, each.place), each) if isinstance(each, Patrol) else each for each in scenario.safety
+    )
+    return replace(scenario, safety=safety, text=text)
+
+
+def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
+    """The text with the statement of these patrols written anew, on as many lines as before."""
+    lines = text.split("\n")
+    begin = sum(len(line) + 1 for line in lines[: span.line - 1]) + span.column - 1
+    end = sum(len(line) + 1 for line in lines[: span.end_line - 1]) + span.end_column - 1
+    words = patrol_text(patrols[0], (patrol.place.name for patrol in patrols))
+    return f"{text[:begin]}objective: {words}" + "\n" * text.count("\n", begin, end) + text[end:]
+
+
+def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Scenario:
+    """The scenario with the least period that can be promised under these rules in place of each that is missing.
+
+    Where the search stops early, with the shortest that is known to be won; where none is, with the longest that is
+    tried, and a `least` above it where that is lost. Of the options limits, engine and progress count.
+    """
+    if not without_period(scenario):
+        return scenario
+    limits = options.limits
+    limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
+    budget = Budget(limits, options.progress, options.engine, whole=options.whole)
+    low, high, known = 2, longest(scenario), False  # nothing below `low` is won; `high` is, where it is `known`
+    floor, probe = low, min(high, _farthest(scenario))
+    while floor <= high and not (known and floor == high) and not budget.used_up:
+        won = _won(scenario, probe, rules, budget)
+        if won:
+            high, known = probe, True
+        else:
+            floor = probe + 1  # not lost for sure, if nobody knows; but what is longer is won sooner
+            low = low if won is None else floor
+        probe = (floor + high) // 2 if known else min(2 * probe, high)
+    return with_period(scenario, high, low)
+
+
+def longest(scenario: Scenario) -> int:
+    """The longest period that is tried, in time units."""
+    moves = sum(window[1] + 2 for agent in scenario.agents for window in scenario.movements(agent).values())
+    work = sum(event.window[1] + 2 for event in scenario.events if event.window is not None)
+    waiting = sum(assumption.time for assumption in scenario.assumptions if isinstance(assumption, (Leaves, Waits)))
+    places = Counter(patrol.span for patrol in without_period(scenario))
+    return max(2, _WALKS * max(places.values(), default=1) * (moves + work + waiting))
+
+
+def _farthest(scenario: Scenario) -> int:
+    """The longest movement of all: where the search begins."""
+    return max((window[1] for agent in scenario.agents for window in scenario.movements(agent).values()), default=2)
+
+
+def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Optional[bool]:
+    """Whether that period can be promised; None: not decided within the budget."""
+    tried = with_period(scenario, every)
+    try:
+        return budget.verdict(played(translate(tried), rules), scenario_objective(tried), rules.reaction, _SHARE).won
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None

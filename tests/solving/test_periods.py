@@ -1,0 +1,122 @@
+"""The least period of patrols that name none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from pursue_gen.language import parse
+from pursue_gen.language.checks import check
+from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.wording import objective_words, periods_found
+from pursue_gen.solving.inputs import settled
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.periods import least_period, longest, with_period, without_period
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import DEFAULT, IDEAL
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.synthesis.limits import Limits
+from tests.authoring.commands import pursue
+
+from .verdicts import is_won
+
+ROOMS = """\
+poi "gate"
+poi "hall"
+poi "vault"
+connect gate and hall distance 2
+connect hall and vault distance 3
+agent "bot1" controllable mobile 1 location gate
+agent "bot2" controllable mobile 2 location vault
+"""
+
+
+def rooms(*objectives: str) -> Scenario:
+    return parse(ROOMS + "\n".join(f"objective: {each}" for each in objectives) + "\n", "x.pur", "x")
+
+
+def period(scenario: Scenario) -> int:
+    (found,) = {each.period for each in scenario.safety if isinstance(each, Patrol) and each.least is not None}
+    return found
+
+
+@pytest.mark.parametrize("objective", ["patrol gate, hall by any robot", "patrol gate, vault, hall in order by bot1"])
+def test_the_period_that_is_found_is_won_and_the_next_shorter_one_is_lost(objective: str) -> None:
+    found = least_period(rooms(objective), DEFAULT)
+    every = period(found)
+    assert is_won(found.text)
+    assert f"every {every} by" in found.text
+    assert not is_won(found.text.replace(f"every {every} by", f"every {every - 1} by"))
+    assert periods_found(found)[0].startswith("The least period that can be promised for the patrol by ")
+    assert solve_scenario(found, DEFAULT).strategy.blocks
+
+
+def test_it_depends_on_the_game() -> None:
+    patrol = rooms("patrol gate, vault by bot1")
+    assert period(least_period(patrol, IDEAL)) < period(least_period(patrol, DEFAULT))
+    assert settled(patrol, SolveRequest(reaction="0", ends="controllable")) == least_period(patrol, IDEAL)
+
+
+def test_several_patrols_get_one_period_and_others_keep_theirs() -> None:
+    patrols = ("patrol gate, hall by bot1", "patrol vault by bot2", "patrol gate every 99 by bot1")
+    found = least_period(rooms(*patrols), DEFAULT)
+    assert [each.every for each in found.safety if isinstance(each, Patrol)].count(99) == 1
+    assert period(found) > 2
+    assert without_period(found) == ()
+
+
+def test_the_text_with_the_period_means_the_same_and_keeps_its_lines() -> None:
+    text = ROOMS + "objective: patrol gate,\n  vault // far away\n  by any robot objective: patrol hall by bot1\n"
+    found = with_period(parse(text, "x.pur", "x"), 40)
+    assert found.text.count("\n") == text.count("\n")
+    again = parse(found.text, "x.pur", "x")
+    assert [(p.place.name, p.every, p.who.robots) for p in again.safety if isinstance(p, Patrol)] == [
+        ("gate", 40, True), ("vault", 40, True), ("hall", 40, False),
+    ]  # fmt: skip
+    assert again.safety[2].span.line == parse(text, "x.pur", "x").safety[2].span.line
+
+
+def test_where_nothing_can_be_promised_that_is_said() -> None:
+    walled = rooms("patrol gate, vault by bot1", "avoid bot1 at hall")
+    found = least_period(walled, DEFAULT)
+    assert period(found) == longest(walled)
+    assert periods_found(found, won=False) == [
+        f"No period up to {longest(walled)} units can be promised for the patrol by bot1."
+    ]
+
+
+def test_a_search_that_stops_early_says_what_is_known() -> None:
+    asked = rooms("patrol gate, vault, hall by any robot")
+    limits = [Limits(work=work) for work in (1, 8_000, 64_000, 512_000)]
+    stopped = [least_period(asked, DEFAULT, SolveOptions(limits=limit)) for limit in limits]
+    least = period(least_period(asked, DEFAULT))
+    for found in stopped:
+        (known, *_) = [each for each in found.safety if isinstance(each, Patrol)]
+        assert known.least is not None and known.least <= least <= known.period
+    assert f"is at most {longest(asked)} units; nothing below 2 can be promised." in periods_found(stopped[0])[0]
+
+
+def test_the_commands_tell_it_and_a_workspace_has_it(tmp_path: Path) -> None:
+    file = tmp_path / "rooms.pur"
+    file.write_text(ROOMS + "objective: patrol gate, hall by bot1\n", encoding="utf-8")
+    every = period(least_period(rooms("patrol gate, hall by bot1"), DEFAULT))
+    solved = pursue("solve", file)
+    assert f"The least period that can be promised for the patrol by bot1 is {every} units." in solved.err
+    assert json.loads(pursue("solve", file, "--json").out)["period"] == {"every": every, "least": every}
+    made = pursue("ws", file, "-o", tmp_path / "ws")
+    assert made.status == 0, made.err
+    game = (tmp_path / "ws" / "src" / "observer" / "config" / "game.yaml").read_text(encoding="utf-8")
+    assert f"patrol gate, hall every {every} by bot1" in game
+    assert pursue("tga", file, "-o", tmp_path).status == pursue("sim", file, "--runs", 1, "--until", 40).status == 0
+    assert pursue("play", file, stdin=b"").status == 0
+
+
+def test_the_scenario_says_that_the_period_is_the_least() -> None:
+    asked = rooms("patrol gate by bot1")
+    assert objective_words(asked) == ["bot1 is at gate as often as can be promised."]
+    assert objective_words(least_period(asked, DEFAULT)) == [
+        "bot1 is at gate at least every 2 units, the least that can be promised."
+    ]
+    assert check(asked) == ()
