@@ -76,7 +76,7 @@ def _shortest(scenario: Scenario, start: str) -> Mapping[str, float]:
 
 def _typical(scenario: Scenario) -> float:
     """The mean length of a connection: the gap between parts that are not connected."""
-    lengths = [way.distance for way in scenario.connections]
+    lengths = [float(way.distance) for way in scenario.connections]
     return sum(lengths) / len(lengths) if lengths else 1.0
 
 

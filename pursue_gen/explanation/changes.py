@@ -14,6 +14,7 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
 from pursue_gen.language.conditions import conditions_of
+from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
 from pursue_gen.language.wording import events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
@@ -260,7 +261,7 @@ def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
         return f"a deadline of {k} instead of {deadline} for {answer}"
 
     furthest = deadline + max(deadline, 2 * _all_time(scenario))
-    later = range(deadline + 1, furthest + 1)
+    later = whole_above(deadline, furthest)
     return _number("deadline", answer, "a later deadline", deadline, later, make, say, safety.span, 1)
 
 
@@ -281,7 +282,7 @@ def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
     def say(k: int) -> str:
         return f"a patrol of {place} every {k} instead of {every}"
 
-    rarer = range(every + 1, every + max(every, 2 * _all_time(scenario)) + 1)
+    rarer = whole_above(every, every + max(every, 2 * _all_time(scenario)))
     return _number("deadline", place, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
 
 
@@ -298,11 +299,11 @@ def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> _Knob:
     def say(k: int) -> str:
         return f"{goal} after {k} instead of {reach.after}"
 
-    earlier = range(reach.after - 1, -1, -1)
+    earlier = whole_below(reach.after, 0)
     return _number("after", goal, f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
 
 
-def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: int) -> _Knob:
+def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number) -> _Knob:
     goal = events_words(reach)
 
     def make(k: int) -> Variant:
@@ -311,7 +312,7 @@ def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: int) ->
     def say(k: int) -> str:
         return f"{goal} within {k} instead of {within}"
 
-    later = range(within + 1, within + max(within, 2 * _all_time(scenario)) + 1)
+    later = whole_above(within, within + max(within, 2 * _all_time(scenario)))
     return _number("within", goal, f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
 
 
@@ -328,7 +329,7 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Kn
         return f"a {word} {agent.name}, mobile {k} instead of {pace}"
 
     word = "faster" if agent.controllable else "slower"
-    values = range(pace - 1, 0, -1) if agent.controllable else range(pace + 1, pace * SLOWER + 1)
+    values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
     if values:
         yield _number("agent", agent.name, f"a {word} {agent.name}", pace, values, make, say, agent.span, 2)
 
@@ -351,11 +352,11 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
             yield _number("duration", event.name, f"a longer {event.name}", 0, (1,), make, say, event.span, 0)
         return
     if duration > 1:
-        values = range(duration - 1, 0, -1)
+        values = whole_below(duration, 1)
         yield _number("duration", event.name, f"a shorter {event.name}", duration, values, make, say, event.span, 2)
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     if doers and not any(agent.controllable for agent in doers):
-        longer = range(duration + 1, max(duration * 2, 2 * _all_time(scenario)) + 1)
+        longer = whole_above(duration, max(duration * 2, 2 * _all_time(scenario)))
         yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
 
 
@@ -386,7 +387,7 @@ def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) ->
         return f"{ends} at distance {k} instead of {connection.distance}"
 
     if connection.distance > 1:
-        values = range(connection.distance - 1, 0, -1)
+        values = whole_below(connection.distance, 1)
         label = f"a shorter way between {ends}"
         yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
     if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
@@ -431,7 +432,7 @@ def _number(
     what: str,
     name: str,
     label: str,
-    before: int,
+    before: Number,
     values: Sequence[int],
     make: Callable[[int], Variant],
     say: Callable[[int], str],
@@ -447,10 +448,10 @@ def _number(
 def _reactions(reaction: Fraction) -> Tuple[str, ...]:
     """Nine tenths of it, eight tenths, … and none; none alone where the tenths would be too fine to ask for."""
     tenths = [reaction * k / 10 for k in range(9, -1, -1)]
-    return tuple(str(tenth) for tenth in tenths if tenth.denominator <= _FINEST)
+    return tuple(decimal_text(tenth) for tenth in tenths if tenth.denominator <= _FINEST)
 
 
-def _all_time(scenario: Scenario) -> int:
+def _all_time(scenario: Scenario) -> Number:
     """More than it takes to do everything once and to go each way in both directions, waiting included."""
     slowest = max((agent.mobile or 0 for agent in scenario.agents), default=0)
     working = sum((event.latest or event.duration or 0) + 2 for event in scenario.events)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
 from pursue_gen.language.wording import events_words, listed, objective_text, units
-from pursue_gen.synthesis.plan_text import constraint_texts, number_text
+from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
@@ -85,7 +86,7 @@ class Words:
             if c.bound == 0:
                 return f"{left} and {right} were at the same moment"
             early, late = (left, right) if c.bound > 0 else (right, left)
-            return f"{early} was exactly {units(number_text(abs(c.bound)))} before {late}"
+            return f"{early} was exactly {units(decimal_text(abs(c.bound)))} before {late}"
         phrase = self._bounded(c, left, right)
         return phrase if back is None else f"{phrase}, and {self._bounded(back, right, left)}"
 
@@ -93,7 +94,7 @@ class Words:
     def _bounded(c: Constraint, left: str, right: str) -> str:
         if c.bound == 0:
             return f"{left} was {'later than' if c.strict else 'no earlier than'} {right}"
-        amount = units(number_text(abs(c.bound)))
+        amount = units(decimal_text(abs(c.bound)))
         if c.bound > 0:
             return f"{left} was {'less than' if c.strict else 'at most'} {amount} before {right}"
         return f"{right} was {'more than' if c.strict else 'at least'} {amount} before {left}"
@@ -156,14 +157,14 @@ def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:
     """`more than 1 and at most 5 units`."""
     parts, amount = [], ""
     if lower is not None and upper is not None and lower.bound == -upper.bound:
-        return f"exactly {units(number_text(upper.bound))}" if upper.bound else "right"
+        return f"exactly {units(decimal_text(upper.bound))}" if upper.bound else "right"
     if lower is not None and upper is None and lower.bound == 0:
         return "some time"
     if lower is not None:
-        amount = number_text(-lower.bound)
+        amount = decimal_text(-lower.bound)
         parts.append(f"{'more than' if lower.strict else 'at least'} {amount}")
     if upper is not None:
-        amount = number_text(upper.bound)
+        amount = decimal_text(upper.bound)
         if upper.bound == 0:
             return "right"
         parts.append(f"{'less than' if upper.strict else 'at most'} {amount}")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil, floor
 from typing import Callable, Iterator, Sequence
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.checks import MOST_TIMES
+from pursue_gen.language.numbers import Number, whole_above, whole_below
 from pursue_gen.language.scenario import Event, Scenario, Travel
 
 SLOWER = 32
@@ -23,7 +25,7 @@ class NumberChange:
     what: str
     name: str
     label: str
-    before: int
+    before: Number
     values: Sequence[int]
     make: Callable[[int], Scenario]
     say: Callable[[int], str]
@@ -36,22 +38,22 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
         return
     name, span, (low, high) = event.name, event.span, event.window
 
-    def make(earliest: int, latest: int) -> Scenario:
+    def make(earliest: Number, latest: Number) -> Scenario:
         changed = replace(event, duration=earliest, latest=latest)
         return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
 
-    def say(earliest: int, latest: int) -> str:
+    def say(earliest: Number, latest: Number) -> str:
         return f"{name} lasting {earliest} to {latest} instead of {low} to {high}"
 
     doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
     if high - low > 1:
         yield NumberChange(
-            "latest", name, f"a {name} that ends earlier", high, range(high - 1, low, -1),
+            "latest", name, f"a {name} that ends earlier", high, whole_below(high, floor(low) + 1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
         yield NumberChange(
-            "earliest", name, f"a {name} that ends later", low, range(low + 1, high),
+            "earliest", name, f"a {name} that ends later", low, whole_above(low, ceil(high) - 1),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
@@ -61,22 +63,22 @@ def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]
     low, high = travel.window
     name, (a, b), span = travel.agent.name, travel.way, travel.span
 
-    def make(earliest: int, latest: int) -> Scenario:
+    def make(earliest: Number, latest: Number) -> Scenario:
         changed = replace(travel, earliest=earliest, latest=latest)
         return replace(scenario, travels=tuple(changed if t == travel else t for t in scenario.travels))
 
-    def say(earliest: int, latest: int) -> str:
+    def say(earliest: Number, latest: Number) -> str:
         return f"{name} going from {a} to {b} in {earliest} to {latest} instead of {low} to {high}"
 
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
             yield NumberChange(
-                "travel", name, f"{name} going faster from {a} to {b}", high, range(high - 1, 0, -1),
+                "travel", name, f"{name} going faster from {a} to {b}", high, whole_below(high, 1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
         yield NumberChange(
-            "travel", name, f"{name} going slower from {a} to {b}", low, range(low + 1, SLOWER * max(low, 1) + 1),
+            "travel", name, f"{name} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
 

@@ -30,7 +30,6 @@ from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
-from pursue_gen.zones.dbm import constant
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
 
@@ -351,7 +350,7 @@ class _CounterPlayer:
             k
             for k, automaton in enumerate(self._game.automata)
             for i, bound in automaton.invariants[here.state.locations[k]]
-            if constant(bound) == here.clocks[i - 1] + room
+            if self._game.time(bound) == here.clocks[i - 1] + room
         )
         moves = (move for move in joint_moves(self._game, here.state) if not move.controllable)
         moves = (move for move in moves if not move.changes_nothing)

@@ -17,7 +17,7 @@ from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge
-from pursue_gen.zones.dbm import constant, is_strict
+from pursue_gen.zones.dbm import is_strict
 
 Choice = Tuple[JointMove, Fraction]
 """A move and after what delay it is decided."""
@@ -72,7 +72,7 @@ class Window:
 
 def longest(game: Game, here: Position) -> Optional[Fraction]:
     """How long time may pass in a position; None: for ever."""
-    rooms = [constant(bound) - here.clocks[i - 1] for i, _, bound in invariant(game, here.state)]
+    rooms = [game.time(bound) - here.clocks[i - 1] for i, _, bound in invariant(game, here.state)]
     return min(rooms) if rooms else None
 
 
@@ -82,9 +82,9 @@ def window(game: Game, here: Position, move: JointMove) -> Window:
     result = Window()
     for i, j, bound in (*invariant(game, here.state), *move.bounds, *entered):
         if j == 0:
-            result = result.at_most(constant(bound) - here.clocks[i - 1], is_strict(bound))
+            result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
         else:
-            result = result.at_least(-constant(bound) - here.clocks[j - 1], is_strict(bound))
+            result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
     return result
 
 

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import State
 from pursue_gen.synthesis.limits import NO_LIMITS
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
-from pursue_gen.zones.scale import common_denominator
+from pursue_gen.tga.scale import common_denominator, scaled
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
 _HORIZON = "@horizon"
@@ -65,24 +66,6 @@ class PositionSolver:
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
             self._known[key] = not self.budget.verdict(begun, self._objective, self._reaction * scale).won
         return self._known[key]
-
-
-def scaled(network: Network, scale: int) -> Network:
-    """The network with all times multiplied."""
-
-    def bounds(old: Sequence[ClockBound]) -> Tuple[ClockBound, ...]:
-        return tuple(replace(bound, bound=bound.bound * scale) for bound in old)
-
-    automata = tuple(
-        replace(
-            automaton,
-            locations=tuple(replace(place, invariant=bounds(place.invariant)) for place in automaton.locations),
-            edges=tuple(replace(edge, guard=replace(edge.guard, clocks=bounds(edge.guard.clocks)))
-                        for edge in automaton.edges),
-        )
-        for automaton in network.automata
-    )
-    return replace(network, automata=automata)
 
 
 def with_horizon(network: Network, horizon: int) -> Network:
@@ -159,8 +142,8 @@ def _prologue(clocks: Mapping[str, int]) -> Automaton:
     return Automaton(_PROLOGUE, tuple(locations), locations[0].name, tuple(edges))
 
 
-def _largest_constants(network: Network) -> Dict[str, int]:
-    largest: Dict[str, int] = {}
+def _largest_constants(network: Network) -> Dict[str, Number]:
+    largest: Dict[str, Number] = {}
     for automaton in network.automata:
         bounds = [bound for place in automaton.locations for bound in place.invariant]
         bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]

@@ -50,8 +50,8 @@ def _number(assumption: Assumption) -> Optional[Diagnostic]:
         message = f"at_most {assumption.times}: expected {MOST_TIMES} or less, as each time is counted"
         hint = "write a smaller number, or how long it waits: waits 5 between"
         return error("PML251", message, assumption.span, hint)
-    if isinstance(assumption, Waits) and assumption.time < 1:
-        message = "waits 0 assumes nothing: expected 1 or more"
+    if isinstance(assumption, Waits) and assumption.time <= 0:
+        message = "waits 0 assumes nothing: expected more than 0"
         return error("PML251", message, assumption.span, "write the time, or delete the assumption")
     if isinstance(assumption, Leaves) and assumption.time < SHORTEST_STAY:
         message = f"within {assumption.time} is too short: whoever arrives rests for 1 time unit before it can set off"

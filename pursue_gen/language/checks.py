@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
@@ -12,6 +13,7 @@ from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
+from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
 from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
@@ -55,7 +57,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
     findings += check_objectives(scenario)
-    for part in (_numbers, _connections, _travels, _states, _agents, _objectives, _order):
+    for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if not whole:
@@ -100,12 +102,12 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 
 def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
     for way in scenario.connections:
-        if way.distance < 1:
+        if way.distance <= 0:
             message = f"the way from {way.a} to {way.b} has no length"
-            yield error("PML140", message, way.span, "write distance 1 or more")
+            yield error("PML140", message, way.span, "write distance and a number above 0")
     for event in scenario.events:
-        if event.duration is not None and event.duration < 1 and event.latest is None:
-            hint = "write duration 1 or more, or delete duration: then it takes no time"
+        if event.duration is not None and event.duration <= 0 and event.latest is None:
+            hint = "write duration and a number above 0, or delete duration: then it takes no time"
             yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
         if event.at_most is not None and not 1 <= event.at_most <= MOST_TIMES:
             message = f"{event.name} can happen at_most {event.at_most} times: expected 1 to {MOST_TIMES}"
@@ -117,25 +119,41 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
     for agent in scenario.agents:
         if agent.mobile is None:
             continue
-        if agent.mobile < 1:
-            hint = "mobile is the time per unit of distance: write mobile 1 or more, or delete it where nothing moves"
+        if agent.mobile <= 0:
+            hint = "mobile is the time per unit of distance: write a number above 0, or delete it where nothing moves"
             yield error("PML142", f"{agent.name} would take no time for any way", agent.span, hint)
         elif longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
     for safety in scenario.safety:
-        if isinstance(safety, Respond) and safety.deadline < 1:
-            message = "within 0 leaves no time to answer: expected 1 or more"
+        if isinstance(safety, Respond) and safety.deadline <= 0:
+            message = "within 0 leaves no time to answer: expected more than 0"
             yield error("PML143", message, safety.span, "write the time units that the answer may take")
         if isinstance(safety, Patrol) and safety.every is not None and safety.every < 2:
             message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
             yield error("PML143", message, safety.span, "write the time units between two visits")
 
 
-def _window(name: str, low: int, high: int, word: str, span: Span) -> Iterator[Diagnostic]:
+def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Ways on which an agent needs a time with too many digits after the point."""
+    for agent in scenario.agents:
+        if not isinstance(agent.mobile, Fraction):  # then no time has more digits than the author wrote
+            continue
+        for (a, b), (time, _) in scenario.movements(agent).items():
+            if not is_fine(time):
+                digits = f"more than {MOST_DIGITS} digits after the point"
+                message = f"{agent.name} needs {time} time units from {a} to {b}: {digits}"
+                rounded = exact(max(round(Fraction(time), MOST_DIGITS), Fraction(1, 10**MOST_DIGITS)))
+                hint = f"round its mobile or the distance, or write travel {agent.name} from {a} to {b} takes {rounded}"
+                yield error("PML281", message, agent.span, hint)
+                break
+
+
+def _window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
     if high <= low:
         message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
-        yield error("PML200", message, span, f"write the smaller number first: {word} {high} to {max(low, high + 1)}")
+        hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
+        yield error("PML200", message, span, hint)
 
 
 def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -148,8 +166,8 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
         moves = f"the way of {travel.agent.name} from {a} to {b}"
         if travel.latest is not None:
             yield from _window(moves, travel.earliest, travel.latest, "takes", travel.span)
-        elif travel.earliest < 1:
-            yield error("PML200", f"{moves} takes no time", travel.span, "write takes 1 or more, or takes 0 to 1")
+        elif travel.earliest <= 0:
+            yield error("PML200", f"{moves} takes no time", travel.span, "write a number above 0, or takes 0 to 1")
         if agent is not None and agent.mobile is None:
             message = f"{agent.name} does not move, so it does not go from {a} to {b}"
             yield error("PML201", message, travel.span, f"write mobile 1 behind {agent.name}, or delete this line")

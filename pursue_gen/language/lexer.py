@@ -35,6 +35,7 @@ class PursueLexer(RegexLexer):  # type: ignore[misc] # pygments has no types
             (words(_OPENS, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword.Declaration),
             (words(_VALUES, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword.Constant),
             (words(_OTHERS, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword),
+            (r"[+-]?\d+\.\d+(?![\w.])", Number.Float),
             (r"[+-]?\d+(?![\w.])", Number.Integer),
             (r"[^\W\d]\w*(-\w+)*", Name),
             (r"[():,]", Punctuation),

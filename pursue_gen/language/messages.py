@@ -7,6 +7,7 @@ from typing import Dict, FrozenSet, List, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.numbers import MOST_DIGITS
 from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
 
@@ -62,9 +63,11 @@ RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())
 """Those of them that cannot be names."""
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
-_OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a whole number", "POSE": "a pose comment"}
+_OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a number", "POSE": "a pose comment"}
 QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
 """Quotation marks that word processors and other languages put in place of straight ones."""
+_SHORT_NUMBER = 20
+"""Digits: numbers that a message repeats have fewer."""
 _STARTERS = tuple(KEYWORDS[kind] for kind in FORMS)
 _SHORT = frozenset(("any", "at", "no", "not", "robot"))
 """Words of conditions that too many other words resemble."""
@@ -161,6 +164,10 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return "to have something done write reach_objective: do …"
     if token.type in KEYWORDS and "WORD" in expected:
         return f"{text} is a word of the language and cannot be a name; choose another name"
+    if token.type == "COMMA" and [one.type for one in chunk[index - 1 : index + 2 : 2]] == ["NUMBER", "NUMBER"]:
+        whole, rest = str(chunk[index - 1]), str(chunk[index + 1])
+        if len(whole + rest) < _SHORT_NUMBER and (whole + rest).isdigit():
+            return _with_comma(whole, rest)
     if token.type == "NUMBER" and "WORD" in expected:
         return "a name begins with a letter"
     if token.type in ("AND", "OR") and expected & {"AND", "OR"} and statement != "RULE":
@@ -174,6 +181,13 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
     return _meant(chunk, index, expected)
+
+
+def _with_comma(whole: str, rest: str) -> str:
+    """What to write in place of two numbers with a comma between them."""
+    if len(rest) == MOST_DIGITS:  # it may group thousands
+        return f"decimals have a point, and thousands no sign: write {whole}.{rest} or {whole}{rest}"
+    return f"write {whole}.{rest}: decimals have a point"
 
 
 def name_meant(chunk: List[Token], index: int) -> Tuple[str, Token]:

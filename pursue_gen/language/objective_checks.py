@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Dict, Iterator, Set
 
 from pursue_gen.diagnostics import Diagnostic, error
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Avoid, Patrol, Reach, Scenario
 from pursue_gen.language.wording import objective_text
 
@@ -56,5 +57,5 @@ def _reach(reach: Reach) -> Iterator[Diagnostic]:
         yield error("PML224", message, reach.span, "write several lines: all reach_objectives have to be reached")
     if reach.within is not None and reach.within <= reach.after:
         message = f"within {reach.within} ends before it counts, which is later than {reach.after}"
-        hint = f"both count from the start of the mission: write within {reach.after + 1} or more"
+        hint = f"both count from the start of the mission: write within {exact(reach.after + 1)} or more"
         yield error("PML223", message, reach.span, hint)

@@ -14,7 +14,8 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, erro
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.condition_trees import condition_of
 from pursue_gen.language.conditions import Condition, Who
-from pursue_gen.language.messages import shown
+from pursue_gen.language.number_messages import no_count, no_number
+from pursue_gen.language.numbers import Number, is_fine, read_number
 from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
 
@@ -158,17 +159,20 @@ class _Builder:
     def _refs(self, tree: Any) -> Tuple[pml.Ref, ...]:
         return tuple(self._ref(child) for child in tree.children) if tree is not None else ()
 
-    def _number(self, token: Token) -> int:
+    def _number(self, token: Token) -> Number:
         """The token's value; 1 after a complaint."""
-        if token.isdigit() and token.isascii():
-            if len(token.lstrip("0")) <= len(str(MOST)) and int(token) <= MOST:
-                return int(token)
-            message = f"{shown(str(token), 20)} is too large: {MOST} is the largest number"
-            hint = "choose a larger unit"
-        else:
-            message = f"expected a whole number, found {shown(str(token))}"
-            hint = "write digits only; where halves or tenths matter, choose a smaller unit"
-        self.findings.append(error("PML014", message, span_of(token, self.file), hint))
+        value = read_number(token)
+        if value is not None and value <= MOST and is_fine(value):
+            return value
+        self.findings.append(no_number(token, value, MOST, span_of(token, self.file)))
+        return 1
+
+    def _count(self, token: Token) -> int:
+        """The token's value, which says how often; 1 after a complaint."""
+        value = read_number(token)
+        if isinstance(value, int) and value <= MOST:
+            return value
+        self.findings.append(no_count(token, value, MOST, span_of(token, self.file)))
         return 1
 
     def _poi(self, name: Token, pose: Optional[Token], span: Span) -> pml.Poi:
@@ -195,14 +199,14 @@ class _Builder:
             span_of(name, self.file),
             together is not None,
             latest,
-            None if most is None else self._number(most),
+            None if most is None else self._count(most),
             self._condition(only_if),
         )
 
     def _condition(self, tree: Any) -> Optional[Condition]:
         return None if tree is None else condition_of(tree, self._ref)
 
-    def _window(self, tree: Any) -> Tuple[int, Optional[int]]:
+    def _window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
         return self._number(low), None if high is None else self._number(high)
@@ -241,7 +245,7 @@ class _Builder:
         first, *rest = tree.children
         agent = self._ref(first)
         if tree.data == "at_most":
-            return pml.AtMost(agent, self._ref(rest[0]), self._number(rest[1]), span)
+            return pml.AtMost(agent, self._ref(rest[0]), self._count(rest[1]), span)
         if tree.data == "waits":
             return pml.Waits(agent, self._ref(rest[1]), self._number(rest[0]), span)
         if tree.data == "leaves":

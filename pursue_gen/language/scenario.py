@@ -7,6 +7,7 @@ from typing import Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition, Not, Who
+from pursue_gen.language.numbers import Number, exact
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Poi:
 
 @dataclass(frozen=True)
 class Connection:
-    """A way between two POIs; `distance` is a natural number of distance units (at least 1).
+    """A way between two POIs; `distance` is in distance units, more than 0.
 
     `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
     Agents set off only while `only_if` holds (None: always).
@@ -61,7 +62,7 @@ class Connection:
 
     a: str
     b: str
-    distance: int
+    distance: Number
     span: Span
     ends: Tuple[Span, Span]
     one_way: bool = False
@@ -73,13 +74,13 @@ class Connection:
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
 
 
-Window = Tuple[int, int]
+Window = Tuple[Number, Number]
 """Something ends later than the first time and at the second one at the latest (time units from its start)."""
 
 
-def _window(low: int, high: Optional[int]) -> Window:
+def _window(low: Number, high: Optional[Number]) -> Window:
     """The window of something for which the author wrote one number or two: one alone leaves one time unit."""
-    return low, low + 1 if high is None else high
+    return low, exact(low + 1) if high is None else high
 
 
 @dataclass(frozen=True)
@@ -95,10 +96,10 @@ class Event:
     name: str
     collaborative: bool
     location: Optional[Ref]
-    duration: Optional[int]
+    duration: Optional[Number]
     span: Span
     together: bool = False
-    latest: Optional[int] = None
+    latest: Optional[Number] = None
     at_most: Optional[int] = None
     only_if: Optional[Condition] = None
 
@@ -188,7 +189,7 @@ class Agent:
     name: str
     human: bool
     controllable: bool
-    mobile: Optional[int]
+    mobile: Optional[Number]
     location: Ref
     can_do: Tuple[Ref, ...]
     reacts_to: Tuple[Ref, ...]
@@ -209,8 +210,8 @@ class Travel:
     agent: Ref
     a: Ref
     b: Ref
-    earliest: int
-    latest: Optional[int]
+    earliest: Number
+    latest: Optional[Number]
     span: Span
 
     @property
@@ -230,7 +231,7 @@ class Respond:
 
     trigger: Ref
     response: Ref
-    deadline: int
+    deadline: Number
     span: Span
 
 
@@ -277,7 +278,7 @@ class Patrol:
     """
 
     place: Ref
-    every: Optional[int]
+    every: Optional[Number]
     who: Who
     span: Span
     order: Tuple[str, ...] = ()
@@ -299,9 +300,9 @@ class Reach:
     units from the start (None: without a deadline)."""
 
     events: Tuple[Ref, ...]
-    after: int
+    after: Number
     span: Span
-    within: Optional[int] = None
+    within: Optional[Number] = None
 
 
 StatedObjective = Union[Safety, Reach]
@@ -323,7 +324,7 @@ class Waits:
 
     agent: Ref
     event: Ref
-    time: int
+    time: Number
     span: Span
 
 
@@ -333,7 +334,7 @@ class Leaves:
 
     agent: Ref
     place: Ref
-    time: int
+    time: Number
     span: Span
 
 
@@ -411,7 +412,7 @@ class Scenario:
             return {}
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
         return {
-            way: own.get(way) or _window(connection.distance * agent.mobile, None)
+            way: own.get(way) or _window(exact(connection.distance * agent.mobile), None)
             for connection in self.connections
             for way in connection.directions
         }

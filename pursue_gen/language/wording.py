@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Iterator, List
 
 from pursue_gen.language.conditions import condition_text, condition_words
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import (
     Agent,
     Always,
@@ -171,7 +172,7 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
     return ", ".join(words)
 
 
-def window_words(low: int, high: int) -> str:
+def window_words(low: Number, high: Number) -> str:
     """Between which times something ends; a window of one time unit, which is the usual one, by its first time."""
     return str(low) if high == low + 1 else f"{low} to {high}"
 

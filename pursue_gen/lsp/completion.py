@@ -176,7 +176,7 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
         if token in expected and token not in names_hide:
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
-        yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a whole number", snippet=True)
+        yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a number", snippet=True)
     if "NAME" in expected and place.behind[0].type in DECLARED:
         example = _EXAMPLES[DECLARED[place.behind[0].type]]
         yield Completion(f'"{example}"', f'"${{1:{example}}}"', "NAME", "value", *span, "a new name", snippet=True)

@@ -9,6 +9,7 @@ from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.names import refs_of
+from pursue_gen.language.numbers import Number, exact, read_number
 from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
@@ -61,13 +62,14 @@ def hover(document: Document, offset: int) -> Optional[Hover]:
     if token.type in KEYWORDS:
         form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
-    if token.type == "NUMBER" and part is not None and token.isdigit() and len(token) <= len(str(MOST)):
-        text = _number(document.scenario, part, start, int(token))
+    number = read_number(token) if token.type == "NUMBER" else None
+    if number is not None and part is not None and number <= MOST:
+        text = _number(document.scenario, part, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
 
 
-def units(number: int) -> str:
+def units(number: Number) -> str:
     """`1 unit`, `2 units`."""
     return f"{number} unit{'' if number == 1 else 's'}"
 
@@ -239,23 +241,24 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     return lines
 
 
-def _number(scenario: Scenario, part: Statement, start: int, number: int) -> str:
+def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> str:
     """What the number at an offset of a statement means."""
     words = [t.type for t in part.tokens if (t.start_pos or 0) < start and t.type in KEYWORDS]
     word = words[-1] if words else ""
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
         lines = [f"A way of {units(number)} of distance.", ""]
-        times = [(agent.name, number * (agent.mobile or 0)) for agent in movers]
-        return "\n".join(lines + _listed([f"- {name} needs {lasts((time, time + 1))}" for name, time in times]))
+        times = [(agent.name, exact(number * (agent.mobile or 0))) for agent in movers]
+        return "\n".join(lines + _listed([f"- {name} needs {lasts((time, exact(time + 1)))}" for name, time in times]))
     if word in ("DURATION", "TAKES", "TO"):
         begins = next((t.start_pos or 0) for t in part.tokens if t.type in ("DURATION", "TAKES"))
-        numbers = [int(t) for t in part.tokens if t.type == "NUMBER" and t.isdigit() and (t.start_pos or 0) > begins]
-        return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else numbers[0] + 1))}."
+        written = (t for t in part.tokens if t.type == "NUMBER" and (t.start_pos or 0) > begins)
+        numbers = [value for value in map(read_number, written) if value is not None]
+        return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
     if word == "MOBILE":
         lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
-        times = [(f"{way.a} to {way.b}", way.distance * number) for way in scenario.connections]
-        ways = [f"- {name}: {lasts((time, time + 1))}" for name, time in times]
+        times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
+        ways = [f"- {name}: {lasts((time, exact(time + 1)))}" for name, time in times]
         return "\n".join(lines + _listed(ways))
     if word == "WITHIN" and part.kind == "ASSUME":
         return f"It has set off {units(number)} of time after it came, or after the start."

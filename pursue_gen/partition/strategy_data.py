@@ -8,8 +8,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Iterable, List, Union
 
+from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.partition.split import SubStrategy
-from pursue_gen.synthesis.plan_text import constraint_texts, number_text
+from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.names import OBJECTIVE, REACH
 from pursue_gen.tga.words import event_word
@@ -48,9 +49,9 @@ def cover_data(strategy: Strategy) -> Dict[str, Any]:
     return {"format": 1, **({"stages": stages} if stages else {}), "cover": cover}
 
 
-def number(value: Fraction) -> Union[int, float, str]:
+def number(value: Number) -> Union[int, float, str]:
     """The number as readers of YAML and JSON have it: a fraction that is no decimal stands as text, `1/3`."""
-    text = number_text(value)
+    text = decimal_text(value)
     return text if "/" in text else float(text) if "." in text else int(text)
 
 

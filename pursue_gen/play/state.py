@@ -27,7 +27,7 @@ from pursue_gen.synthesis.strategy import Command
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective, is_end
 from pursue_gen.tga.words import event_word
-from pursue_gen.zones.dbm import constant, is_strict
+from pursue_gen.zones.dbm import is_strict
 
 GRAIN = Fraction(1, 1000)
 """Time units after a moment that is itself just too early; moments that people name are multiples of it."""
@@ -42,7 +42,7 @@ ROBOTS, OTHERS, CHANCE = "robots", "others", "chance"
 
 @dataclass(frozen=True)
 class Setup:
-    """What stays the same: the scenario, its rules, the game (times in units: its scale is 1)."""
+    """What stays the same: the scenario, its rules, the game (without a reaction delay)."""
 
     scenario: Scenario
     rules: Rules
@@ -174,9 +174,9 @@ def own_window(setup: Setup, play: PlayState, move: JointMove) -> Window:
     result = Window()
     for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
         if j == 0:
-            result = result.at_most(constant(bound) - here.clocks[i - 1], is_strict(bound))
+            result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
         else:
-            result = result.at_least(-constant(bound) - here.clocks[j - 1], is_strict(bound))
+            result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
     return result
 
 
@@ -234,7 +234,7 @@ def overdue(setup: Setup, play: PlayState) -> Tuple[str, ...]:
         number
         for number, automaton in enumerate(game.automata)
         for clock, limit in automaton.invariants[here.state.locations[number]]
-        if constant(limit) == here.clocks[clock - 1]
+        if game.time(limit) == here.clocks[clock - 1]
     }
     able = {move.owner for move, open_ in open_moves(setup, play, False) if open_.holds(Fraction(0))}
     return tuple(game.automata[number].name for number in sorted(bound - able))

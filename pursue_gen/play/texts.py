@@ -83,10 +83,11 @@ def _lasting(setup: Setup, play: PlayState, number: int) -> str:
         return "" if doer is None else _lasting(setup, play, doer)
     clock, high = bounds[0]
     begun = play.now - here.clocks[clock - 1]
-    lows = [e.duration for e in (game.edges[k] for k in game.automata[number].edges) if e.source == place]
-    low = begun + max(lows, default=0)
+    ends = (game.edges[k] for k in game.automata[number].edges)
+    lows = [Fraction(edge.duration, game.scale) for edge in ends if edge.source == place]
+    low = begun + max(lows, default=Fraction(0))
     verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
-    return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + (high >> 1))}"
+    return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + game.time(high))}"
 
 
 def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:

@@ -146,8 +146,8 @@ class StrategyPlay:
         bounds = game.automata[move.owner].invariants[here.state.locations[move.owner]]
         if not bounds:
             return None
-        high = min(play.now + (bound >> 1) - here.clocks[clock - 1] for clock, bound in bounds)
-        lows = [play.now - (bound >> 1) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
+        high = min(play.now + game.time(bound) - here.clocks[clock - 1] for clock, bound in bounds)
+        lows = [play.now - game.time(bound) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
         low = max([*lows, Fraction(0)])
         name = self.setup.owner(move)
         number = sum(deed.agent == name for deed in play.deeds)

@@ -14,8 +14,8 @@ from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
-from pursue_gen.zones.scale import common_denominator, least_common_multiple
 
 INSTANTS = 4
 """Into so many parts a time unit is cut when instants just after another are explored (see `delays`)."""
@@ -243,7 +243,7 @@ def _zones_of(block: Block) -> Iterator[Zone]:
 
 def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:
     """What all bounds have to be multiplied by to be integers."""
-    return least_common_multiple([strategy.scale, common_denominator([reaction, *(c.bound for c in network.start)])])
+    return least_common_multiple([strategy.scale, common_denominator([reaction, *network.times])])
 
 
 def in_words(moves: Sequence[Move]) -> str:

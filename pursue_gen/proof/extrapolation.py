@@ -66,7 +66,7 @@ class MaxConstants:
             yield clock, bound >> 1
         for move in moves:
             for clock_bound in move.moves[0].edge.guard.clocks:
-                yield self._arena.clock[clock_bound.clock], clock_bound.bound * self._arena.scale
+                yield self._arena.clock[clock_bound.clock], int(clock_bound.bound * self._arena.scale)
 
     def _spread(self) -> None:
         """What a clock is compared with in a state counts before it, but for clocks that the step into it resets."""

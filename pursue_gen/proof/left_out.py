@@ -18,8 +18,8 @@ from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, start_of
+from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, raw
-from pursue_gen.zones.scale import common_denominator
 
 
 def named_part(network: Network, strategy: Strategy) -> Network:
@@ -165,7 +165,7 @@ def _why_it_may_stop_time(
     own = tuple(sorted(clocks_of(automaton)))
     start = start_of(network, own)
     alone = Network(own, network.variables, network.channels, (automaton,), start)
-    arena = Arena(alone, common_denominator([constraint.bound for constraint in start]))
+    arena = Arena(alone, common_denominator(alone.times))
     for name in sorted(places):
         if name not in stays:
             continue

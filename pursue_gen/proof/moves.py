@@ -48,7 +48,8 @@ class Situation:
 
 
 class Arena:
-    """The discrete states of a network, worked out when they are asked for; constants are multiplied by `scale`.
+    """The discrete states of a network, worked out when they are asked for; constants are multiplied by `scale`, with
+    which all times of the network are whole.
 
     A move that changes no location, variable or clock is none, unless `idle_moves` is set: nothing has happened,
     however often it is made. Raises PursueError where the rules of the game do not cover the network.
@@ -129,7 +130,7 @@ class Arena:
     def limits(self, bounds: Iterable[ClockBound]) -> Iterable[Limit]:
         """The bounds of a guard or an invariant as limits on differences, with scaled constants."""
         for bound in bounds:
-            x, c = self.clock[bound.clock], bound.bound * self.scale
+            x, c = self.clock[bound.clock], int(bound.bound * self.scale)
             if bound.op in ("<", "<=", "=="):
                 yield x, 0, raw(c, bound.op == "<")
             if bound.op in (">", ">=", "=="):

@@ -24,8 +24,8 @@ from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
+from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
-from pursue_gen.zones.scale import common_denominator
 
 Bound = Tuple[int, int, int]
 
@@ -99,11 +99,11 @@ class _Units:
         self.names = (None, *network.clocks)
         self._index = {name: k for k, name in enumerate(self.names)}
         bounds = (c.bound for block in strategy.blocks for zone in _zones(block) for c in zone)
-        self.scale = common_denominator([reaction, *bounds])
+        self.scale = common_denominator([reaction, *network.times, *bounds])
         self.late = int(reaction * self.scale)
         self._invariants = {
             (automaton.name, location.name): tuple(
-                (self._index[b.clock], 0, raw(b.bound * self.scale, b.op == "<")) for b in location.invariant
+                (self._index[b.clock], 0, raw(int(b.bound * self.scale), b.op == "<")) for b in location.invariant
             )
             for automaton in network.automata
             for location in automaton.locations

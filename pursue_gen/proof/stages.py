@@ -24,6 +24,7 @@ from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
 from pursue_gen.tga.ending import REACHED, ending_at, is_value, owner_of
 from pursue_gen.tga.network import Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
+from pursue_gen.tga.scale import common_denominator
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,8 @@ def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[
 
 def _ends(part: Network, milestone: Place, blocks: Iterable[Block], starts: Sequence[State]) -> List[State]:
     """The discrete states at the milestone to which the commands of the blocks may lead, whatever the clocks are."""
-    arena = Arena(replace(part, start=()), 1)
+    timeless = replace(part, start=())
+    arena = Arena(timeless, common_denominator(timeless.times))
     names = [*(automaton.name for automaton in part.automata), *(name for name, _ in part.variables)]
     number = names.index(milestone[0])
     said: Dict[State, List[Block]] = {}

@@ -8,11 +8,12 @@ from itertools import permutations
 from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.replanning.request import Request, wrong
 from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.names import agent_clock, agent_position, going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
-from pursue_gen.zones.scale import least_common_multiple
+from pursue_gen.tga.scale import common_denominator, least_common_multiple
 
 T = TypeVar("T")
 
@@ -47,7 +48,7 @@ def network_from(network: Network, request: Request) -> Network:
     automata = [_without_company(automaton, absent) for automaton in automata]
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
-    grid = least_common_multiple((reaction.denominator, _FINEST))
+    grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
     return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
 
 
@@ -161,7 +162,7 @@ def _holds(bound: ClockBound, clocks: Mapping[str, Fraction]) -> bool:
 
 def _beyond(network: Network, reaction: int) -> Dict[str, Fraction]:
     """Per clock a value above all that it is compared with, when commands take effect up to the reaction later."""
-    largest = {name: 0 for name in network.clocks}
+    largest: Dict[str, Number] = {name: 0 for name in network.clocks}
     for automaton in network.automata:
         bounds = [bound for location in automaton.locations for bound in location.invariant]
         bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]

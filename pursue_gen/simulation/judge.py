@@ -134,7 +134,8 @@ class Judge:
         if not matching:
             self._problem(f"{what} is no step of the network")
             return
-        move = next((m for m in matching if m.enabled and inside(m.enabled, self._point(clocks))), None)
+        point = self._point(clocks)
+        move = next((m for m in matching if m.enabled and inside(m.enabled, self._arena.scale, point)), None)
         if move is None:
             move = matching[0]
             self._off_model(move, clocks, what)
@@ -254,11 +255,14 @@ class Judge:
         return (0.0, *(clocks[clock] for clock in self._arena.network.clocks))
 
 
-def inside(zone: Dbm, point: Tuple[float, ...]) -> bool:
-    """True where the point (0, clocks in order) is in the zone, or not farther beside it than clocks are exact."""
+def inside(zone: Dbm, scale: int, point: Tuple[float, ...]) -> bool:
+    """True where the point (0, clocks in order) is in the zone, or not farther beside it than clocks are exact.
+
+    The zone's bounds have that scale.
+    """
     dim = zone.dim
     return all(
-        bound >= INF or point[k // dim] - point[k % dim] <= constant(bound) + EPSILON
+        bound >= INF or point[k // dim] - point[k % dim] <= constant(bound) / scale + EPSILON
         for k, bound in enumerate(zone.m)
     )
 

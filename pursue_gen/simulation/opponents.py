@@ -52,20 +52,20 @@ def options(stage: Stage, state: State, point: Tuple[float, ...]) -> List[Option
         first = move.moves[0]
         if move.controllable or is_end(first.edge) or first.automaton not in stage.opponents or move.enabled is None:
             continue
-        window = _window(move.enabled, point)
+        window = _window(move.enabled, stage.arena.scale, point)
         if window is not None:
             found.append(Option(first.automaton, event_word(first.automaton, first.edge), move, *window))
     return found
 
 
-def _window(zone: Dbm, point: Tuple[float, ...]) -> Optional[Tuple[float, float]]:
-    """The first and the last delay after which the point is in the zone, as time passes."""
+def _window(zone: Dbm, scale: int, point: Tuple[float, ...]) -> Optional[Tuple[float, float]]:
+    """The first and the last delay after which the point is in the zone (of that scale), as time passes."""
     dim, first, last = zone.dim, 0.0, float("inf")
     for k, bound in enumerate(zone.m):
         i, j = divmod(k, dim)
         if i == j or bound >= INF:
             continue
-        room = constant(bound) - (point[i] - point[j])
+        room = constant(bound) / scale - (point[i] - point[j])
         if i == 0:
             first = max(first, -room + (FIRST if is_strict(bound) and room <= 0 else 0.0))
         elif j == 0:

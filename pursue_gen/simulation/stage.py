@@ -9,6 +9,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.moves import Arena
 from pursue_gen.simulation.commands import Commands, commands_of
 from pursue_gen.solving.solution import Solution
+from pursue_gen.tga.scale import common_denominator
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from pursue_runtime.model import Model
@@ -72,7 +73,7 @@ def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) ->
         reports=tuple(data["UI/ui.yaml"]["reports"]),
         request=data.get("observer/game.yaml"),
         reaction=float(won.reaction),
-        arena=Arena(won.network, 1, idle_moves=True),
+        arena=Arena(won.network, common_denominator(won.network.times), idle_moves=True),
         commands=commands_of(won.strategy),
     )
 

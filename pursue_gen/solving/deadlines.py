@@ -9,14 +9,14 @@ from typing import FrozenSet, Optional, Tuple
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import with_counter, with_deadline, worst_case
-from pursue_gen.solving.least_time import Faster, Guarantee, bounds, scaled, unscaled
+from pursue_gen.solving.least_time import Faster, Guarantee, bounds, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.solution import Solution, with_clocks_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Network, Objective
-from pursue_gen.zones.scale import least_common_multiple
+from pursue_gen.tga.scale import least_common_multiple, scaled
 
 STATES = 20_000
 """Symbolic states of the checker that a worst-case time may take."""

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, warning
 from pursue_gen.files import read_text
+from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played, rules_text
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import UNDECIDED
 from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.scale import common_denominator, scaled
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,7 @@ def trials(
     done = []
     for rules in games:
         game = played(network, rules)
-        strategy = read_plan(text, game, file)
+        strategy = _read(text, game, file)
         try:
             left = options.since(start)
             proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
@@ -68,6 +72,19 @@ def trials(
         done.append(Trial(rules, Solution(game, objective, proven, rules.reaction, rules=rules)))
         break
     return tuple(done)
+
+
+def _read(text: str, network: Network, file: str) -> Strategy:
+    """The strategy in a plan, in times of the scenario or in those of its TGA.xml, where decimals are multiplied."""
+    factor = common_denominator(network.times)
+    try:
+        return read_plan(text, network, file)
+    except PursueError:
+        if factor == 1:
+            raise
+        with suppress(PursueError):
+            return unscaled(read_plan(text, scaled(network, factor), file), network, factor)
+        raise
 
 
 def try_plan(

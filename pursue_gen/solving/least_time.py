@@ -28,8 +28,8 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import compile_game
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.time_bounds import least_time
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
-from pursue_gen.zones.scale import least_common_multiple
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.scale import common_denominator, least_common_multiple, scaled
 
 WORK = 600_000_000
 """The work of the search where no limit is set: some two minutes. Then the best strategy found so far counts."""
@@ -93,7 +93,7 @@ def bounds(network: Network, objective: Objective, reaction: Fraction, worst: Op
     """What is known of v at once, with a strategy that takes `worst`."""
     game = compile_game(network, objective, reaction)
     least = least_time(game)
-    unit, low = reaction.denominator, 0 if least is None else least
+    unit, low = game.scale, 0 if least is None else least
     most = None if worst is None else Fraction(max(low, int(worst * unit)), unit)
     return Guarantee(worst, Fraction(low, unit), most)
 
@@ -110,7 +110,7 @@ def fastest(
     `known`: what a strategy at hand takes at worst; of the options limits, engine and progress count. With it the
     strategy that takes v, or the best one that was found; None: the one at hand is as good.
     """
-    limits, unit = options.limits, reaction.denominator
+    limits, unit = options.limits, common_denominator([reaction, *network.times])
     limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     first, counted = bounds(network, objective, reaction, known), with_counter(network)
@@ -118,9 +118,10 @@ def fastest(
     if reaction and known is not None and not first.exact:
         # Who may be late has no advantage of it, and commands that come at once make a smaller game.
         prompt = bounds(network, objective, Fraction(0), known)
+        coarse = common_denominator(network.times)
         search = _Search(counted, objective, Fraction(0), budget.split(0.5))
-        search.run(int(prompt.least), None if prompt.most is None else int(prompt.most))
-        low = max(low, search.low * unit)
+        search.run(int(prompt.least * coarse), None if prompt.most is None else int(prompt.most * coarse))
+        low = max(low, search.low * (unit // coarse))
     near = low > first.least * unit
     search = _Search(counted, objective, reaction, budget)
     search.run(low, None if first.most is None else int(first.most * unit), near)
@@ -135,7 +136,7 @@ class _Search:
 
     def __init__(self, network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> None:
         self._objective, self._budget = objective, budget
-        self._unit = reaction.denominator
+        self._unit = common_denominator([reaction, *network.times])
         self._fine = least_common_multiple((2 * self._unit, TOLERANCE.denominator))
         self._network, self._reaction = scaled(network, self._fine), reaction * self._fine
         self.low = 0
@@ -183,25 +184,6 @@ class _Search:
         kept = Fraction(deadline, self._fine)
         self.faster = Faster(game, self._fine, verdict.strategy, verdict.ranks, kept)
         return True
-
-
-def scaled(network: Network, factor: int) -> Network:
-    """The same network with a time unit that is `factor` times shorter."""
-
-    def bounds(some: Tuple[ClockBound, ...]) -> Tuple[ClockBound, ...]:
-        return tuple(replace(bound, bound=bound.bound * factor) for bound in some)
-
-    def location(one: Location) -> Location:
-        return replace(one, invariant=bounds(one.invariant))
-
-    def edge(one: Edge) -> Edge:
-        return replace(one, guard=replace(one.guard, clocks=bounds(one.guard.clocks)))
-
-    def automaton(one: Automaton) -> Automaton:
-        return replace(one, locations=tuple(map(location, one.locations)), edges=tuple(map(edge, one.edges)))
-
-    start = tuple(replace(constraint, bound=constraint.bound * factor) for constraint in network.start)
-    return replace(network, automata=tuple(map(automaton, network.automata)), start=start)
 
 
 def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:

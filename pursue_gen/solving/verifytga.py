@@ -24,12 +24,14 @@ from typing import Callable, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.proof.checker import pruned, verify
+from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.proving import play_that_shows
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import Stats, Verdict
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tga.uppaal import write_network, write_query
 
 TOOL = "verifytga"
@@ -260,11 +262,13 @@ def _failure(run: Run, limits: Limits) -> ToolError:
 def _strategy(run: Run, network: Network) -> Strategy:
     """The strategy in the output. Raises ToolError for a counter-strategy, and for a text that cannot be read."""
     try:
-        strategy = read_plan(run.output, network, f"output of {TOOL}")
+        factor = common_denominator(network.times)
+        strategy = read_plan(run.output, scaled(network, factor), f"output of {TOOL}")
     except PursueError as problem:
         message = f"{TOOL} printed a strategy that cannot be read"
         hint = f"its output may be cut, or that version prints it otherwise; {_OURS}{_particulars(run)}"
         raise ToolError([error("SYN034", message, hint=hint), *problem.diagnostics], _UNUSABLE, run) from None
+    strategy = unscaled(strategy, network, factor)
     if strategy.counter:
         message = f"{TOOL} finds that the objective cannot be met"
         hint = f"{_LOST}; solve -o FILE keeps its counter-strategy ({len(strategy.blocks)} states) beside that file"

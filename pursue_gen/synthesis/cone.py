@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import Dict, Set, Tuple
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, variables_of
@@ -170,7 +171,7 @@ def _holds_at(test: ClockBound, bound: ClockBound) -> bool:
 
 def _starts_within(network: Network, location: Location) -> bool:
     """True if the clocks at the start are within the invariant of the location."""
-    tops: Tuple[Tuple[str, int], ...] = tuple((bound.clock, bound.bound) for bound in location.invariant)
+    tops: Tuple[Tuple[str, Number], ...] = tuple((bound.clock, bound.bound) for bound in location.invariant)
     return all(
         any(c.left == clock and c.right is None and c.bound <= top for c in network.start) for clock, top in tops
     )

@@ -1,7 +1,7 @@
 """A network and an objective as integer tables: what both engines play on.
 
-Everything is an index: clocks count from 1 (0 is the constant 0), all else from 0. All bounds are scaled so that the
-reaction delay is an integer: a time t of the network is `t * scale` here. A bound is (i, j, raw), see `dbm`.
+Everything is an index: clocks count from 1 (0 is the constant 0), all else from 0. All bounds are scaled so that they
+and the reaction delay are integers: a time t of the network is `t * scale` here. A bound is (i, j, raw), see `dbm`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
+from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, raw
-from pursue_gen.zones.scale import common_denominator
 
 Bound = Tuple[int, int, int]
 """`x_i - x_j` within a raw bound: (i, j, raw)."""
@@ -99,6 +99,10 @@ class Game:
     unseen: Tuple[int, ...] = ()
     unseen_clocks: Tuple[int, ...] = ()
 
+    def time(self, bound: int) -> Fraction:
+        """The constant of a raw bound in time units."""
+        return Fraction(constant(bound), self.scale)
+
     @property
     def dim(self) -> int:
         """The dimension of the zones: the clocks and the constant 0."""
@@ -162,7 +166,7 @@ def compile_game(
     problems: List[Diagnostic] = []
     if reaction < 0:
         problems.append(error("SYN001", f"the reaction delay is {reaction}, expected 0 or more time units"))
-    scale = common_denominator([reaction, *(constraint.bound for constraint in network.start)])
+    scale = common_denominator([reaction, *network.times])
     tables = _Tables(network, scale, problems)
     goal, bad = tables.positions(objective.goal), tables.positions(objective.bad)
     if objective.kind is not Kind.SAFETY and not objective.goal:
@@ -306,7 +310,7 @@ class _Tables:
         )
 
     def _bounds(self, bound: ClockBound) -> Tuple[Bound, ...]:
-        clock, scaled = self._index(self._clocks, "clock", bound.clock), bound.bound * self.scale
+        clock, scaled = self._index(self._clocks, "clock", bound.clock), int(bound.bound * self.scale)
         above, below = (clock, 0), (0, clock)
         table: Dict[str, Tuple[Bound, ...]] = {
             "<": ((*above, raw(scaled, True)),),

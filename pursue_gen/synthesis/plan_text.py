@@ -10,6 +10,7 @@ import re
 from fractions import Fraction
 from typing import FrozenSet, Iterator, List, Optional, Tuple
 
+from pursue_gen.language.numbers import decimal_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga.network import Edge, Guard
 
@@ -22,33 +23,17 @@ _CLOCKS = r"([A-Za-z_]\w*)(?:-([A-Za-z_]\w*))?"
 _CONSTRAINT = re.compile(rf"(?:({_NUMBER})|{_CLOCKS})(<=|<|==|>=|>)(?:({_NUMBER})|{_CLOCKS})")
 
 
-def number_text(number: Fraction) -> str:
-    """The number as an integer, as a decimal where that is exact, else as a fraction `n/d`."""
-    rest, twos, fives = number.denominator, 0, 0
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    if rest != 1:
-        return f"{number.numerator}/{number.denominator}"
-    places = max(twos, fives)
-    if places == 0:
-        return str(number.numerator)
-    digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")
-    return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
-
-
 def constraint_text(constraint: Constraint, space: str = "") -> str:
     """The constraint as TIGA prints it; `space` stands around the operators."""
     left, right, bound = constraint.left, constraint.right, constraint.bound
     op = f"{space}{'<' if constraint.strict else '<='}{space}"
     if left is None:
-        return f"{number_text(-bound)}{op}{right}"
+        return f"{decimal_text(-bound)}{op}{right}"
     if right is None:
-        return f"{left}{op}{number_text(bound)}"
+        return f"{left}{op}{decimal_text(bound)}"
     if bound == 0:
         return f"{left}{op}{right}"
-    return f"{left}{space}-{space}{right}{op}{number_text(bound)}"
+    return f"{left}{space}-{space}{right}{op}{decimal_text(bound)}"
 
 
 def _equality_text(constraint: Constraint, space: str) -> str:
@@ -106,7 +91,7 @@ def read_constraint(text: str) -> Optional[Tuple[Constraint, ...]]:
 
 def guard_text(guard: Guard) -> str:
     """The guard as TIGA prints it (`C > 1 && P == 2`), `1` where there is none."""
-    parts = [f"{bound.clock} {bound.op} {bound.bound}" for bound in guard.clocks]
+    parts = [f"{bound.clock} {bound.op} {decimal_text(bound.bound)}" for bound in guard.clocks]
     for clause in guard.integers:
         tests = " || ".join(f"{test.variable} == {test.value}" for test in clause)
         parts.append(f"({tests})" if len(clause) > 1 else tests)

@@ -11,7 +11,7 @@ from typing import Iterable, Mapping, Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
-from pursue_gen.zones.scale import common_denominator
+from pursue_gen.tga.scale import common_denominator
 
 Place = Tuple[str, str]
 """An automaton and one of its locations; as a milestone also a variable and one of its values."""

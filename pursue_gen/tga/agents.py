@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language.clauses import Value
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
 from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
@@ -227,7 +228,7 @@ class _Shape:
         source: str,
         target: str,
         channel: Optional[str],
-        after: int,
+        after: Number,
         conditions: Tuple[Clause, ...],
         position: Optional[int],
     ) -> Edge:

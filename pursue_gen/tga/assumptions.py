@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Callable, List, Mapping, Optional, Tuple
 
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, Scenario, Waits
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import PAUSE
@@ -115,7 +116,7 @@ def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
         if edge.source != place or names.is_going(edge.target):
             return [edge]
         lasts = 0 if edge.target == place else takes[edge.target]
-        in_time = _with(edge, bound=ClockBound(clock, "<", most - PAUSE - lasts))
+        in_time = _with(edge, bound=ClockBound(clock, "<", exact(most - PAUSE - lasts)))
         return [in_time, _when_broken(edge, number)]
 
     return _each(replace(automaton, locations=locations), edges)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Dict, List, Sequence, Tuple
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Location, Network, Sync
 
 BEGIN = "_begin"
@@ -50,9 +51,9 @@ def beginning_in(network: Network, states: Sequence[State]) -> Network:
 def _latest(network: Network, states: Sequence[State]) -> List[Constraint]:
     """How much the clocks may be that an invariant bounds in every state."""
     invariants = [{place.name: place.invariant for place in automaton.locations} for automaton in network.automata]
-    found: Dict[str, List[Tuple[int, bool]]] = {clock: [] for clock in network.clocks}
+    found: Dict[str, List[Tuple[Number, bool]]] = {clock: [] for clock in network.clocks}
     for locations, _ in states:
-        bounds: Dict[str, List[Tuple[int, bool]]] = {}
+        bounds: Dict[str, List[Tuple[Number, bool]]] = {}
         for here, name in zip(invariants, locations):
             for bound in here[name]:
                 bounds.setdefault(bound.clock, []).append((bound.bound, bound.op == "<="))

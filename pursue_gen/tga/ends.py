@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Dict, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.numbers import exact
 from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
 
@@ -71,5 +72,5 @@ def _reported(automaton: Automaton, slack: Mapping[str, int]) -> Automaton:
 def _late(location: Location, slack: int) -> Location:
     if not is_under_way(location.name):
         return location
-    bounds = tuple(ClockBound(bound.clock, bound.op, bound.bound + slack) for bound in location.invariant)
+    bounds = tuple(ClockBound(bound.clock, bound.op, exact(bound.bound + slack)) for bound in location.invariant)
     return replace(location, invariant=bounds)

@@ -10,18 +10,20 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Optional, Tuple
+from functools import cached_property
+from typing import FrozenSet, Optional, Tuple
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.tga.names import is_under_way
 
 
 @dataclass(frozen=True)
 class ClockBound:
-    """`clock op bound`, op one of < <= > >= ==, bound in time units."""
+    """`clock op bound`, op one of < <= > >= ==, bound in time units; a whole one is an int."""
 
     clock: str
     op: str
-    bound: int
+    bound: Number
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,13 @@ class Network:
     channels: Tuple[str, ...]
     automata: Tuple[Automaton, ...]
     start: Tuple[Constraint, ...] = ()
+
+    @cached_property
+    def times(self) -> FrozenSet[Number]:
+        """All times that clocks are compared with."""
+        bounds = [bound for a in self.automata for place in a.locations for bound in place.invariant]
+        bounds += [bound for a in self.automata for edge in a.edges for bound in edge.guard.clocks]
+        return frozenset((*(bound.bound for bound in bounds), *(constraint.bound for constraint in self.start)))
 
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""

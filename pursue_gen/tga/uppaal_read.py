@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from fractions import Fraction
 from typing import Callable, Dict, List, Pattern, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.tga.scale import scaled
 from pursue_gen.tga.uppaal_labels import (
     Names,
     Update,
@@ -25,11 +27,13 @@ from pursue_gen.tga.uppaal_labels import (
     tokens,
 )
 from pursue_gen.tga.uppaal_markup import Element, read_markup, shortened
+from pursue_gen.tga.uppaal_write import MULTIPLIED
 
 T = TypeVar("T")
 Raw = TypeVar("Raw")
 
 _COMMENTS = re.compile(r"//[^\n]*|/\*.*?(?:\*/|(?P<unclosed>\Z))", re.DOTALL)
+_MULTIPLIED = re.compile(re.escape(MULTIPLIED).replace(r"\{\}", r"([1-9][0-9]{0,17})"))
 _PLACE = r"(\w+)\s*\.\s*(\w+)"
 
 
@@ -56,8 +60,8 @@ def read_network(text: str, file: str) -> Network:
     """The network of a file, its automata in the order of its system line.
 
     Text beside elements is ignored, and ids need to be unique in their template only. A `states` automaton without
-    edges (an older translator wrote one where a scenario has no states) is treated as absent.
-    Raises PursueError with the place.
+    edges (an older translator wrote one where a scenario has no states) is treated as absent. Times that our writer has
+    multiplied are divided again. Raises PursueError with the place.
     """
     nta = read_markup(text, file)
     if nta.name != "nta":
@@ -72,7 +76,15 @@ def read_network(text: str, file: str) -> Network:
         templates[automaton.name] = automaton
     order = _system(nta, templates)
     automata = tuple(templates[name] for name in order if name != "states" or templates[name].edges)
-    return Network(tuple(clocks), tuple(variables), tuple(channels), automata)
+    network, factor = Network(tuple(clocks), tuple(variables), tuple(channels), automata), _factor(nta)
+    return scaled(network, Fraction(1, factor)) if factor > 1 else network
+
+
+def _factor(nta: Element) -> int:
+    """By what the times in the file are multiplied: our writer says it in a comment where that is not 1."""
+    declaration = nta.one("declaration")
+    said = _MULTIPLIED.search("" if declaration is None else declaration.text)
+    return 1 if said is None else int(said.group(1))
 
 
 def read_query(text: str, file: str) -> Objective:

@@ -14,10 +14,14 @@ from xml.dom import minidom
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tga.uppaal_words import renamed, uppaal_names
 
 _PUBLIC = "-//Uppaal Team//DTD Flat System 1.6//EN"
 _SYSTEM = "http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd"
+
+MULTIPLIED = "// All times are multiplied by {}: UPPAAL knows whole numbers only."
+"""The first line of the declarations of a network with decimals. Readers divide by that factor."""
 
 _COLUMNS = 6
 _WIDTH, _HEIGHT = 340, 204
@@ -29,18 +33,20 @@ _Point = Tuple[int, int]
 def write_network(network: Network, objective: Objective) -> str:
     """The text of a network's file, with its objective as a query. Names that are words of UPPAAL are other ones there.
 
-    Raises PursueError for a network whose clocks do not start at 0: UPPAAL's all do.
+    Decimals are multiplied by one factor, with all other times; a comment says it. Raises PursueError for a network
+    whose clocks do not start at 0: UPPAAL's all do.
     """
     if network.start:
         message = "UPPAAL has no way to write a network whose clocks do not start at 0"
         raise PursueError([error("TGA030", message, hint="write the network of the scenario, from its beginning")])
-    network = renamed(network, uppaal_names(network))
+    factor = common_denominator(network.times)
+    network = renamed(scaled(network, factor) if factor > 1 else network, uppaal_names(network))
     implementation = minidom.getDOMImplementation()
     assert implementation is not None, "minidom is its own"
     document = implementation.createDocument(None, "nta", implementation.createDocumentType("nta", _PUBLIC, _SYSTEM))
     nta = document.documentElement
     assert nta is not None, "it has just been created"
-    _add(nta, "declaration", "\n".join(_declarations(network)))
+    _add(nta, "declaration", "\n".join([*([MULTIPLIED.format(factor)] if factor > 1 else []), *_declarations(network)]))
     ids = _ids(network)
     for automaton in network.automata:
         _template(nta, automaton, ids[automaton.name])

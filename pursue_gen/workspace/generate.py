@@ -17,6 +17,7 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.language.scenario import Connection, Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed
 from pursue_gen.partition import SubStrategy, partition, strategy_file
+from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
@@ -220,7 +221,7 @@ def _ui_settings(values: Mapping[str, Any], scenario: Scenario, network: Network
 
 def _connection(way: Connection) -> List[Any]:
     """A connection in ui.yaml: its ends, its length, and `one_way` where it goes from the first to the second only."""
-    return [way.a, way.b, way.distance, *(["one_way"] if way.one_way else [])]
+    return [way.a, way.b, number(way.distance), *(["one_way"] if way.one_way else [])]
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:

@@ -52,7 +52,7 @@ def test_its_words_may_be_names_everywhere_else() -> None:
     [
         (PLAYROOM.format("assume: bot does clean at_most 2 times"), "PML250", "bot is controlled"),
         (PLAYROOM.format("assume: child does spill at_most 101 times"), "PML251", "100 or less"),
-        (PLAYROOM.format("assume: child waits 0 between spill"), "PML251", "1 or more"),
+        (PLAYROOM.format("assume: child waits 0 between spill"), "PML251", "more than 0"),
         (MUSEUM.format("assume: visitor leaves gallery within 1\nreach_objective: do goodbye"), "PML251", "too short"),
         (MUSEUM.format("assume: visitor never at gallery\nreach_objective: do goodbye"), "PML252", "starts in gallery"),
         (PLAYROOM.format("assume: child leaves room within 5"), "PML252", "cannot leave it"),

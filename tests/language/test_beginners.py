@@ -136,9 +136,8 @@ event "knock" location door duration 2 s
 agent "bot" controllable mobile 0.5 location desk can_do knock
 reach_objective: do knock after 10 seconds
 """, [
-        ("PML014", 3, "write digits only; where halves or tenths matter, choose a sma"),
+        ("PML014", 3, "write 3: a number stands alone, in the unit of your choice"),
         ("PML010", 4, "delete it: a number stands alone, in the unit of your choice; "),
-        ("PML014", 5, "write digits only; where halves or tenths matter, choose a sma"),
         ("PML010", 6, "delete it: a number stands alone, in the unit of your choice; "),
     ]),
     ("missing commas, colons and words", """\
@@ -247,7 +246,7 @@ agent "bot" mobile 1 location desk can_do knock
 reach_objective: do knock
 objective: avoid knok
 """, [
-        ("PML141", 3, "write duration 1 or more, or delete duration: then it takes no"),
+        ("PML141", 3, "write duration and a number above 0, or delete duration: then i"),
         ("PML131", 5, "write controllable behind the name of each robot"),
         ("PML153", 5, "connect them, or take knock away from bot"),
         ("PML110", 7, "did you mean knock?"),

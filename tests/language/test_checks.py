@@ -37,9 +37,13 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
     ({"objective": "objective: bot never_with men"}, [("PML110", 12, "there is no agent men", "did you mean man?")]),
     ({"reach": "reach_objective: do nothing"}, [("PML110", 13, "there is no event nothing", "declare it")]),
     # numbers
-    ({"connect": "connect a and b distance 0"}, [("PML140", 3, "has no length", "distance 1")]),
+    ({"connect": "connect a and b distance 0"}, [("PML140", 3, "has no length", "above 0")]),
     ({"event_work": 'event "work" location b duration 0'}, [("PML141", 4, "duration of 0", "delete duration")]),
-    ({"agent_bot": BOT.replace("mobile 2", "mobile 0")}, [("PML142", 10, "no time for any way", "mobile 1")]),
+    ({"agent_bot": BOT.replace("mobile 2", "mobile 0")}, [("PML142", 10, "no time for any way", "above 0")]),
+    (
+        {"connect": "connect a and b distance 4.25", "agent_bot": BOT.replace("mobile 2", "mobile 0.625")},
+        [("PML281", 10, "needs 2.65625 time units from a to b", "takes 2.656")],
+    ),
     ({"objective": "objective: if work then hand within 0"}, [("PML143", 12, "no time to answer", "time units")]),
     (
         {"connect": "connect a and b distance 1000000", "agent_bot": BOT.replace("mobile 2", "mobile 11")},

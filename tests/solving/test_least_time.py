@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import counting_clock, with_counter, with_deadline, worst_case
-from pursue_gen.solving.least_time import TOLERANCE, fastest, scaled, unscaled
+from pursue_gen.solving.least_time import TOLERANCE, fastest, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import fastest_solution, guaranteed, solution
@@ -27,6 +27,7 @@ from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.tga.scale import scaled
 from pursue_gen.tga.uppaal import read_network, read_query
 from tests.conftest import thesis_scenario
 from tests.synthesis.random_games import networks

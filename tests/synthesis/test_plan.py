@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
+from pursue_gen.language.numbers import decimal_text
 from pursue_gen.synthesis.plan import read_plan, write_plan
-from pursue_gen.synthesis.plan_text import number_text
 from pursue_gen.synthesis.strategy import Block, Constraint, Strategy
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import ClockBound, Guard, Kind, Network, Objective
@@ -286,4 +286,4 @@ def test_a_state_with_nothing_to_do_is_a_cut_plan() -> None:
 @given(st.integers(-(10**6), 10**6), st.integers(1, 2000))
 def test_numbers_are_exact(numerator: int, denominator: int) -> None:
     number = Fraction(numerator, denominator)
-    assert Fraction(number_text(number)) == number
+    assert Fraction(decimal_text(number)) == number

@@ -10,8 +10,8 @@ from pursue_gen.proof.native.tables import MOST_DELAY, MOST_FACTOR, MOST_RANK, B
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network
+from pursue_gen.tga.scale import least_common_multiple
 from pursue_gen.zones.dbm import constant, is_strict
-from pursue_gen.zones.scale import least_common_multiple
 
 _UNKNOWN = -(1 << 63)
 """How simplify.hpp writes that no rank is known."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import ClockBound, Edge, Network
+from pursue_gen.tga.scale import common_denominator, least_common_multiple
 
 try:
     from pursue_gen.proof.native import _proof
@@ -153,7 +154,7 @@ class _Maker:
             )
             for block in strategy.blocks
         ]
-        scale = strategy.scale
+        scale = least_common_multiple([strategy.scale, common_denominator(network.times)])
         bounds = [self._constraint(constraint, scale) for constraint in constraints]
         firsts = [0]
         for _, wait, commands in blocks:
@@ -224,7 +225,7 @@ class _Maker:
     def _bounds(self, bounds: Sequence[ClockBound], scale: int) -> List[Bound]:
         found: List[Bound] = []
         for bound in bounds:
-            x, constant = self.clocks[bound.clock], Fraction(bound.bound)
+            x, constant = self.clocks[bound.clock], bound.bound
             if bound.op not in ("<", "<=", "==", ">", ">="):
                 raise NotHeld
             if bound.op in ("<", "<=", "=="):
@@ -240,7 +241,7 @@ class _Maker:
         return i, j, _raw(constraint.bound, scale, constraint.strict)
 
 
-def _raw(bound: Fraction, scale: int, strict: bool) -> int:
+def _raw(bound: Number, scale: int, strict: bool) -> int:
     constant = bound.numerator * (scale // bound.denominator)
     if abs(constant) >= _MOST:
         raise NotHeld

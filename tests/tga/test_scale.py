@@ -8,7 +8,7 @@ from typing import List
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.zones.scale import common_denominator, least_common_multiple
+from pursue_gen.tga.scale import common_denominator, least_common_multiple
 
 
 @given(st.lists(st.integers(1, 12), max_size=4))

@@ -1,0 +1,69 @@
+"""Numbers as people write them: whole ones and decimals, exact in all that is computed from them."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from math import ceil, floor
+from typing import Optional, Union
+
+Number = Union[int, Fraction]
+"""A time, a distance or an inverse speed. A whole one is an int wherever `exact` has made it."""
+
+MOST_DIGITS = 3
+"""Digits after the point of a number in a scenario, and of a time that comes of it."""
+
+
+_FORM = re.compile(r"[0-9]+(\.[0-9]+)?")
+_LONGEST = 100
+"""Letters of a number: far more than any that is not too large."""
+
+
+class _Decimal(Fraction):
+    """A fraction that is shown as people write it, like 2.5."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return decimal_text(self)
+
+
+def exact(number: Number) -> Number:
+    """The number as an int where it is whole, else as a fraction that is shown as a decimal where it is one."""
+    return int(number) if number.denominator == 1 else _Decimal(number)
+
+
+def decimal_text(number: Number) -> str:
+    """The number as an integer, as a decimal where that is exact, else as a fraction `n/d`."""
+    rest, twos, fives = number.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    if rest != 1:
+        return f"{number.numerator}/{number.denominator}"
+    places = max(twos, fives)
+    if places == 0:
+        return str(number.numerator)
+    digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")
+    return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def read_number(text: str) -> Optional[Number]:
+    """The number that digits say, perhaps with a point between them; None where the text says none, or is endless."""
+    return exact(Fraction(text)) if len(text) <= _LONGEST and _FORM.fullmatch(text) else None
+
+
+def whole_below(number: Number, least: int) -> range:
+    """The whole numbers below a number, down to the least one."""
+    return range(ceil(number) - 1, least - 1, -1)
+
+
+def whole_above(number: Number, most: Number) -> range:
+    """The whole numbers above a number, up to the largest one."""
+    return range(floor(number) + 1, floor(most) + 1)
+
+
+def is_fine(number: Number) -> bool:
+    """True for a number with at most MOST_DIGITS digits after the point."""
+    return bool(10**MOST_DIGITS % number.denominator == 0)
