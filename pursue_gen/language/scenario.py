@@ -285,7 +285,7 @@ class Patrol:
     least: Optional[int] = None
 
     @property
-    def period(self) -> int:
+    def period(self) -> Number:
         """The time units from one visit to the next; they are known from solving on."""
         assert self.every is not None, "the period of a patrol has to be found first"
         return self.every

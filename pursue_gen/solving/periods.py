@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from math import ceil
 from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
@@ -93,12 +94,12 @@ def longest(scenario: Scenario) -> int:
     work = sum(event.window[1] + 2 for event in scenario.events if event.window is not None)
     waiting = sum(assumption.time for assumption in scenario.assumptions if isinstance(assumption, (Leaves, Waits)))
     places = Counter(patrol.span for patrol in without_period(scenario))
-    return max(2, _WALKS * max(places.values(), default=1) * (moves + work + waiting))
+    return max(2, ceil(_WALKS * max(places.values(), default=1) * (moves + work + waiting)))
 
 
 def _farthest(scenario: Scenario) -> int:
     """The longest movement of all: where the search begins."""
-    return max((window[1] for agent in scenario.agents for window in scenario.movements(agent).values()), default=2)
+    return max((ceil(w[1]) for agent in scenario.agents for w in scenario.movements(agent).values()), default=2)
 
 
 def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Optional[bool]:
