@@ -4,6 +4,7 @@
 
 The pages, docs/scenarios/<name>.md, are written by hand; the parts between two marks are made here:
 
+    <!-- made: scenario -->     the scenario's text
     <!-- made: verdict -->      can it be won, how fast, how many states and commands
     <!-- made: map -->          the picture of the map
     <!-- made: mission 3 -->    a picture of the simulated mission number 3
@@ -47,6 +48,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 SCENARIOS, DOCS = ROOT / "scenarios", ROOT / "docs"
 PAGES, INDEX = DOCS / "scenarios", DOCS / "scenarios.md"
+PATTERNS = SCENARIOS / "patterns"
+"""These have pages of another kind, which docs/patterns/make.py makes."""
 
 UNTIL = 120.0
 """So long, in time units, a mission is simulated that has no goal."""
@@ -74,8 +77,8 @@ class Facts:
 
 
 def scenario_files() -> Dict[str, Path]:
-    """All scenarios of the project by the names of their pages, in the order of their folders."""
-    return {path.stem: path for path in sorted(SCENARIOS.rglob("*.pur"))}
+    """All scenarios of the project but patterns, by the names of their pages, in the order of their folders."""
+    return {path.stem: path for path in sorted(SCENARIOS.rglob("*.pur")) if path.parent != PATTERNS}
 
 
 def facts(path: Path) -> Facts:
@@ -120,6 +123,10 @@ def page(text: str, found: Facts) -> Tuple[str, Dict[str, str]]:
     return _WHAT_IF.sub(row, _PART.sub(part, text)), pictures
 
 
+def _scenario_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
+    return f"```pursue\n{found.scenario.text.rstrip()}\n```"
+
+
 def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     file = f"scenarios/{_name(found)}.pur"
     looked = f"The solver looked at {found.states:,} states"
@@ -156,6 +163,7 @@ def _mission_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
 
 
 _PARTS: Mapping[str, Callable[[Facts, int, Dict[str, str]], str]] = {
+    "scenario": _scenario_part,
     "verdict": _verdict_part,
     "map": _map_part,
     "mission": _mission_part,
@@ -163,7 +171,7 @@ _PARTS: Mapping[str, Callable[[Facts, int, Dict[str, str]], str]] = {
 
 
 def _name(found: Facts) -> str:
-    return scenario_files()[found.name].relative_to(SCENARIOS).with_suffix("").as_posix()
+    return Path(found.scenario.file).resolve().relative_to(SCENARIOS).with_suffix("").as_posix()
 
 
 def _time(found: Facts) -> str:
