@@ -94,6 +94,8 @@ class Model:
             """The same: the mission is lost where any of them is there."""
             self.says = {str(name): str(text) for name, text in dict(objective.get("says") or {}).items()}
             """What the automata of objectives watch, in the scenario's words; empty where there is one objective."""
+            self.given_up = tuple(str(text) for text in objective.get("given_up") or ())
+            """Optional objectives that the mission does not promise."""
         except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
             raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
         self._by_name = {automaton.name: automaton for automaton in self.automata}

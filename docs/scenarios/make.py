@@ -28,16 +28,19 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
-from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import objective_text, periods_found
+from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.wording import listed, objective_text, periods_found, promise_words
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.mission import Settings
 from pursue_gen.simulation.runs import Case, case_of
+from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
+from pursue_gen.solving.optional import promised
+from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga import scenario_objective, translate
@@ -57,7 +60,7 @@ UNTIL = 120.0
 _PART = re.compile(r"(<!-- made: (\w+)(?: (\d+))? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _WHAT_IF = re.compile(r"^(\| [^|\n]+ \| ([^|\n]*`[^|\n]*) \|)([^|\n]*)\|$", re.MULTILINE)
 _STATEMENT = re.compile(r"(without )?`([^`]+)`")
-_SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 3, "reach_objective:": 1}
+_SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 3, "reach_objective:": 3}
 """So many words of a statement tell what it is on; of all others two."""
 
 
@@ -65,7 +68,7 @@ _SAME = {"connect": 4, "travel": 6, "assume:": 3, "objective:": 3, "reach_object
 class Facts:
     """What was found out about a scenario in the default game; `won` is None where it is lost.
 
-    `settled` is the scenario with the periods that had to be found.
+    `settled` is the scenario with the periods that had to be found, and with what can be promised of it.
     """
 
     name: str
@@ -89,13 +92,13 @@ def facts(path: Path) -> Facts:
     states = verdict.stats.discrete_states
     if verdict.strategy is None:
         return Facts(path.stem, scenario, settled, states, None, None)
-    won = solved(translate(settled), scenario_objective(settled), Rules())
-    return Facts(path.stem, scenario, settled, states, won, won.guarantee)
+    found = promised(settled, DEFAULT, lambda some, how: solved(*game_of(some), Rules(), how))
+    return Facts(path.stem, scenario, found.scenario, states, found.solution, found.solution.guarantee)
 
 
 def _verdict(scenario: Scenario) -> Verdict:
-    """Whether the default game is won; that takes less time than a proof."""
-    rules = Rules()
+    """Whether the default game is won, with nothing optional; that takes less time than a proof."""
+    rules, scenario = Rules(), scenario.giving_up(scenario.optional)
     return solve(played(translate(scenario), rules), scenario_objective(scenario), rules.reaction)
 
 
@@ -142,7 +145,8 @@ def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     else:
         promise = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
     see = f"    pursue-gen sim {file}\n    ./run mission {file} web:=true"
-    return f"{promise} {has}\n\n{command}\n{see}"
+    says = "".join(f"\n- {sentence}" for sentence in promise_words(found.settled))
+    return f"{promise} {has}\n{says and says + chr(10)}\n{command}\n{see}"
 
 
 def _map_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
@@ -191,7 +195,13 @@ def _if(text: str, changes: str) -> str:
     if changed == text:
         raise ValueError(f"this changes nothing: {changes}")
     scenario = least_period(parse(changed, "changed.pur", "changed"), Rules())
-    return "cannot be done" if _verdict(scenario).strategy is None else "can be done"
+    if _verdict(scenario).strategy is None:
+        return "cannot be done"
+    if not scenario.optional:
+        return "can be done"
+    found = promised(scenario, DEFAULT, lambda some, how: solution(*game_of(some), Rules(), how)).scenario
+    given_up = dict.fromkeys(f"optional {one.objective.optional}" for one in found.given_up)
+    return f"can be done, {f'without {listed(given_up)}' if given_up else 'all of it'}"
 
 
 def edited(text: str, changes: str) -> str:
@@ -211,8 +221,8 @@ def edited(text: str, changes: str) -> str:
 def _only(parts: List[str], statement: str) -> List[int]:
     """The objective that another one takes the place of, where there is no other objective of the kind."""
     word = statement.split()[0]
-    alone = [k for k, part in enumerate(parts) if part.startswith(word)] if word == "objective:" else []
-    return alone if len(alone) == 1 else []
+    alone = [k for k, part in enumerate(parts) if part.startswith(word)]
+    return alone if len(alone) == 1 and word in ("objective:", "reach_objective:") else []
 
 
 def _same(part: str, statement: str) -> bool:
@@ -234,14 +244,21 @@ def row(found: Facts) -> str:
     agents, count = found.scenario.agents, len(found.scenario.pois)
     names = ", ".join(agent.name if agent.controllable else f"*{agent.name}*" for agent in agents)
     verdict = "can be done" if found.won else "**cannot**"
-    wanted = "; ".join(f"`{text}`" for text in _wanted(found.scenario))
+    wanted = "; ".join(f"`{text}`" for text in _wanted(found.scenario, found.settled))
     link = f"[{_name(found)}](scenarios/{found.name}.md)"
     return f"| {link} | {names} | {count} | {wanted} | {verdict} | {_time(found)} | {found.states:,} |"
 
 
-def _wanted(scenario: Scenario) -> List[str]:
-    """The objectives, as the scenario has them."""
-    return [objective_text(statement[0]) for statement in scenario.statements]
+def _wanted(scenario: Scenario, settled: Scenario) -> List[str]:
+    """The objectives, as the scenario has them, and which of them are given up."""
+    given_up = {one.objective.span for one in settled.given_up}
+    wanted = [statement[0] for statement in scenario.statements]
+    return [f"{_numbered(each)}{' (given up)' if each.span in given_up else ''}" for each in wanted]
+
+
+def _numbered(objective: StatedObjective) -> str:
+    text = objective_text(objective)
+    return f"optional {objective.optional}: {text}" if objective.optional else text
 
 
 def index(text: str, rows: Mapping[str, str]) -> str:

@@ -102,9 +102,10 @@ def mission_of_scenario(
 
     scenario = with_periods(placed(load(file), poses.file, poses.computed), request)
     show(spots_in_one(scenario, poses.spot_distance))
-    won = solve_and_print(scenario, request, explain)
+    found = solve_and_print(scenario, request, explain)
+    won = found.solution
     info(margin_text(won, margins(won, False, request.options.limits)[0]))
-    return make_mission(scenario, won, request, poses.spot_distance)
+    return make_mission(found.scenario, won, request, poses.spot_distance)
 
 
 def _print_bundle(file: Path, folder: Path) -> None:

@@ -37,13 +37,13 @@ def with_periods(scenario: Scenario, request: SolveRequest, quiet: bool = False)
 def game_from(
     files: Sequence[Path], request: SolveRequest, quiet: bool = False
 ) -> Tuple[Network, Objective, Optional[Scenario]]:
-    """The ideal game of a scenario's file, whose warnings are printed, or of UPPAAL's two files; and the scenario.
+    """The ideal game of UPPAAL's two files, or of a scenario's file, with nothing optional; and the scenario.
 
-    Raises PursueError. `quiet`: without progress.
+    Warnings are printed. Raises PursueError. `quiet`: without progress.
     """
     from pursue_gen.solving.inputs import are_scenario, game_of, load_game
 
     if not are_scenario(files):
         return (*load_game(files), None)
     scenario = scenario_from(files[0], request, quiet)
-    return (*game_of(scenario), scenario)
+    return (*game_of(scenario.giving_up(scenario.optional)), scenario)

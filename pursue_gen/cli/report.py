@@ -125,7 +125,7 @@ def _print_tables(scenario: Scenario, reach_obj: Optional[str], solving: SolveOp
     from pursue_gen.solving.verdict import margin_text, margins
 
     with progress_line(as_json_) as progress:
-        both = solved_both(scenario, replace(solving, progress=progress))
+        scenario, both = solved_both(scenario, replace(solving, progress=progress))
         found = [margins(won, False, solving.limits)[0] for won in both]
     game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
     table = commands.commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
@@ -153,7 +153,7 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
 
     try:
         with progress_line() as progress:
-            both = solved_both(scenario, replace(solving, progress=progress))
+            scenario, both = solved_both(scenario, replace(solving, progress=progress))
     except PursueError as problem:
         too_slow = solving.within is not None and not (is_lost(problem) or is_undecided(problem))
         if problem.exit_status not in (4, 5) or too_slow:

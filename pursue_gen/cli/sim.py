@@ -69,14 +69,13 @@ def sim(
     from pursue_gen.cli.inputs import with_periods
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs
+    from pursue_gen.cli.solution import naming_costs, show_promise
     from pursue_gen.language import load
     from pursue_gen.simulation.cluster import cluster, outcomes_on
     from pursue_gen.simulation.faults import FAULTS, read_faults
     from pursue_gen.simulation.make import check_until, make_case
     from pursue_gen.simulation.runs import simulate
-    from pursue_gen.solving.inputs import game_of
-    from pursue_gen.solving.request import solution_of
+    from pursue_gen.solving.optional import promised_of
 
     if faults == "help":
         print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))
@@ -87,8 +86,10 @@ def sim(
         _check_timeline(timeline, runs, seed)
     read = with_periods(load(scenario), request, as_json_)
     with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
-        won = solution_of(*game_of(read), request, progress)
+        found = promised_of(read, request, progress)
+    read, won = found.scenario, found.solution
     show(won.warnings)
+    show_promise(read, assumptions=False)
     case, knows = make_case(read, won, request, opponent.value, kinds, until)
     if not knows:
         info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")

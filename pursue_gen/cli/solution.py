@@ -9,41 +9,47 @@ from pursue_gen.cli.console import info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import condition_of_promise, periods_found
-from pursue_gen.solving.inputs import game_of
-from pursue_gen.solving.request import SolveRequest, solution_of
+from pursue_gen.language.wording import condition_of_promise, periods_found, promise_words
+from pursue_gen.solving.optional import Promised, promised_of
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import rules_text
-from pursue_gen.solving.solution import Solution, is_lost
+from pursue_gen.solving.solution import is_lost
 from pursue_gen.solving.verdict import verdict_text
 from pursue_gen.synthesis.limits import is_undecided
 from pursue_gen.tga import translate
 
 
-def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) -> Solution:
-    """The proven solution of a scenario; the verdict and warnings are printed.
+def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) -> Promised:
+    """What is promised of a scenario, with its proven solution; the verdict and warnings are printed.
 
-    `explain`: where it is not won, why. Raises as `solution_of`.
+    `explain`: where it is not won, why. Raises as `promised_of`.
     """
-    network, objective = game_of(scenario)
     try:
         with progress_line() as progress:
-            won = solution_of(network, objective, request, progress)
+            found = promised_of(scenario, request, progress)
     except PursueError as problem:
         if explain and explained(problem, scenario, request):
             raise PursueError((), problem.exit_status) from None  # its findings are printed
         raise
+    won = found.solution
     show(won.warnings)
     if request.plan is None:
         info(verdict_text(won))
-        show_terms(scenario)
     elif not won.warnings:
         info(f"{request.plan} wins: {rules_text(won.rules)}")
-    return won
+    show_promise(found.scenario, request.plan is None)
+    return found
 
 
-def show_terms(scenario: Scenario) -> None:
-    """Prints which periods were found, and what the verdict assumes of others, if anything."""
+def show_promise(scenario: Scenario, assumptions: bool = True) -> None:
+    """Prints which periods were found, which optional objectives are promised, and what the verdict assumes of others,
+    if anything.
+    """
     show_periods(scenario)
+    for sentence in promise_words(scenario):
+        info(f"{sentence}.")
+    if not assumptions:
+        return
     assumed = condition_of_promise(scenario)
     if assumed:
         info(f"This holds {assumed}.")
@@ -52,12 +58,14 @@ def show_terms(scenario: Scenario) -> None:
 def explained(
     problem: PursueError, scenario: Scenario, request: SolveRequest, quiet: bool = False
 ) -> Dict[str, Any]:
-    """Prints the findings of a scenario that is not won and why that is so, which takes a fixed amount of work.
+    """Prints the findings of a scenario that is not won, even with nothing optional, and why that is so, which takes a
+    fixed amount of work.
 
     Lost: what would change that. Not decided within a limit: what makes it so large. `quiet`: without progress.
     Returns {"explanation": …} or {"costs": …} for JSON. Prints nothing, and returns an empty dict, where the problem is
     another one, or another solver or a given plan has it.
     """
+    scenario = scenario.giving_up(scenario.optional)
     limits, rules = request.options.limits, request.rules(translate(scenario))
     if is_lost(problem):
         from pursue_gen.explanation.explain import as_json, explain, render

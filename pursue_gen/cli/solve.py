@@ -42,11 +42,12 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained, show_terms
+    from pursue_gen.cli.solution import explained, show_promise
     from pursue_gen.files import write_texts
+    from pursue_gen.solving.optional import promised_of
     from pursue_gen.solving.request import solution_of
     from pursue_gen.solving.solvers import keep_counter
-    from pursue_gen.solving.verdict import margin_text, margins, periods_json, verdict_json, verdict_text
+    from pursue_gen.solving.verdict import margin_text, margins, optional_json, periods_json, verdict_json, verdict_text
     from pursue_gen.synthesis.plan import write_plan
 
     printed, output = _plan_to(plan_, output, as_json_)
@@ -54,30 +55,31 @@ def solve(
     rules, limits = request.rules(network), request.options.limits
     try:
         with progress_line(as_json_) as progress:
-            won = solution_of(network, objective, request, progress)
+            promise = None if scenario is None else promised_of(scenario, request, progress)
+            won = solution_of(network, objective, request, progress) if promise is None else promise.solution
     except PursueError as problem:
         kept = keep_counter(problem, network, objective, output)
         if kept is not None:
             info(f"The counter-strategy is in {kept}")
         wanted = explain and problem.exit_status in (4, 5)
-        why = explained(problem, scenario, request, as_json_) if wanted and scenario is not None else {}
+        why = explained(problem, scenario, request, as_json_) if scenario is not None and wanted else {}
         if as_json_ and problem.exit_status in (4, 5):
             print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **why}, indent=1))
         if why:  # its findings are printed
             raise typer.Exit(problem.exit_status) from None
         raise
-    plan = write_plan(won.strategy, won.network, objective) if printed or output is not None else ""
+    plan = write_plan(won.strategy, won.network, won.objective) if printed or output is not None else ""
     if output is not None:
         write_texts({output: plan})
     found = margins(won, margin, limits)
     if as_json_:
-        periods = {} if scenario is None else periods_json(scenario)
-        print(json.dumps({**verdict_json(rules, won, (), *found), **periods}, indent=1))
+        more = {} if promise is None else {**periods_json(promise.scenario), **optional_json(promise.scenario)}
+        print(json.dumps({**verdict_json(rules, won, (), *found), **more}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
-    if scenario is not None:
-        show_terms(scenario)
+    if promise is not None:
+        show_promise(promise.scenario)
     info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, List
 import typer
 
 from pursue_gen.cli.console import guarded, show
-from pursue_gen.cli.inputs import game_from
+from pursue_gen.cli.inputs import game_from, scenario_from
 from pursue_gen.cli.options import GAME, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 
@@ -29,17 +29,27 @@ def verify(
     0). The exit status is 4 where the plan wins in neither.
     """
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import show_promise
     from pursue_gen.solving.given_plan import exit_status, try_plan
+    from pursue_gen.solving.inputs import are_scenario
+    from pursue_gen.solving.optional import try_plan_of
     from pursue_gen.solving.rules import rules_text
 
     if len(files) < 2:
         raise usage_error("a plan is missing", "name the game, then the plan: pursue-gen verify my_floor.pur plan.txt")
-    network, objective, _ = game_from(files[:-1], request)
+    *game, plan = files
+    scenario = scenario_from(game[0], request) if are_scenario(game) else None
     with progress_line() as progress:
         options = replace(request.options, progress=progress)
-        tried = try_plan(files[-1], network, objective, request.games(network), options)
+        if scenario is None:
+            network, objective, _ = game_from(game, request)
+            tried = try_plan(plan, network, objective, request.games(network), options)
+        else:
+            scenario, tried = try_plan_of(scenario, plan, request, options)
     for trial in tried:
         print(f"{rules_text(trial.rules)}: {trial.outcome}")
         show(trial.findings)
+    if scenario is not None and not exit_status(tried):
+        show_promise(scenario, assumptions=False)
     if exit_status(tried):
         raise typer.Exit(exit_status(tried))

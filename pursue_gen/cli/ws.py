@@ -48,8 +48,9 @@ def ws(
     read = scenario_from(scenario, request)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    won = solve_and_print(read, request, explain)
-    made = make_workspace(read, won, request, Extras(machines, docker, systemd, spot_distance), folder, force)
+    found = solve_and_print(read, request, explain)
+    extras = Extras(machines, docker, systemd, spot_distance)
+    made = make_workspace(found.scenario, found.solution, request, extras, folder, force)
     info(made.margin)
     show(made.findings)
     print(made.folder)

@@ -19,7 +19,7 @@ _BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", 
 """A line may be broken before these words, and behind every comma."""
 
 _CLOSE = frozenset({"COMMA", "COLON", "RPAR"})
-_ONE_KIND = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
+_ONE_KIND = {"REACH_OBJECTIVE": "OBJECTIVE", "OPTIONAL": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 _MOST_PADDING = 20
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, Tuple
+from typing import Dict, FrozenSet, List, Sequence, Tuple
 
 from lark import Token
 
@@ -28,6 +28,7 @@ FORMS: Dict[str, str] = {
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
     "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)",
     "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",
+    "OPTIONAL": "optional 1 reach_objective: do e1 (or: optional 1 objective: avoid e; 1 is kept longest)",
 }
 """What each statement looks like, by the token that begins it."""
 
@@ -47,7 +48,7 @@ KEYWORDS: Dict[str, str] = {
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
     "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves", "NEVER": "never",
     "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
-    "ROBOT": "robot",
+    "ROBOT": "robot", "OPTIONAL": "optional",
 }  # fmt: skip
 """The words of the language, by token."""
 
@@ -56,6 +57,7 @@ MAY_BE_NAMES: Dict[str, str] = {
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
     "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
+    "OPTIONAL": "optional",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
@@ -86,6 +88,13 @@ def shown(text: str, most: int = 30) -> str:
     """A piece of a text as a message can hold it: signs that cannot be seen by their number, and not too long."""
     text = text if len(text) <= most else text[: most - 1] + "…"
     return "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
+
+
+def kind_of(chunk: Sequence[Token]) -> str:
+    """The token that says which statement it is: the first one, but that of the objective behind `optional 1`."""
+    kinds = [token.type for token in chunk[:3]]
+    optional = kinds[:2] == ["OPTIONAL", "NUMBER"] and kinds[2:] in (["OBJECTIVE"], ["REACH_OBJECTIVE"])
+    return kinds[2] if optional else kinds[0]
 
 
 def looks_like_statement(token: Token) -> bool:
@@ -150,7 +159,7 @@ def _unclosed(token: Token, span: Span) -> Diagnostic:
 
 def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     """What to do about the most frequent slips; empty where the form of the statement says it best."""
-    token, statement = chunk[index], chunk[0].type
+    token, statement = chunk[index], kind_of(chunk)
     text = str(token)
     if token.type == "STRAY":
         return _stray(chunk, index)
@@ -215,7 +224,7 @@ def _stray(chunk: List[Token], index: int) -> str:
 
 def _meant(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     """Which word was meant, or what is missing before it."""
-    token, statement = chunk[index], chunk[0].type
+    token, statement = chunk[index], kind_of(chunk)
     if statement in ("EVENT", "AGENT") and f" {token} " in FORMS[statement]:
         return f"its parts come in this order: {FORMS[statement]}"
     meant = _MEANT.get(str(token).lower(), "")
@@ -236,7 +245,7 @@ def _meant(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
 
 
 def _form(chunk: List[Token]) -> str:
-    return "the form is: " + FORMS[chunk[0].type] if chunk[0].type in FORMS else "delete it"
+    return "the form is: " + FORMS[kind_of(chunk)] if kind_of(chunk) in FORMS else "delete it"
 
 
 def _near(word: str, words: Tuple[str, ...]) -> str:

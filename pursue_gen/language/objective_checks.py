@@ -12,9 +12,13 @@ from pursue_gen.language.wording import objective_text
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
 
+MOST_OPTIONAL = 6
+"""So many different numbers stand behind `optional` at most: each takes a game of its own."""
+
 
 def check_objectives(scenario: Scenario) -> Iterator[Diagnostic]:
     """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
+    yield from _optional(scenario)
     lines: Dict[str, int] = {}
     statements = [statement[0] for statement in scenario.statements]
     for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
@@ -44,6 +48,22 @@ def _order(patrol: Patrol) -> Iterator[Diagnostic]:
     elif len(patrol.order) < 2:
         message = "in order says nothing about one place: expected two or more"
         yield error("PML260", message, patrol.span, "name the other places, or delete in order")
+
+
+def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Something has to be met in any case, and each number behind optional is a game to solve."""
+    if scenario.objectives and all(each.optional for each in scenario.objectives):
+        hint = "delete the optional of what matters most; whoever gives that up as well has nothing left to do"
+        yield error("PML301", "every objective is optional", scenario.objectives[0].span, hint)
+    patrols = (each for each in scenario.safety if isinstance(each, Patrol))
+    for span in dict.fromkeys(each.span for each in patrols if each.optional and each.every is None):
+        message = "an optional patrol without every: the least period is found for what has to be promised"
+        yield error("PML303", message, span, "write how often, as in every 60, or delete optional")
+    for number in scenario.optional[MOST_OPTIONAL:]:
+        first = next(each for each in scenario.objectives if each.optional == number)
+        message = f"more than {MOST_OPTIONAL} different numbers behind optional"
+        hint = "objectives with one number are kept or given up together: use a number for several of them"
+        yield error("PML302", message, first.span, hint)
 
 
 def _reach(reach: Reach) -> Iterator[Diagnostic]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import select
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, FrozenSet, List, Optional, Tuple, Union
 
@@ -265,6 +265,14 @@ class _Builder:
             reacts_to=self._refs(reacts),
             span=span_of(name, self.file),
         )
+
+    def _optional(self, _: Any, number: Token, tree: Any, span: Span) -> Tuple[pml.StatedObjective, ...]:
+        rank = self._number(number)
+        if not rank:
+            hint = "1 is kept longest, then 2, and so on; without optional it has to be met in any case"
+            message = "the number behind optional is 0; expected 1 or more"
+            self.findings.append(error("PML300", message, span_of(number, self.file), hint))
+        return tuple(replace(part, optional=rank or 1, span=span) for part in self.parts(tree))
 
     def _safety(self, objective: Any, span: Span) -> Union[pml.Safety, Tuple[pml.Patrol, ...]]:
         children = objective.children

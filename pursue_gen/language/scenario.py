@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Dict, Iterator, Optional, Tuple, Union
+from dataclasses import dataclass, replace
+from typing import Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition, Not, Who
@@ -233,6 +233,7 @@ class Respond:
     response: Ref
     deadline: Number
     span: Span
+    optional: int = 0
 
 
 @dataclass(frozen=True)
@@ -241,6 +242,7 @@ class Avoid:
 
     event: Ref
     span: Span
+    optional: int = 0
 
 
 @dataclass(frozen=True)
@@ -251,6 +253,7 @@ class NeverWith:
     second: Ref
     span: Span
     place: Optional[Ref] = None
+    optional: int = 0
 
 
 @dataclass(frozen=True)
@@ -260,6 +263,7 @@ class Always:
     condition: Condition
     holds: bool
     span: Span
+    optional: int = 0
 
     @property
     def broken_if(self) -> Condition:
@@ -283,6 +287,7 @@ class Patrol:
     span: Span
     order: Tuple[str, ...] = ()
     least: Optional[int] = None
+    optional: int = 0
 
     @property
     def period(self) -> Number:
@@ -303,9 +308,20 @@ class Reach:
     after: Number
     span: Span
     within: Optional[Number] = None
+    optional: int = 0
 
 
 StatedObjective = Union[Safety, Reach]
+"""An objective. `optional`: 0 for one that has to be met; else the number behind `optional`, 1 for what is to be kept
+longest."""
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """An optional objective that is not promised. `decided`: it cannot be; False: it was too much work to find out."""
+
+    objective: StatedObjective
+    decided: bool = True
 
 
 @dataclass(frozen=True)
@@ -355,7 +371,8 @@ Assumption = Union[AtMost, Waits, Leaves, NeverAt]
 class Scenario:
     """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration.
 
-    All of `safety` has to hold until all of `reach` is reached; for ever where there is none.
+    All of `safety` has to hold until all of `reach` is reached; for ever where there is none. `given_up` are optional
+    objectives that are in neither of them: what is not promised together with the rest.
     """
 
     name: str
@@ -372,6 +389,22 @@ class Scenario:
     reach: Tuple[Reach, ...]
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
+    given_up: Tuple[GivenUp, ...] = ()
+
+    @property
+    def optional(self) -> Tuple[int, ...]:
+        """The numbers behind `optional` among its objectives, the one that is to be kept longest first."""
+        return tuple(sorted({objective.optional for objective in self.objectives} - {0}))
+
+    def giving_up(self, numbers: Collection[int], decided: bool = True) -> Scenario:
+        """The scenario with these of its optional objectives given up; `decided` as for GivenUp."""
+        given_up = (GivenUp(each, decided) for each in self.objectives if each.optional in numbers)
+        return replace(
+            self,
+            safety=tuple(each for each in self.safety if each.optional not in numbers),
+            reach=tuple(each for each in self.reach if each.optional not in numbers),
+            given_up=tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional)),
+        )
 
     @property
     def objectives(self) -> Tuple[StatedObjective, ...]:

@@ -16,6 +16,7 @@ from pursue_gen.language.messages import (
     MAY_BE_NAMES,
     STATEMENTS,
     explain,
+    kind_of,
     looks_like_statement,
     unfinished,
     unknown_statement,
@@ -127,7 +128,7 @@ class _Reader:
         if finding is not None:
             self.findings.append(finding)
             self.lost |= _declared(chunk)
-        self._after_objective = first.type in ("OBJECTIVE", "REACH_OBJECTIVE")
+        self._after_objective = kind_of(chunk) in ("OBJECTIVE", "REACH_OBJECTIVE")
 
     def _parse(self, chunk: List[Token]) -> Optional[Diagnostic]:
         parser: Any = grammar().parse_interactive(start="statement")
@@ -164,8 +165,8 @@ class _Reader:
 
 def _declared(chunk: List[Token]) -> Set[str]:
     """The names that a statement with an error in it perhaps declares."""
-    kind = chunk[0].type
-    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "OBJECTIVE", "REACH_OBJECTIVE", "TAIL"):
+    kind = kind_of(chunk)
+    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "OBJECTIVE", "REACH_OBJECTIVE", "OPTIONAL", "TAIL"):
         tokens = [token for token in chunk if token.type == "UNCLOSED_COMMENT"]
     elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
         tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
@@ -186,6 +187,11 @@ def significant(tokens: Iterable[Token]) -> List[Token]:
     return kept
 
 
+def _opened(found: List[List[Token]]) -> bool:
+    """True where the last statement is `optional 1` so far."""
+    return bool(found) and found[-1][0].type == "OPTIONAL" and len(found[-1]) <= 2
+
+
 def chunks(tokens: List[Token]) -> List[List[Token]]:
     """The tokens cut into statements: at each word that begins one, and where a line begins like an unknown one."""
     found: List[List[Token]] = []
@@ -199,6 +205,10 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = goes_on or from_follows or (opens_line and (ended or following == "WORD"))
         elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
             begins = False  # a rule is for each robot, or agent
+        elif token.type == "OPTIONAL":  # a name may be called so; none is before a number
+            begins = following == "NUMBER" or (opens_line and following in ("OBJECTIVE", "REACH_OBJECTIVE"))
+        elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
+            begins = False
         elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
         elif token.type in ("WORD", "ROBOT") and opens_line and index:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterable, Iterator, List
+from typing import Dict, Iterable, Iterator, List
 
 from pursue_gen.language.conditions import condition_text, condition_words
 from pursue_gen.language.numbers import Number
@@ -30,7 +30,28 @@ def units(amount: str) -> str:
 
 def objective_words(scenario: Scenario) -> List[str]:
     """What is wanted, a sentence for each objective."""
-    return [_sentence(statement[0]) for statement in scenario.statements]
+    return [_ranked(objective, _sentence(objective)) for objective, *_ in scenario.statements]
+
+
+def promise_words(scenario: Scenario) -> List[str]:
+    """What has become of each number behind `optional` in a scenario that is solved, a sentence for each of them.
+
+    Empty where nothing is optional.
+    """
+    said: Dict[int, str] = {}
+    for number in scenario.optional:
+        texts = (objective_text(each) for each in scenario.objectives if each.optional == number)
+        said[number] = f"optional {number} is promised: {'; '.join(texts)}"
+    for one in scenario.given_up:
+        number = one.objective.optional
+        texts = (objective_text(each.objective) for each in scenario.given_up if each.objective.optional == number)
+        why = "cannot be promised together with the rest" if one.decided else "was too much work to decide"
+        said[number] = f"optional {number} is given up, it {why}: {'; '.join(texts)}"
+    return [said[number] for number in sorted(said)]
+
+
+def _ranked(objective: StatedObjective, text: str) -> str:
+    return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
 def _sentence(objective: StatedObjective) -> str:
@@ -136,7 +157,8 @@ def patrol_text(patrol: Patrol, places: Iterable[str]) -> str:
 def statement_text(objective: StatedObjective) -> str:
     """The whole statement, as in `objective: avoid e`."""
     word = "reach_objective" if isinstance(objective, Reach) else "objective"
-    return f"{word}: {objective_text(objective)}"
+    optional = f"optional {objective.optional} " if objective.optional else ""
+    return f"{optional}{word}: {objective_text(objective)}"
 
 
 def assumption_words(assumption: Assumption) -> str:

@@ -165,7 +165,7 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
     if set(SUBJECTS) <= set(kinds_behind(place.behind)):
         names_hide -= {"ANY", "NO"}
-    if [token.type for token in place.behind] == ["OBJECTIVE", "COLON"]:
+    if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
         names_hide -= {"ALWAYS", "PATROL"}
     if "BY" in (token.type for token in place.behind):
         names_hide.discard("ANY")

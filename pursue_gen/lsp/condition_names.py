@@ -6,7 +6,7 @@ from typing import Dict, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.messages import MAY_BE_NAMES
+from pursue_gen.language.messages import MAY_BE_NAMES, kind_of
 
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
@@ -22,7 +22,7 @@ _NAMES = frozenset(("WORD", *MAY_BE_NAMES))
 def condition_start(tokens: Sequence[Token]) -> Optional[int]:
     """The number of the first token of the condition in a statement, be it there or missing; None: it has none."""
     for number, token in enumerate(tokens):
-        if (tokens[0].type, token.type) in _OPENS:
+        if (kind_of(tokens), token.type) in _OPENS:
             following = tokens[number + 1].type if number + 1 < len(tokens) else ""
             return None if following == "NEVER_WITH" else number + 1  # always may be an agent's name
     return None

@@ -55,7 +55,7 @@ def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement
     elif token.type == "RPAR":
         yield "Delete this )", (Edit(at, end_of(token), ""),)
     elif part.kind == "OBJECTIVE" and token.type == "DO":
-        first = part.tokens[0]
+        first = next(one for one in part.tokens if one.type == "OBJECTIVE")
         edit = Edit(first.start_pos or 0, end_of(first), KEYWORDS["REACH_OBJECTIVE"])
         yield "Write reach_objective: do …", (edit,)
     elif part.kind == "RULE" and token.type in ("BEFORE", "OR"):

@@ -71,6 +71,7 @@ MEANINGS: Dict[str, str] = {
     "NO": "None of them: no robot, no agent.",
     "ROBOT": "The agents that are controllable and not human.",
     "DO": "The event that is wanted.",
+    "OPTIONAL": "An objective that is given up where it cannot be promised with the rest; 1 is kept longest.",
     "AFTER": "It counts when it happens later than so many units of time after the start.",
 }
 """What each word means, by token."""
@@ -141,6 +142,10 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     "REACH_OBJECTIVE": (
         Form("achieve something once", "reach_objective: do {event}"),
         Form("achieve several things in time", "reach_objective: do {event} and {event} within {=60}"),
+    ),
+    "OPTIONAL": (
+        Form("achieve something if it can be promised", "optional {=1} reach_objective: do {event}"),
+        Form("what always holds if it can be promised", "optional {=1} objective: avoid {event}"),
     ),
 }
 """What statements look like, by the token that begins them."""

@@ -260,6 +260,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
         ways = [f"- {name}: {lasts((time, exact(time + 1)))}" for name, time in times]
         return "\n".join(lines + _listed(ways))
+    if word == "OPTIONAL":
+        return "The first one to be given up is the one with the greatest number; those with one number go together."
     if word == "WITHIN" and part.kind == "ASSUME":
         return f"It has set off {units(number)} of time after it came, or after the start."
     if word == "EVERY":

@@ -8,7 +8,7 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Tup
 
 from lark import Token, UnexpectedToken
 
-from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, STATEMENTS
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, STATEMENTS, kind_of
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
 from pursue_gen.lsp.condition_names import condition_start, names_in_condition
@@ -79,8 +79,8 @@ class Statement:
 
     @property
     def kind(self) -> str:
-        """The token that begins it; anything where no statement begins like this."""
-        return str(self.tokens[0].type)
+        """The token that says which statement it is; anything where no statement begins like this."""
+        return kind_of(self.tokens)
 
     @property
     def start(self) -> int:
@@ -132,7 +132,7 @@ def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
         return names_in_condition(tokens, start)[1]
     named = are_names(tokens)
     keywords = [token.type for token, is_name in zip(tokens, named) if token.type in KEYWORDS and not is_name]
-    kind = _USED.get((tokens[0].type, keywords[-1])) if keywords else None
+    kind = _USED.get((kind_of(tokens), keywords[-1])) if keywords else None
     return () if kind is None else (kind,)
 
 
@@ -142,13 +142,14 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
     A word of the language that may be a name is one where a name has to stand.
     """
     named: List[bool] = []
+    kind = kind_of(tokens)
     for index, token in enumerate(tokens):
         before = tokens[index - 1] if index else None
         behind = before is not None and not named[-1] and (
-            before.type in _BEFORE_NAMES or (tokens[0].type, before.type) in _USED
+            before.type in _BEFORE_NAMES or (kind, before.type) in _USED
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
-        opens = index == 2 and tokens[0].type == "OBJECTIVE"
+        opens = before is not None and before.type == "COLON" and kind == "OBJECTIVE"
         begins = opens and token.type in ("ALWAYS", "PATROL") and following != "NEVER_WITH"
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named

@@ -9,9 +9,10 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.play.advice import Advisor
 from pursue_gen.play.counter import counter_game
 from pursue_gen.play.session import GameOf, Session
-from pursue_gen.play.state import Setup, beginning, setup_of
+from pursue_gen.play.state import beginning, setup_of
 from pursue_gen.play.texts import event_texts
 from pursue_gen.play.world import StrategyPlay
+from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import is_lost, solve_scenario
@@ -25,17 +26,19 @@ def session_of(
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
 ) -> Session:
-    """A new game of a scenario. Raises PursueError with exit status 5 where a limit is hit before it is decided."""
-    setup = setup_of(scenario, rules)
-    return Session(game_of(setup, seed, limits, progress), event_texts(scenario, setup.network), beginning(setup))
+    """A new game of a scenario: the person plays the others where its objectives can be met, else the robots.
 
-
-def game_of(setup: Setup, seed: int, limits: Limits, progress: Optional[Listener] = None) -> GameOf:
-    """The person plays the others where the objective can be met, else the robots."""
+    Raises PursueError with exit status 5 where a limit is hit before it is decided.
+    """
     try:
-        won = solve_scenario(setup.scenario, setup.rules, SolveOptions(limits, progress=progress))
+        options = SolveOptions(limits, progress=progress)
+        found = promised(scenario, options, lambda some, how: solve_scenario(some, rules, how))
     except PursueError as problem:
         if not is_lost(problem):
             raise
-        return counter_game(setup, limits.memory, progress)
-    return StrategyPlay(setup, Advisor(setup, won.strategy), seed)
+        setup = setup_of(scenario.giving_up(scenario.optional), rules)
+        game: GameOf = counter_game(setup, limits.memory, progress)
+    else:
+        setup = setup_of(found.scenario, rules)
+        game = StrategyPlay(setup, Advisor(setup, found.solution.strategy), seed)
+    return Session(game, event_texts(setup.scenario, setup.network), beginning(setup))

@@ -13,7 +13,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.texts import time_text
-from pursue_gen.language.wording import assumption_words, objective_words
+from pursue_gen.language.wording import assumption_words, objective_words, promise_words
 from pursue_gen.play.advice import Holding
 from pursue_gen.play.counter import CounterPlay
 from pursue_gen.play.saving import save
@@ -80,6 +80,7 @@ def opening(session: Session) -> Tuple[str, ...]:
     """The first lines."""
     setup = session.setup
     wants = (f"{setup.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(setup.scenario)))
+    wants += tuple(f"  ({sentence}.)" for sentence in promise_words(setup.scenario))
     if setup.scenario.assumptions:
         wants += ("What is assumed of others:", *(f"  {assumption_words(a)}." for a in setup.scenario.assumptions))
     if isinstance(session.game, StrategyPlay):

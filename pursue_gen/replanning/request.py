@@ -59,6 +59,7 @@ def read_request(data: object) -> Request:
                 raise wrong(f"{key} is {_shown(value)}", what)
     clocks = _object(_of(request, "clocks", "the request"), "clocks")
     scenario = _scenario(name, text)
+    scenario = scenario.giving_up(_numbers(game.get("given_up", ()), scenario))
     return Request(
         scenario=scenario,
         rules=_rules(_object(_of(game, "rules", "game"), "rules")),
@@ -91,6 +92,13 @@ def _scenario(name: str, text: str) -> Scenario:
             raise PursueError(problem.diagnostics, 2) from None
     assert reading.scenario is not None
     return reading.scenario
+
+
+def _numbers(data: object, scenario: Scenario) -> FrozenSet[int]:
+    """The numbers of the optional objectives that are given up."""
+    if not isinstance(data, (list, tuple)) or any(number not in scenario.optional for number in data):
+        raise wrong(f"given_up is {_shown(data)}", f"a list of numbers behind optional: {scenario.optional}")
+    return frozenset(data)
 
 
 def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:

@@ -13,6 +13,8 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.replay.orders import Orders, of_strategy
+from pursue_gen.solving.inputs import game_of as ideal_game
+from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solvers import solved
@@ -51,6 +53,7 @@ class Source:
     """Where a game comes from: a scenario's text, its rules, who commands, and a plan's text where there is one.
 
     `asked`: what the solver was asked for; `digest`: the SHA-256 of the plan that was played, empty where unknown.
+    `given_up`: the numbers of the optional objectives that were not promised; None: whatever cannot be.
     """
 
     name: str
@@ -62,6 +65,7 @@ class Source:
     plan: Optional[Tuple[str, str]] = None
     asked: SolveOptions = DEFAULT
     digest: str = ""
+    given_up: Optional[Tuple[int, ...]] = None
 
 
 def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]] = None) -> Source:
@@ -74,12 +78,13 @@ def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]
         shape = str(data.get("controllers", DISTRIBUTED)), str(data.get("reach_obj", DEDICATED))
         made = dict(data.get("plan") or {})
         within = None if made.get("within") is None else exact(made["within"])
+        given_up = tuple(int(number) for number in data.get("given_up", ()))
         optimize = None if made.get("optimize") is None else str(made["optimize"])
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         message = f"{file} does not describe a game: {problem!r}"
         raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
     asked = SolveOptions(optimize=optimize, within=within)
-    return Source(name, text, file, played_by, *shape, plan, asked, str(made.get("sha256", "")))
+    return Source(name, text, file, played_by, *shape, plan, asked, str(made.get("sha256", "")), given_up)
 
 
 def from_workspace(folder: Path) -> Source:
@@ -105,12 +110,25 @@ def read_game(text: str, file: str) -> Mapping[str, Any]:
     return data
 
 
+def _promised(scenario: Scenario, source: Source, asked: SolveOptions) -> Scenario:
+    """The scenario with what can be promised; with nothing optional where that is not known."""
+    try:
+        return promised(scenario, asked, lambda some, how: solved(*ideal_game(some), source.rules, how)).scenario
+    except PursueError:
+        return scenario.giving_up(scenario.optional)
+
+
 def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Game:
     """The game; its strategy is the plan of the source, or solved again where there is none: if it is the same plan.
 
     Raises PursueError for a scenario or a plan with errors; that no strategy is found is no error.
     """
     scenario = parse(source.text, source.file, source.name)
+    asked = replace(source.asked, limits=limits, progress=progress)
+    if source.given_up is not None:
+        scenario = scenario.giving_up(source.given_up)
+    elif scenario.optional:
+        scenario = _promised(scenario, source, asked)
     ideal, objective = translate(scenario), scenario_objective(scenario)
     network = played(ideal, source.rules)
     strategy: Strategy
@@ -118,7 +136,6 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
         strategy = read_plan(source.plan[0], network, source.plan[1])
     else:
         try:
-            asked = replace(source.asked, limits=limits, progress=progress)
             won = solved(ideal, objective, source.rules, asked)
         except PursueError as problem:
             return Game(scenario, network, objective, None, problem.diagnostics[0].message)

@@ -15,13 +15,15 @@ from pursue_gen.report.commands import Game
 from pursue_gen.report.recording import simulated
 from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report
+from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.synthesis.limits import Limits, Listener
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga import translate
 
 
 @dataclass(frozen=True)
@@ -37,10 +39,12 @@ class ReportOptions:
     floor: Optional[Floor] = None
 
 
-def solved_both(scenario: Scenario, options: SolveOptions) -> Tuple[Solution, Solution]:
-    """The default and the ideal game of a scenario. Raises as `solvers.solved` does."""
-    network, objective = translate(scenario), scenario_objective(scenario)
-    return solved(network, objective, Rules(), options), solved(network, objective, IDEAL, options)
+def solved_both(scenario: Scenario, options: SolveOptions) -> Tuple[Scenario, Tuple[Solution, Solution]]:
+    """What is promised of a scenario in the default game, solved in that and in the ideal game. Raises as
+    `solvers.solved` does.
+    """
+    found = promised(scenario, options, lambda some, how: solved(*game_of(some), Rules(), how))
+    return found.scenario, (found.solution, solved(*game_of(found.scenario), IDEAL, options))
 
 
 def won_report(
@@ -73,7 +77,7 @@ def lost_report(
     """The report on a scenario that is not won, as `problem` says: why, and what would change that; or that it is not
     decided, and what makes it so large (`option` as for `costs`).
     """
-    rules = Rules()
+    rules, scenario = Rules(), scenario.giving_up(scenario.optional)
     if is_lost(problem):
         lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress))
     else:

@@ -11,7 +11,7 @@ from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import assumption_words, kind_words, objective_words, speed_words, units
+from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words, units
 from pursue_gen.report.html import Section, table
 from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules
@@ -35,6 +35,8 @@ def section(
     """The verdict on the page; either `won` or `lost` is there."""
     wanted = "".join(f"<li>{safe(sentence)}</li>" for sentence in objective_words(scenario))
     parts = [f"<p>What is wanted:</p><ul>{wanted}</ul>"]
+    if won is not None:
+        parts += [f"<p>{safe(sentence)}.</p>" for sentence in promise_words(scenario)]
     if scenario.assumptions:
         assumed = "".join(f"<li>{safe(assumption_words(each))}</li>" for each in scenario.assumptions)
         parts.append(f"<p>What is assumed of others:</p><ul>{assumed}</ul>")

@@ -19,7 +19,8 @@ class SolveOptions:
     worst-case time to the goal, "none" for the first one found, None for a quick one that is found with little work.
     `within`: the goal has to be reached in so many time units; None: some time. `whole`: what cannot matter is not left
     out of the game, and the game is solved in one piece (an experiment). `solver`: None for the built-in solver,
-    "verifytga" for UPPAAL-TIGA's, which is at the path `verifytga` or on PATH.
+    "verifytga" for UPPAAL-TIGA's, which is at the path `verifytga` or on PATH. `most_work`: the work after which a game
+    in one piece is given up, whatever else has been tried before; 0: none.
     """
 
     limits: Limits = NO_LIMITS
@@ -30,6 +31,12 @@ class SolveOptions:
     whole: bool = False
     solver: Optional[str] = None
     verifytga: Optional[Path] = None
+    most_work: int = 0
+
+    @property
+    def in_one_piece(self) -> Limits:
+        """The limits of a game in one piece."""
+        return replace(self.limits, work=self.most_work) if self.most_work else self.limits
 
     def since(self, start: float) -> SolveOptions:
         """The same with the limits that are left of work that began at `start` (of time.monotonic())."""

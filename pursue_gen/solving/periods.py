@@ -67,18 +67,19 @@ def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
 def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Scenario:
     """The scenario with the least period that can be promised under these rules in place of each that is missing.
 
+    What is optional does not count.
     Where the search stops early, with the shortest that is known to be won; where none is, with the longest that is
     tried, and a `least` above it where that is lost. Of the options limits, engine and progress count.
     """
     if not without_period(scenario):
         return scenario
-    limits = options.limits
+    base, limits = scenario.giving_up(scenario.optional), options.limits
     limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     low, high, known = 2, longest(scenario), False  # nothing below `low` is won; `high` is, where it is `known`
     floor, probe = low, min(high, _farthest(scenario))
     while floor <= high and not (known and floor == high) and not budget.used_up:
-        won = _won(scenario, probe, rules, budget)
+        won = _won(base, probe, rules, budget)
         if won:
             high, known = probe, True
         else:

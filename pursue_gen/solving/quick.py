@@ -133,7 +133,7 @@ def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution
     if known.worst is None or known.worst > deadline:
         faster = None
         if deadline >= known.least:
-            budget = Budget(options.limits.since(start), options.progress, options.engine, whole=options.whole)
+            budget = Budget(options.since(start).in_one_piece, options.progress, options.engine, whole=options.whole)
             faster = in_time(with_counter(won.part), won.objective, won.reaction, deadline, budget)
             known = replace(known, least=max(known.least, deadline))
         if faster is None:

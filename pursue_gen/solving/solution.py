@@ -78,7 +78,7 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         if some is not None:
             return Solution(game, objective, some.strategy, rules.reaction, some.stats, rules=rules)
     if verdict is None:
-        how = options.engine, options.since(start).limits, options.progress
+        how = options.engine, options.since(start).in_one_piece, options.progress
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
@@ -186,7 +186,7 @@ def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options
         message += f"; no robot can do anything about it, as it depends on {' and '.join(alone)} alone"
         hint = "let something that a robot does matter to the objective, or make one of these agents controllable"
         return error(_CANNOT_BE_MET, message, hint=hint)
-    if rules != IDEAL and _won_ideally(network, objective, options):
+    if rules != IDEAL and not options.most_work and _won_ideally(network, objective, options):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
     return error(_CANNOT_BE_MET, message, hint=hint)

@@ -91,6 +91,16 @@ def periods_json(scenario: Scenario) -> Dict[str, Any]:
     return {"period": found[0]} if found else {}
 
 
+def optional_json(scenario: Scenario) -> Dict[str, Any]:
+    """What has become of the numbers behind `optional` in a scenario that is solved; nothing where there are none."""
+    given_up = {one.objective.optional: one.decided for one in scenario.given_up}
+    if not scenario.optional and not given_up:
+        return {}
+    undecided = sorted(number for number, decided in given_up.items() if not decided)
+    known = {"promised": list(scenario.optional), "given_up": sorted(given_up), "undecided": undecided}
+    return {"optional": known}
+
+
 def _left_out(won: Solution) -> List[str]:
     """The automata of which the strategy never speaks: they cannot matter."""
     named = {name for block in won.strategy.blocks for name, _ in block.state.locations}

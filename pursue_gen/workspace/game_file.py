@@ -30,6 +30,9 @@ def render(scenario: Scenario, options: Options, plan: str, generator: str) -> s
         "controllers": options.controllers,
         "reach_obj": options.reach_obj,
         "plan": inline(asked),
-        "scenario": scenario.text,
     }
+    given_up = sorted({one.objective.optional for one in scenario.given_up})
+    if given_up:
+        data["given_up"] = inline(given_up)
+    data["scenario"] = scenario.text
     return yaml_text(data, [head])

@@ -15,7 +15,7 @@ from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
 from pursue_gen.language.scenario import Connection, Reach, Safety, Scenario
-from pursue_gen.language.wording import condition_of_promise, listed
+from pursue_gen.language.wording import condition_of_promise, listed, objective_text
 from pursue_gen.partition import SubStrategy, partition, strategy_file
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -257,7 +257,9 @@ def _promise(scenario: Scenario) -> str:
     parts = [_reaches(reach) for reach in scenario.reach]
     parts += [f"keeps `{_source(scenario, safety)}`" for safety in scenario.safety]
     assumed = condition_of_promise(scenario)
-    return f"The mission {listed(parts)}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
+    kept = f"The mission {listed(parts)}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
+    given_up = [f"`{objective_text(one.objective)}`" for one in scenario.given_up]
+    return f"{kept} What is optional and had to be given up: {listed(given_up)}." if given_up else kept
 
 
 def _reaches(reach: Reach) -> str:

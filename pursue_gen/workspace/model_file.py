@@ -31,6 +31,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
     """The data of model.yaml, see `render`."""
     kinds = _kinds(scenario, objective)
     goal, bad = places_data(objective.goal), places_data(objective.bad)
+    says = {**_says(scenario, objective), **_given_up(scenario)}
     data: Dict[str, Any] = {
         "format": 2 if scenario.assumptions or _has_several(objective) else 1,
         "scenario": scenario.name,
@@ -38,7 +39,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
         "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],
-        "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **_says(scenario, objective)}),
+        "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
     if scenario.assumptions:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
@@ -63,6 +64,12 @@ def _says(scenario: Scenario, objective: Objective) -> Dict[str, Any]:
     """What each automaton watches, in the words of the scenario, where there are several."""
     said = {name: objective_text(each) for name, each in stated(scenario).items()}
     return {"says": said} if _has_several(objective) else {}
+
+
+def _given_up(scenario: Scenario) -> Dict[str, Any]:
+    """The optional objectives that the mission does not promise, in the words of the scenario, where there are any."""
+    texts = [objective_text(one.objective) for one in scenario.given_up]
+    return {"given_up": texts} if texts else {}
 
 
 def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:

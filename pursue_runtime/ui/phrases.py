@@ -38,7 +38,7 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     """What has happened in a state; `last`: the state before it, if that is known."""
     automaton = next((automaton for automaton in model.automata if automaton.name == state.agent), None)
     if automaton is None:
-        return "the mission starts" if state.event == START else state.event
+        return _starts(model) if state.event == START else state.event
     here = state.locations.get(state.agent, "")
     if automaton.kind not in ACTING:
         goals = dict(model.goal)
@@ -49,6 +49,11 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     edges = [edge for edge in automaton.edges if edge.word == state.event and edge.source != edge.target]
     likely = sorted(edges, key=lambda edge: (edge.target != here, edge.source != before))
     return f"{state.agent} {phrase(automaton, likely[0]).does if likely else 'does ' + state.event}"
+
+
+def _starts(model: Model) -> str:
+    """The first sentence of a mission, with what it does not promise."""
+    return f"the mission starts{'; it does not promise: ' if model.given_up else ''}{', '.join(model.given_up)}"
 
 
 def where(automaton: Automaton, location: str) -> str:

@@ -31,6 +31,8 @@ WHOLE = SMALL + "{}"
     ("line", "names"),
     [
         ("connect |", ["a", "b"]),
+        ("optional 1 reach_objective: do |", ["work", "hand", "rest"]),
+        ("optional 1 objective: patrol |", ["a", "b"]),
         ("connect a and |", ["b"]),
         ('event "new" location |', ["a", "b"]),
         ('rule "new": |', ["work", "hand", "rest"]),

@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.play.counter import CounterPlay
-from pursue_gen.play.games import game_of
+from pursue_gen.play.games import session_of
 from pursue_gen.play.session import GameOf, Session
-from pursue_gen.play.state import GRAIN, PlannedMove, PlayState, beginning, setup_of
+from pursue_gen.play.state import GRAIN, PlannedMove, PlayState, beginning
 from pursue_gen.play.texts import event_texts
 from pursue_gen.play.world import Offer, StrategyPlay
 from pursue_gen.solving.rules import IDEAL, Rules
-from pursue_gen.synthesis.limits import NO_LIMITS
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 
@@ -71,7 +70,7 @@ def changed(name: str, old: str, new: str) -> Scenario:
 def game(name: str, ideal: bool = False, old: str = "", new: str = "") -> GameOf:
     """The game of a scenario, solved once."""
     scenario = changed(name, old, new) if old else read(name)
-    return game_of(setup_of(scenario, IDEAL if ideal else Rules()), 1, NO_LIMITS)
+    return session_of(scenario, IDEAL if ideal else Rules()).game
 
 
 def session(name: str, old: str = "", new: str = "") -> Session:

@@ -47,7 +47,7 @@ def delivery(deadline: int) -> Scenario:
 
 def won_page(scenario: Scenario, runs: int = 0) -> str:
     first = SolveOptions(optimize="none")
-    return report_page(won_report(scenario, solved_both(scenario, first), ReportOptions(runs=runs), NO_LIMITS))
+    return report_page(won_report(*solved_both(scenario, first), ReportOptions(runs=runs), NO_LIMITS))
 
 
 @pytest.fixture(scope="module")

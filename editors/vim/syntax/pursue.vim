@@ -6,7 +6,7 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume connect event objective poi reach_objective rule state stateDependency travel
+syntax keyword pursueStatement agent assume connect event objective optional poi reach_objective rule state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after and at at_most avoid before between can_do collaborative controllable distance do does
 syntax keyword pursueKeyword duration false_if from human if initially leaves location mobile never never_with one_way

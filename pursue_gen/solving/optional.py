@@ -1,0 +1,121 @@
+"""Optional objectives: those that can be promised together with the rest, in the order of their numbers.
+
+All that is not optional has to be promised, else the scenario is lost. Then the objectives with number 1 are added,
+then those with number 2, and so on: each number stays that can be promised together with all that stayed before.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+from typing import Callable, Iterator, List, Optional, Tuple, TypeVar
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.given_plan import Trial, exit_status, try_plan
+from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest, solution_of
+from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.limits import Listener
+
+WORK = 100_000_000
+"""The work of the game in one piece with an optional objective: some twenty seconds. What takes more is given up."""
+
+_LOST, _LIMIT_HIT = 4, 5
+"""The exit statuses of errors for what cannot be met, and at a limit."""
+
+T = TypeVar("T")
+
+Solve = Callable[[Scenario, SolveOptions], Solution]
+"""Solves a scenario of which everything has to be promised."""
+
+
+@dataclass(frozen=True)
+class Promised:
+    """A scenario of which all objectives are promised, those that were given up aside, and its solution."""
+
+    scenario: Scenario
+    solution: Solution
+
+
+def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promised:
+    """The scenario with those of its optional objectives that can be promised, and its solution.
+
+    Each number gets an equal share of the seconds that are left, and no more than WORK. Raises as `solve` where what
+    is not optional cannot be promised, or is not decided.
+    """
+    start, numbers = time.monotonic(), scenario.optional
+    base = scenario.giving_up(numbers)
+    best = Promised(base, solve(base, options))
+    given_up: Tuple[Tuple[int, bool], ...] = ()
+    for place, number in enumerate(numbers):
+        left = options.since(start)
+        seconds = left.limits.left / (len(numbers) - place)
+        share = replace(left, limits=replace(left.limits, seconds=seconds, spent=0.0), most_work=WORK)
+        more = _without(scenario, numbers[place + 1 :], given_up)
+        try:
+            best = Promised(more, solve(more, share))
+        except PursueError as problem:
+            if problem.exit_status not in (_LOST, _LIMIT_HIT):
+                raise
+            given_up = (*given_up, (number, problem.exit_status == _LOST))
+    return replace(best, scenario=_without(scenario, (), given_up))
+
+
+def _without(scenario: Scenario, later: Tuple[int, ...], given_up: Tuple[Tuple[int, bool], ...]) -> Scenario:
+    scenario = scenario.giving_up(later)
+    for number, decided in given_up:
+        scenario = scenario.giving_up((number,), decided)
+    return scenario
+
+
+def promised_of(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Promised:
+    """What is promised of a scenario, with the solution that was asked for; a given plan is proven for the first of
+    `choices` that it wins. Raises as `solution_of`.
+    """
+
+    def solve(some: Scenario, options: SolveOptions) -> Solution:
+        return solution_of(*game_of(some), replace(request, options=options), progress)
+
+    if request.plan is None:
+        return promised(scenario, request.options, solve)
+    return _first(scenario, lambda choice: Promised(choice, solve(choice, request.options)), lambda found: True)
+
+
+def try_plan_of(
+    scenario: Scenario, plan: Path, request: SolveRequest, options: SolveOptions
+) -> Tuple[Scenario, Tuple[Trial, ...]]:
+    """The plan in a file, tried as `try_plan` does for each of `choices` until it wins one: which, and how."""
+
+    def tried(choice: Scenario) -> Tuple[Scenario, Tuple[Trial, ...]]:
+        network, objective = game_of(choice)
+        return choice, try_plan(plan, network, objective, request.games(network), options)
+
+    return _first(scenario, tried, lambda found: exit_status(found[1]) == 0)
+
+
+def _first(scenario: Scenario, attempt: Callable[[Scenario], T], wins: Callable[[T], bool]) -> T:
+    """What comes of the first of `choices` that wins, else of the first one. Raises as `attempt` where all do that."""
+    found: List[T] = []
+    problems: List[PursueError] = []
+    for choice in choices(scenario):
+        try:
+            found.append(attempt(choice))
+        except PursueError as problem:
+            problems.append(problem)
+            continue
+        if wins(found[-1]):
+            return found[-1]
+    if not found:
+        raise problems[0]
+    return found[0]
+
+
+def choices(scenario: Scenario) -> Iterator[Scenario]:
+    """The scenario with everything promised, then with less and less of it, what is to be kept longest last."""
+    numbers = scenario.optional
+    for kept in product((True, False), repeat=len(numbers)):
+        yield scenario.giving_up([number for number, keep in zip(numbers, kept) if not keep])
