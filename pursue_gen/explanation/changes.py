@@ -16,7 +16,7 @@ from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_ch
 from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
-from pursue_gen.language.wording import events_words, listed
+from pursue_gen.language.wording import answer_text, events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
@@ -251,7 +251,7 @@ def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
 
 
 def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
-    deadline, answer = safety.deadline, safety.response.name
+    deadline, answer = safety.deadline, answer_text(safety)
 
     def make(k: int) -> Variant:
         changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)

@@ -175,7 +175,7 @@ def _wanted(scenario: Scenario) -> Set[str]:
     names |= {ref.name for reach in scenario.reach for ref in reach.events}
     for safety in scenario.safety:
         if isinstance(safety, Respond):
-            names |= {safety.trigger.name, safety.response.name}
+            names |= {ref.name for ref in safety.events}
         elif isinstance(safety, Avoid):
             names.add(safety.event.name)
         elif isinstance(safety, NeverWith):

@@ -7,7 +7,7 @@ from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
-from pursue_gen.language.wording import events_words, listed, objective_text, units
+from pursue_gen.language.wording import answer_text, answered_text, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
@@ -106,7 +106,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     objectives = stated(scenario)
     for name, each in objectives.items():
         if isinstance(each, Respond):
-            clocks[clock_of(scenario, name)] = f"the last {each.trigger.name} or {each.response.name}"
+            clocks[clock_of(scenario, name)] = f"the last {answered_text(each)} or {answer_text(each)}"
         elif isinstance(each, Patrol):
             in_turn = " in its turn" if each.order else ""
             clocks[clock_of(scenario, name)] = f"the last visit of {each.place.name}{in_turn}, or the start"

@@ -10,7 +10,7 @@ from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import events_words, listed, patroller, visited
+from pursue_gen.language.wording import answer_text, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
@@ -105,7 +105,7 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
         safety = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
         if isinstance(safety, Respond):
             if play.game.origins[k].target == names.AT_RISK:
-                yield f" ({safety.response.name} is due by {time_text(step.at + safety.deadline)})"
+                yield f" ({answer_text(safety)} is due by {time_text(step.at + safety.deadline)})"
             elif play.game.origins[k].target == names.IDLE:
                 yield " (in time)"
         if isinstance(safety, Patrol) and play.game.origins[k].target == names.AT_RISK:
@@ -177,7 +177,7 @@ def _broken(objective: Optional[StatedObjective], play: Play) -> str:
         here = _place(play, objective.first.name)
         return f"{objective.first.name} and {objective.second.name} are together: both {here}"
     if isinstance(objective, Respond):
-        return f"too late: no {objective.response.name} within {objective.deadline} of {objective.trigger.name}"
+        return f"too late: {missed_text(objective)}"
     if isinstance(objective, Patrol):
         return f"too late: not {patroller(objective)} at {visited(objective)} for {objective.every}"
     if isinstance(objective, Reach):

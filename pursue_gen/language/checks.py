@@ -19,6 +19,7 @@ from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
 from pursue_gen.language.scenario import Agent, NeverWith, Patrol, Respond, Safety, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
+from pursue_gen.language.wording import answer_text, answered_text
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
@@ -240,9 +241,10 @@ def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _safety(scenario: Scenario, safety: Safety) -> Iterator[Diagnostic]:
-    if isinstance(safety, Respond) and safety.trigger.name == safety.response.name:
-        message = f"{safety.trigger.name} cannot be its own answer"
-        yield error("PML172", message, safety.response.span, "name the event that has to follow")
+    if isinstance(safety, Respond) and answered_text(safety) == answer_text(safety):
+        name, place = answer_text(safety), safety.span if safety.conditions else safety.events[1].span
+        kind = "condition" if safety.conditions else "event"
+        yield error("PML172", f"{name} cannot be its own answer", place, f"name the {kind} that has to follow")
     if isinstance(safety, NeverWith):
         start = {agent.name: agent.location.name for agent in scenario.agents}
         first, second = safety.first.name, safety.second.name

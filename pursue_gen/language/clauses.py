@@ -151,6 +151,14 @@ def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
     return tuple(kept)
 
 
+def holds_at_start(condition: Condition, scenario: Scenario, domains: Domains) -> bool:
+    """True if a condition holds before anything has happened. Raises TooMany."""
+    first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
+    first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
+    clauses = clauses_of(condition, domains)
+    return all(any(first[name] in values for name, values in clause.items()) for clause in clauses)
+
+
 def _either(one: Clause, other: Clause) -> Clause:
     return {name: one.get(name, frozenset()) | other.get(name, frozenset()) for name in (*one, *other)}
 

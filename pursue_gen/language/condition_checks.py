@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.clauses import FALSE, MOST_CLAUSES, TRUE, Domains, TooMany, Value, clauses_of
+from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
 from pursue_gen.language.conditions import (
     At,
     Atom,
@@ -18,7 +18,7 @@ from pursue_gen.language.conditions import (
     condition_words,
     conditions_of,
 )
-from pursue_gen.language.scenario import Always, NeverWith, Patrol, Scenario
+from pursue_gen.language.scenario import Always, NeverWith, Patrol, Respond, Scenario
 
 
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -32,6 +32,8 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
             if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
                 yield from _lost_at_start(scenario, safety, domains)
     for safety in scenario.safety:
+        if isinstance(safety, Respond):
+            yield from _answered(scenario, safety, domains)
         if isinstance(safety, Patrol):
             yield from _impossible(scenario, domains, At(safety.who, safety.place), safety.span)
         if isinstance(safety, NeverWith) and safety.place is not None:
@@ -39,12 +41,31 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
                 yield from _impossible(scenario, domains, At(Who(who), safety.place), safety.span)
 
 
+def _answered(scenario: Scenario, respond: Respond, domains: Domains) -> Iterator[Diagnostic]:
+    """Conditions of which no automaton could see when they come to hold, and those that are too large together."""
+    events = {event.name: event for event in scenario.events}
+    for atom in (atom for condition in respond.conditions for atom in atoms(condition)):
+        if not isinstance(atom, Doing):
+            continue
+        event, name = events[atom.event.name], atom.event.name
+        doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
+        if len(doers) > 1 or (event.is_shared and event.location is None):
+            message = f"it cannot be seen who begins {name}: several agents may be the one"
+            hint = f"name the event itself (if {name} then …), a state that it sets, or give it to one agent only"
+            yield error("PML262", message, atom.event.span, hint)
+    try:
+        size = sum(len(clauses_of(c, domains, value)) for c in respond.conditions for value in (True, False))
+    except TooMany:
+        return  # reported with the condition
+    if size > MOST_CLAUSES:
+        hint = "put what belongs together into states that events set, or split it into several statements"
+        message = f"these conditions, written as clauses that all have to hold, have more than {MOST_CLAUSES} of them"
+        yield error("PML233", message, respond.span, hint)
+
+
 def _lost_at_start(scenario: Scenario, safety: Always, domains: Domains) -> Iterator[Diagnostic]:
     """An objective that is broken before anything has happened."""
-    first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
-    first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
-    broken = clauses_of(safety.broken_if, domains)
-    if all(any(first[name] in values for name, values in clause.items()) for clause in broken):
+    if holds_at_start(safety.broken_if, scenario, domains):
         message = f"the objective is lost before anything moves: {condition_words(safety.broken_if)}"
         hint = "let agents start somewhere else, start the states with other values, or correct the condition"
         yield error("PML234", message, safety.span, hint)

@@ -111,6 +111,8 @@ def conditions_of(scenario: Scenario) -> Iterator[Tuple[Condition, Span]]:
         condition = getattr(safety, "condition", None)
         if condition is not None:
             yield condition, safety.span
+        for condition in getattr(safety, "conditions", ()):
+            yield condition, safety.span
 
 
 def condition_text(condition: Condition) -> str:

@@ -24,7 +24,8 @@ FORMS: Dict[str, str] = {
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
-    "OBJECTIVE": "objective: if e1 then e2 within 20 · objective: avoid e (or a condition: avoid open is_true) · "
+    "OBJECTIVE": "objective: if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20) · "
+    "objective: avoid e (or a condition: avoid open is_true) · "
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
     "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)",
     "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",

@@ -164,8 +164,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
         yield from all_of("event", [getattr(assumption, "event", None)])
         yield from all_of("POI", [getattr(assumption, "place", None)])
     for objective in scenario.objectives:
-        for field in ("trigger", "response", "event"):
-            yield from all_of("event", [getattr(objective, field, None)])
+        yield from all_of("event", [getattr(objective, "event", None)])
         yield from all_of("event", getattr(objective, "events", ()))
         for field in ("first", "second"):
             yield from all_of("agent", [getattr(objective, field, None)])

@@ -206,6 +206,10 @@ class _Builder:
     def _condition(self, tree: Any) -> Optional[Condition]:
         return None if tree is None else condition_of(tree, self._ref)
 
+    def _event_or(self, tree: Any) -> Union[pml.Ref, Condition]:
+        """The event that is named, or the condition."""
+        return self._ref(tree) if tree.data == "ref" else condition_of(tree, self._ref)
+
     def _window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
@@ -279,7 +283,8 @@ class _Builder:
         if objective.data == "patrol":
             return self._patrol(children, span)
         if objective.data == "respond":
-            return pml.Respond(self._ref(children[0]), self._ref(children[1]), self._number(children[2]), span)
+            trigger, response, deadline = children
+            return pml.Respond(self._event_or(trigger), self._event_or(response), self._number(deadline), span)
         if objective.data == "avoid" and children[0].data == "ref":
             return pml.Avoid(self._ref(children[0]), span)
         if objective.data in ("avoid", "always"):

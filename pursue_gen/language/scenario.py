@@ -227,13 +227,27 @@ class Travel:
 
 @dataclass(frozen=True)
 class Respond:
-    """`if trigger then response within deadline` (time units)."""
+    """`if trigger then response within deadline` (time units): events, or conditions.
 
-    trigger: Ref
-    response: Ref
+    A condition has to be answered when it comes to hold, and at the start where it holds; it answers as soon as it
+    holds.
+    """
+
+    trigger: Union[Ref, Condition]
+    response: Union[Ref, Condition]
     deadline: Number
     span: Span
     optional: int = 0
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        """Those of the two that are conditions."""
+        return tuple(what for what in (self.trigger, self.response) if not isinstance(what, Ref))
+
+    @property
+    def events(self) -> Tuple[Ref, ...]:
+        """Those of the two that are events."""
+        return tuple(what for what in (self.trigger, self.response) if isinstance(what, Ref))
 
 
 @dataclass(frozen=True)

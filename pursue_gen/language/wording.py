@@ -16,6 +16,7 @@ from pursue_gen.language.scenario import (
     NeverWith,
     Patrol,
     Reach,
+    Ref,
     Respond,
     Scenario,
     StatedObjective,
@@ -56,8 +57,13 @@ def _ranked(objective: StatedObjective, text: str) -> str:
 
 def _sentence(objective: StatedObjective) -> str:
     if isinstance(objective, Respond):
-        deadline = units(str(objective.deadline))
-        return f"Whenever {objective.trigger.name} happens, {objective.response.name} happens within {deadline}."
+        trigger, response, deadline = objective.trigger, objective.response, units(str(objective.deadline))
+        if isinstance(trigger, Ref):
+            begins = f"Whenever {trigger.name} happens"
+        else:
+            begins = f"Whenever it becomes true that {condition_words(trigger)}"
+        answer = f"{response.name} happens" if isinstance(response, Ref) else condition_words(response)
+        return f"{begins}, {answer} within {deadline}."
     if isinstance(objective, Avoid):
         return f"{objective.event.name} never happens."
     if isinstance(objective, NeverWith):
@@ -112,6 +118,22 @@ def patroller(patrol: Patrol) -> str:
     return "any robot" if patrol.who.agent is None else patrol.who.agent.name
 
 
+def answered_text(respond: Respond) -> str:
+    """What has to be answered: the name of an event, or a condition as it is written."""
+    return respond.trigger.name if isinstance(respond.trigger, Ref) else condition_text(respond.trigger)
+
+
+def answer_text(respond: Respond) -> str:
+    """The answer: the name of an event, or a condition as it is written."""
+    return respond.response.name if isinstance(respond.response, Ref) else condition_text(respond.response)
+
+
+def missed_text(respond: Respond) -> str:
+    """What is wrong where the answer does not come, as in `no wave within 5 of fall`."""
+    no = "no" if isinstance(respond.response, Ref) else "not once"
+    return f"{no} {answer_text(respond)} within {respond.deadline} of {answered_text(respond)}"
+
+
 def visited(patrol: Patrol) -> str:
     """Where a visit is due: a place, in its turn where the places have an order."""
     return f"{patrol.place.name}, in its turn," if patrol.order else patrol.place.name
@@ -132,7 +154,7 @@ def objective_text(objective: StatedObjective) -> str:
     """An objective as its author may write it, without the word that begins the statement; of a patrol in order the
     whole statement."""
     if isinstance(objective, Respond):
-        return f"if {objective.trigger.name} then {objective.response.name} within {objective.deadline}"
+        return f"if {answered_text(objective)} then {answer_text(objective)} within {objective.deadline}"
     if isinstance(objective, Avoid):
         return f"avoid {objective.event.name}"
     if isinstance(objective, NeverWith):

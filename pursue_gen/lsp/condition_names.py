@@ -11,7 +11,9 @@ from pursue_gen.language.messages import MAY_BE_NAMES, kind_of
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
-_OPENS = {("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS")}
+_OPENS = {
+    ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
+}  # fmt: skip
 """The statements with a condition in them, and the word behind which it begins."""
 
 _OBJECT = {"AT": "POI", "DOING": "event"}
@@ -33,7 +35,7 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
     that may follow the last token."""
     found: Dict[int, str] = {}
     # an event may stand there alone
-    subjects = ("event", *SUBJECTS) if tokens[start - 1].type == "AVOID" else SUBJECTS
+    subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
     expected: Tuple[str, ...] = subjects
     number = start
     while number < len(tokens):
@@ -48,5 +50,9 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
             expected = (_OBJECT[kind],)
         elif kind in ("AND", "OR", "NOT", "LPAR"):
             expected = subjects = SUBJECTS
+        elif kind == "THEN":
+            expected = subjects = ("event", *SUBJECTS)
+        elif kind == "WITHIN":
+            expected = ()
         number += 1
     return found, expected

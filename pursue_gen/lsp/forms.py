@@ -58,8 +58,8 @@ MEANINGS: Dict[str, str] = {
     "MOBILE": "It moves, and needs so many units of time for a unit of distance. A larger number is slower.",
     "CAN_DO": "The events that it does.",
     "REACTS_TO": "The collaborative events in which it is the partner.",
-    "IF": "After this event there has to be an answer.",
-    "THEN": "The event that has to follow.",
+    "IF": "After this event, or when this condition comes to hold, there has to be an answer.",
+    "THEN": "The event that has to follow, or the condition that has to hold at some moment.",
     "WITHIN": "How many units of time later the answer must have come.",
     "AVOID": "This event must never happen, or this condition must never hold.",
     "ALWAYS": "This condition must hold at every moment.",
@@ -130,6 +130,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     ),
     "OBJECTIVE": (
         Form("an answer in time", "objective: if {event} then {event} within {=20}"),
+        Form("an answer to what comes to hold", "objective: if {agent} at {POI} then {agent} at {POI} within {=20}"),
         Form("never", "objective: avoid {event}"),
         Form("never while …", "objective: avoid {agent} at {POI} and {agent} on_way"),
         Form("what always holds", "objective: always any robot at {POI}"),

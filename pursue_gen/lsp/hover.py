@@ -29,7 +29,7 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
-from pursue_gen.language.wording import assumption_words
+from pursue_gen.language.wording import answer_text, answered_text, assumption_words
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import MEANINGS
 from pursue_gen.lsp.tokens import Statement
@@ -155,10 +155,10 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
 def _wanted(scenario: Scenario, event: Event) -> List[str]:
     lines = []
     for safety in scenario.safety:
-        if isinstance(safety, Respond) and safety.trigger.name == event.name:
-            lines.append(f"- must be answered by {safety.response.name} within {units(safety.deadline)} of time")
-        if isinstance(safety, Respond) and safety.response.name == event.name:
-            lines.append(f"- is the answer to {safety.trigger.name}, within {units(safety.deadline)} of time")
+        if isinstance(safety, Respond) and answered_text(safety) == event.name:
+            lines.append(f"- must be answered by {answer_text(safety)} within {units(safety.deadline)} of time")
+        if isinstance(safety, Respond) and answer_text(safety) == event.name:
+            lines.append(f"- is the answer to {answered_text(safety)}, within {units(safety.deadline)} of time")
         if isinstance(safety, Avoid) and safety.event.name == event.name:
             lines.append("- must never happen")
     for reach in scenario.reach:

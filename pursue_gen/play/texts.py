@@ -11,7 +11,7 @@ from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import events_words, listed, patroller, visited
+from pursue_gen.language.wording import answer_text, events_words, listed, missed_text, patroller, visited
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
@@ -106,7 +106,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
         if isinstance(objective, Respond) and place == names.AT_RISK:
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
-            yield f"deadline: {objective.response.name} by {time_text(due)} at the latest"
+            yield f"deadline: {answer_text(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
@@ -163,7 +163,7 @@ def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
     for name in (*late, *broken):
         passed = objectives.get(name)
         if isinstance(passed, Respond):
-            return f"no {passed.response.name} within {passed.deadline} of {passed.trigger.name}"
+            return missed_text(passed)
         if isinstance(passed, Patrol):
             return f"not {patroller(passed)} at {visited(passed)} for {passed.every}"
         if isinstance(passed, Reach):

@@ -8,7 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import events_words, visited
+from pursue_gen.language.wording import answer_text, events_words, visited
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.report.statuses import broken, changes, conditions, holding
@@ -233,7 +233,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
         found, objective = stays(recording, automaton), objectives[automaton]
         if isinstance(objective, Respond):
             risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
-            yield Lane(name, _deadline(recording, scale, risks, objective.response.name))
+            yield Lane(name, _deadline(recording, scale, risks, answer_text(objective)))
         elif isinstance(objective, Patrol):
             risks = [(stay, stay.start + objective.period) for stay in found if stay.what == names.AT_RISK]
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
@@ -250,7 +250,7 @@ def _due(scenario: Scenario) -> Dict[str, str]:
     found: Dict[str, str] = {}
     for automaton, objective in stated(scenario).items():
         if isinstance(objective, Respond):
-            found[automaton] = f"deadline: {objective.response.name}"
+            found[automaton] = f"deadline: {answer_text(objective)}"
         elif isinstance(objective, Patrol):
             found[automaton] = f"visits: {objective.place.name}"
         elif isinstance(objective, Reach) and objective.within is not None:

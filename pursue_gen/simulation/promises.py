@@ -6,11 +6,11 @@ lost only where an objective is broken.
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, Optional, Set
+from typing import Dict, FrozenSet, List, Optional, Set, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.conditions import At
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Safety, Scenario
+from pursue_gen.language.conditions import At, Condition
+from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Ref, Safety, Scenario
 from pursue_gen.language.wording import objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
@@ -31,6 +31,7 @@ class Promises:
         self._places = [poi.name for poi in scenario.pois]
         self._done: List[Set[str]] = [set() for _ in scenario.reach]
         self._since: Dict[int, float] = {}
+        self._held: Set[int] = set()  # whose conditions that are to be answered have held in the state before
         self._turns: Dict[Span, int] = {}
         self._where: Dict[str, str] = {}
         self._broken: Dict[str, float] = {}
@@ -82,11 +83,21 @@ class Promises:
                 self._since.setdefault(number, latest)
             return since is not None and latest - since > safety.period
         missed = since is not None and latest - since > safety.deadline
-        if event == safety.response.name:
+        begun, before = self._is(safety.trigger, event, state), number in self._held
+        self._held.discard(number)
+        if begun and not isinstance(safety.trigger, Ref):
+            self._held.add(number)
+        if self._is(safety.response, event, state):
             self._since.pop(number, None)
-        elif event == safety.trigger.name:
+        elif begun and not before:
             self._since.setdefault(number, latest)
         return missed
+
+    def _is(self, what: Union[Ref, Condition], event: str, state: SystemState) -> bool:
+        """True if the event happens now, or the condition holds."""
+        if isinstance(what, Ref):
+            return event == what.name
+        return holds(what, self._scenario, state.locations, state.values)
 
     def _visited(self, state: SystemState) -> Set[int]:
         """The numbers of the places of patrols in order at which one of them arrives now, in its turn."""

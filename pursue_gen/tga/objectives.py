@@ -19,10 +19,11 @@ from pursue_gen.language.scenario import (
 )
 from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.names import AT_RISK, IDLE, LOSE, agent_position
+from pursue_gen.tga.names import IDLE, LOSE, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.positions import Positions
+from pursue_gen.tga.responses import respond_automaton
 
 _START, _UNLOCKED, _WIN = "initial_location", "unlocked", "win"
 
@@ -97,11 +98,9 @@ def safety_automaton(
 ) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
     happened = {event.name: names.has_happened(event) for event in scenario.events}
-    name, clock = names.safety_objective(number), names.safety_clock(number)
-    locations: Tuple[Location, ...] = (Location(IDLE), Location(LOSE))
+    name, locations = names.safety_objective(number), (Location(IDLE), Location(LOSE))
     if isinstance(safety, Respond):
-        locations += (Location(AT_RISK, (ClockBound(clock, "<=", safety.deadline),)),)
-        return Automaton(name, locations, IDLE, _respond(safety, happened, clock))
+        return respond_automaton(safety, scenario, conditions, number)
     if isinstance(safety, Avoid):
         lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
         return Automaton(name, locations, IDLE, (lose,))
@@ -112,17 +111,6 @@ def safety_automaton(
         edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)
         return Automaton(name, locations, IDLE, edges)
     return Automaton(name, locations, IDLE, _never_with(safety, positions))
-
-
-def _respond(safety: Respond, happened: Happened, clock: str) -> Tuple[Edge, ...]:
-    trigger = Sync(happened[safety.trigger.name], sends=False)
-    response = Sync(happened[safety.response.name], sends=False)
-    return (
-        Edge(IDLE, AT_RISK, sync=trigger, resets=(clock,)),
-        Edge(AT_RISK, IDLE, sync=response),
-        # The deadline is the invariant of atRisk; this is what remains to do when it is reached.
-        Edge(AT_RISK, LOSE),
-    )
 
 
 def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 
-from pursue_gen.language.scenario import Agent, Patrol, Scenario
+from pursue_gen.language.clauses import Domains
+from pursue_gen.language.scenario import Agent, Patrol, Respond, Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
+from pursue_gen.tga.responses import awaited_by
 
 _NOTHING: Tuple[Tuple[str, int], ...] = ()
 
 
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
-    """The agents with the POIs to whose arrival there a patrol listens: these edges have a channel."""
+    """The agents with the POIs to whose arrival there an objective listens: these edges have a channel."""
     patrols = (each for each in scenario.safety if isinstance(each, Patrol))
-    return frozenset((agent.name, each.place.name) for each in patrols for agent in scenario.on_patrol(each))
+    found = {(agent.name, each.place.name) for each in patrols for agent in scenario.on_patrol(each)}
+    duties = [each for each in scenario.safety if isinstance(each, Respond) and each.conditions]
+    domains = Domains(scenario)
+    return frozenset(found.union(*(awaited_by(each, scenario, domains) for each in duties)))
 
 
 def arrivals(scenario: Scenario) -> Iterator[str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import assumption_words, events_words, listed, objective_text
+from pursue_gen.language.wording import answer_text, assumption_words, events_words, listed, objective_text
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
@@ -103,7 +103,7 @@ def _duty(objective: StatedObjective, location: str) -> str:
         texts = {"win": "reached", "unlocked": f"{events_words(objective)} to be done", names.LATE: "too late"}
         return texts.get(location, found)
     if isinstance(objective, Respond):
-        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{objective.response.name} is due"})
+        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{answer_text(objective)} is due"})
     elif isinstance(objective, Patrol):
         who = "a robot" if objective.who.agent is None else objective.who.agent.name
         texts.update({names.IDLE: f"{who} is there", names.AT_RISK: "a visit is due"})

@@ -253,7 +253,8 @@ def texts(draw: st.DrawFn) -> str:
             who = draw(st.sampled_from(([name], ["any", "robot"])))
             return ["objective", ":", "patrol", *refs(), *maybe("in", "order"), *maybe("every", number), "by", *who]
         if kind == 7:
-            return ["objective", ":", "if", name, "then", other, "within", number]
+            some = [name] if draw(st.booleans()) else [name, "at", other, "and", "not", name, "on_way"]
+            return ["objective", ":", "if", *some, "then", other, "within", number]
         if kind == 8:
             return ["objective", ":", name, "never_with", other, "\n", "control : A[] not(obj.lose) \n"]
         return ["reach_objective", ":", "do", name, *maybe("after", number)]

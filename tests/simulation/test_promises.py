@@ -122,6 +122,28 @@ def test_a_patrol_in_order_counts_visits_in_their_turn(steps: List[Step], broken
     assert ended(ROUND, "lost", *steps) == excused
 
 
+COME = "objective: if kid at hall then bot at hall within 3"
+AWAY = ("bot_hall2lab", "going_hall_to_lab")
+
+
+@pytest.mark.parametrize(
+    ("objective", "steps", "broken"),
+    [
+        (COME, [(1, *AWAY, "lab"), (2, "x", "lab", "hall"), (6, "y", "lab", "hall")], True),
+        (COME, [(1, *AWAY, "lab"), (2, "x", "lab", "hall"), (4, "y", "hall", "hall"), (9, "z", "hall", "hall")], False),
+        # the kid goes and comes again: the time runs from when it came first
+        (COME, [(1, "", "lab", "hall"), (2, "", "lab", "lab"), (3, "", "lab", "hall"), (5, "", "lab", "hall")], True),
+        # while it stays, it need not be answered again
+        (COME, [(1, "x", "hall", "hall"), (2, *AWAY, "hall"), (9, "y", "lab", "hall")], False),
+        ("objective: if kid at lab then wave within 3", [(4, "x", "hall", "lab")], True),
+        ("objective: if fall then bot at lab within 3", [(1, FALL, "lab", "lab"), (9, "x", "hall", "lab")], False),
+    ],
+)  # fmt: skip
+def test_what_comes_to_hold_is_answered_in_time(objective: str, steps: List[Step], broken: bool) -> None:
+    excused: List[str] = [] if broken else ["the mission is lost, but no objective is broken"]
+    assert ended(objective, "lost", *steps) == excused
+
+
 def test_simulated_missions_are_held_against_the_objectives() -> None:
     text = f"{PLACES}reach_objective: do load and wave\n"
     read = parse(text, "x.pur", "x")

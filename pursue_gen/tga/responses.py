@@ -1,0 +1,151 @@
+"""`if … then … within`: automata that see when something has to be answered, and when it is.
+
+An event has a channel. A condition comes to hold by a move, so the automaton listens to the moves that change one of
+its parts: who sets off and arrives, what begins and ends, which events set a state. A receiver's guard is evaluated
+before the move; it says what has to hold there so that the condition holds afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+
+from pursue_gen.language.clauses import (
+    FALSE,
+    NEVER,
+    TRUE,
+    Clauses,
+    Domains,
+    Value,
+    clauses_of,
+    given,
+    holds_at_start,
+    simplified,
+)
+from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
+from pursue_gen.language.scenario import Ref, Respond, Scenario
+from pursue_gen.tga import names
+from pursue_gen.tga.conditions import Conditions
+from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
+
+
+@dataclass(frozen=True)
+class _Move:
+    """What a channel stands for: what becomes of the values of variables, and whose value is known before it."""
+
+    becomes: Mapping[Tuple[str, Value], Value]
+    known: Optional[Tuple[str, Value]] = None
+
+    def before(self, clauses: Clauses, domains: Domains) -> Clauses:
+        """What has to hold before the move so that the clauses hold after it."""
+        return tuple(
+            {
+                name: frozenset(v for v in domains.of(name) if self.becomes.get((name, v), v) in values)
+                for name, values in clause.items()
+            }
+            for clause in clauses
+        )
+
+    def guard(self, parts: Iterable[Clauses], domains: Domains) -> Optional[Clauses]:
+        """What is left to be tested so that all parts hold before the move; None where they cannot."""
+        clauses = simplified([clause for part in parts for clause in part], domains)
+        if clauses == NEVER:
+            return None
+        return clauses if self.known is None else given(clauses, *self.known)
+
+
+_Moves = Dict[str, _Move]
+
+
+def awaited_by(respond: Respond, scenario: Scenario, domains: Domains) -> Iterator[Tuple[str, str]]:
+    """The agents with the POIs at which their arrival changes one of its conditions."""
+    for condition in respond.conditions:
+        for atom in atoms(condition):
+            if isinstance(atom, (At, OnWay)):
+                places = [atom.place.name] if isinstance(atom, At) else [poi.name for poi in scenario.pois]
+                yield from ((agent, place) for agent in domains.among(atom.who) for place in places)
+
+
+def respond_automaton(respond: Respond, scenario: Scenario, conditions: Conditions, number: int) -> Automaton:
+    """The automaton of a duty to answer within a deadline: it is at risk from what is to be answered to the answer."""
+    clock, domains = names.safety_clock(number), conditions.domains
+    trigger, response = respond.trigger, respond.response
+    due, answered = _moves(trigger, scenario, domains), _moves(response, scenario, domains)
+    edges: List[Edge] = []
+    for channel, move in {**due, **answered}.items():
+        sync = Sync(channel, sends=False)
+        answers = _comes(response, move, domains) if channel in answered else None
+        at_once = isinstance(response, Ref) and channel in answered
+        if channel in due and not at_once:
+            parts = [] if isinstance(response, Ref) else [move.before(clauses_of(response, domains, False), domains)]
+            if not isinstance(trigger, Ref):
+                parts.append(clauses_of(trigger, domains, False))
+                parts.append(move.before(clauses_of(trigger, domains), domains))
+            guard = move.guard(parts, domains)
+            if guard is not None:
+                edges.append(Edge(IDLE, AT_RISK, Guard(integers=conditions.tests(guard)), sync, resets=(clock,)))
+        if answers is not None:
+            edges.append(Edge(AT_RISK, IDLE, Guard(integers=conditions.tests(answers)), sync))
+    # The deadline is the invariant of atRisk; this is what remains to do when it is reached.
+    edges.append(Edge(AT_RISK, LOSE))
+    locations = (Location(IDLE), Location(LOSE), Location(AT_RISK, (ClockBound(clock, "<=", respond.deadline),)))
+    waits = _holds_first(trigger, scenario, domains) and not _holds_first(response, scenario, domains)
+    return Automaton(names.safety_objective(number), locations, AT_RISK if waits else IDLE, tuple(edges))
+
+
+def _comes(what: Union[Ref, Condition], move: _Move, domains: Domains) -> Optional[Clauses]:
+    """What has to hold before the move so that the event happens, or the condition holds, with it; None: it cannot."""
+    return () if isinstance(what, Ref) else move.guard([move.before(clauses_of(what, domains), domains)], domains)
+
+
+def _holds_first(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) -> bool:
+    """True for a condition that holds at the start."""
+    return not isinstance(what, Ref) and holds_at_start(what, scenario, domains)
+
+
+def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) -> _Moves:
+    """The channels of the moves with which the event happens, or which can change the condition."""
+    events = {event.name: event for event in scenario.events}
+    found: _Moves = {}
+    if isinstance(what, Ref):
+        channel = names.has_happened(events[what.name])
+        return {channel: _event(channel, scenario, domains)}
+    for atom in atoms(what):
+        if isinstance(atom, (At, OnWay)):
+            for agent in (agent for agent in scenario.agents if agent.name in domains.among(atom.who)):
+                found.update(_movements(atom, agent.name, scenario.movements(agent)))
+        elif isinstance(atom, Holds):
+            (state,) = (state for state in scenario.states if state.name == atom.state.name)
+            for ref in (*state.true_if, *state.false_if):
+                found[ref.name] = _event(ref.name, scenario, domains)
+        else:
+            for channel in (atom.event.name, names.done(atom.event.name)):
+                found[channel] = _event(channel, scenario, domains)
+    return found
+
+
+def _movements(atom: Union[At, OnWay], agent: str, ways: Iterable[Tuple[str, str]]) -> Iterator[Tuple[str, _Move]]:
+    """The agent's moves that can change whether it is there, or on its way."""
+    for a, b in ways:
+        way, origin, target = Value("way", a, b), Value("at", a), Value("at", b)
+        if isinstance(atom, OnWay) or atom.place.name == a:
+            yield names.movement(agent, a, b), _Move({(agent, origin): way}, (agent, origin))
+        if isinstance(atom, OnWay) or atom.place.name == b:
+            yield names.arrival(agent, a, b), _Move({(agent, way): target}, (agent, way))
+
+
+def _event(channel: str, scenario: Scenario, domains: Domains) -> _Move:
+    """What the beginning or the end of an event changes: states, and what agents are busy with."""
+    becomes: Dict[Tuple[str, Value], Value] = {}
+    for state in scenario.states:
+        for value, refs in ((TRUE, state.true_if), (FALSE, state.false_if)):
+            if any(ref.name == channel for ref in refs):
+                becomes.update(((state.name, old), value) for old in (TRUE, FALSE))
+    for agent in scenario.agents:
+        for work in domains.of(agent.name):
+            if work.kind == "doing" and channel == work.what:
+                becomes[agent.name, Value("at", work.where)] = work
+            elif work.kind == "doing" and channel == names.done(work.what):
+                becomes[agent.name, work] = Value("at", work.where)
+    return _Move(becomes)
