@@ -86,6 +86,8 @@ class Model:
                 Assumption(str(each["variable"]), str(each.get("clock", "")), str(each["says"]))
                 for each in data.get("assumptions", ())
             )
+            self.labels = {str(name): str(label) for name, label in dict(data.get("labels") or {}).items()}
+            """What people read in place of names of places, events and agents."""
             objective = data["objective"]
             self.objective = str(objective["kind"])
             self.goal = places_of(objective["goal"])
@@ -103,6 +105,10 @@ class Model:
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""
         return self._by_name[name]
+
+    def shown(self, name: str) -> str:
+        """What people read for a name: its label, or the name itself."""
+        return self.labels.get(name, name)
 
     def of_kind(self, *kinds: str) -> List[Automaton]:
         """The automata of these kinds, in system order."""

@@ -40,7 +40,7 @@ def draw(
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
     body += [part for c in scenario.connections for part in _connection(places[c.a], places[c.b], c)]
-    body += [_poi(name, places[name]) for name in sorted(places)]
+    body += [_poi(scenario.shown(name), places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
         body += [mark(looks[agent_name], *paper.point(pose.x, pose.y), 5.0) for pose in beside]
@@ -134,8 +134,8 @@ def _happening(scenario: Scenario, places: Mapping[str, Point]) -> List[str]:
             continue
         name = event.location.name
         x, y = places[name]
-        first = 31 if len(name) <= 3 else 47
-        words = f"⚙ {event.name}{_lasts(event)}"
+        first = 31 if len(scenario.shown(name)) <= 3 else 47
+        words = f"⚙ {event.shown}{_lasts(event)}"
         parts.append(text(x, y + first + 15 * rows.get(name, 0), words, "pg-small pg-halo"))
         rows[name] = rows.get(name, 0) + 1
     return parts
@@ -162,9 +162,9 @@ def _standing(scenario: Scenario, places: Mapping[str, Point], looks: Mapping[st
         x, y = places[agent.location.name]
         row = standing.get(agent.location.name, 0)
         standing[agent.location.name] = row + 1
-        up, half = y - 26 - 17 * row, _LETTER * len(agent.name) / 2
+        up, half = y - 26 - 17 * row, _LETTER * len(agent.shown) / 2
         parts.append(mark(looks[agent.name], x - half - 4, up - 5, 7.0))
-        parts.append(text(x + 8, up, agent.name, "pg-halo"))
+        parts.append(text(x + 8, up, agent.shown, "pg-halo"))
     return parts
 
 
@@ -178,17 +178,17 @@ def _legend(agent: Agent, look: AgentLook, lines: List[str], top: float) -> List
 
 def _description(agent: Agent, scenario: Scenario) -> str:
     """What an agent is and can do, in a sentence."""
-    parts = [f"{agent.name}: {kind_words(agent)}, {speed_words(agent, scenario)}"]
+    parts = [f"{agent.shown}: {kind_words(agent)}, {speed_words(agent, scenario)}"]
     if agent.can_do:
-        parts.append("can do " + ", ".join(ref.name for ref in agent.can_do))
+        parts.append("can do " + ", ".join(ref.shown for ref in agent.can_do))
     if agent.reacts_to:
-        parts.append("takes part in " + ", ".join(ref.name for ref in agent.reacts_to))
+        parts.append("takes part in " + ", ".join(ref.shown for ref in agent.reacts_to))
     return "; ".join(parts)
 
 
 def _anywhere(scenario: Scenario) -> str:
     """Events that are bound to no place."""
-    free = [event.name + _lasts(event) for event in scenario.events if event.location is None]
+    free = [event.shown + _lasts(event) for event in scenario.events if event.location is None]
     return f"Anywhere: {', '.join(free)}" if free else ""
 
 
@@ -202,10 +202,11 @@ def _conditions(scenario: Scenario) -> Iterator[str]:
     """The ways and events that are not always open, and while what."""
     for way in scenario.connections:
         if way.only_if is not None:
-            yield f"Between {way.a} and {way.b} only while {condition_words(way.only_if)}"
+            ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+            yield f"Between {ends} only while {condition_words(way.only_if)}"
     for event in scenario.events:
         if event.only_if is not None:
-            yield f"{event.name} only while {condition_words(event.only_if)}"
+            yield f"{event.shown} only while {condition_words(event.only_if)}"
 
 
 def _wrapped(words: str, room: float) -> List[str]:

@@ -16,7 +16,7 @@ from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_ch
 from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
-from pursue_gen.language.wording import answer_text, events_words, listed
+from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
@@ -232,9 +232,10 @@ def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> _Kno
         return scenario, replace(rules, slack={**rules.slack, agent: k})
 
     def say(k: int) -> str:
-        return f"{agent} late by at most {k} instead of {late}"
+        return f"{scenario.shown(agent)} late by at most {k} instead of {late}"
 
-    return _number("slack", agent, f"{agent} less late", late, range(late - 1, -1, -1), make, say, None, 5)
+    label = f"{scenario.shown(agent)} less late"
+    return _number("slack", agent, label, late, range(late - 1, -1, -1), make, say, None, 5)
 
 
 def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
@@ -251,7 +252,7 @@ def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
 
 
 def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
-    deadline, answer = safety.deadline, answer_text(safety)
+    deadline, answer = safety.deadline, answer_words(safety)
 
     def make(k: int) -> Variant:
         changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)
@@ -262,7 +263,7 @@ def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
 
     furthest = deadline + max(deadline, 2 * _all_time(scenario))
     later = whole_above(deadline, furthest)
-    return _number("deadline", answer, "a later deadline", deadline, later, make, say, safety.span, 1)
+    return _number("deadline", answer_text(safety), "a later deadline", deadline, later, make, say, safety.span, 1)
 
 
 def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
@@ -272,7 +273,9 @@ def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
 
 def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
     every, together = patrol.period, _of_one_statement(scenario, patrol)
-    place = listed(each.place.name for each in together) + (" in order" if patrol.order else "")
+    in_order = " in order" if patrol.order else ""
+    place = listed(each.place.shown for each in together) + in_order
+    name = listed(each.place.name for each in together) + in_order
 
     def make(k: int) -> Variant:
         rarer: Dict[Safety, Safety] = {each: replace(each, every=k) for each in together}
@@ -283,11 +286,15 @@ def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
         return f"a patrol of {place} every {k} instead of {every}"
 
     rarer = whole_above(every, every + max(every, 2 * _all_time(scenario)))
-    return _number("deadline", place, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
+    return _number("deadline", name, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
 
 
 def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:
     return replace(scenario, reach=tuple(new if each is old else each for each in scenario.reach))
+
+
+def _names(reach: Reach) -> str:
+    return listed(ref.name for ref in reach.events)
 
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> _Knob:
@@ -300,7 +307,7 @@ def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> _Knob:
         return f"{goal} after {k} instead of {reach.after}"
 
     earlier = whole_below(reach.after, 0)
-    return _number("after", goal, f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
+    return _number("after", _names(reach), f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
 
 
 def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number) -> _Knob:
@@ -313,7 +320,7 @@ def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number)
         return f"{goal} within {k} instead of {within}"
 
     later = whole_above(within, within + max(within, 2 * _all_time(scenario)))
-    return _number("within", goal, f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
+    return _number("within", _names(reach), f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
 
 
 def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
@@ -326,12 +333,12 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Kn
         return replace(scenario, agents=changed), rules
 
     def say(k: int) -> str:
-        return f"a {word} {agent.name}, mobile {k} instead of {pace}"
+        return f"a {word} {agent.shown}, mobile {k} instead of {pace}"
 
     word = "faster" if agent.controllable else "slower"
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
     if values:
-        yield _number("agent", agent.name, f"a {word} {agent.name}", pace, values, make, say, agent.span, 2)
+        yield _number("agent", agent.name, f"a {word} {agent.shown}", pace, values, make, say, agent.span, 2)
 
 
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
@@ -345,19 +352,19 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         return replace(scenario, events=changed), rules
 
     def say(k: int) -> str:
-        return f"{event.name} lasting {k} instead of {duration or 'no time'}"
+        return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
 
     if event.duration is None:
         if scenario.reach and _may_be_endless(scenario, event):
-            yield _number("duration", event.name, f"a longer {event.name}", 0, (1,), make, say, event.span, 0)
+            yield _number("duration", event.name, f"a longer {event.shown}", 0, (1,), make, say, event.span, 0)
         return
     if duration > 1:
         values = whole_below(duration, 1)
-        yield _number("duration", event.name, f"a shorter {event.name}", duration, values, make, say, event.span, 2)
+        yield _number("duration", event.name, f"a shorter {event.shown}", duration, values, make, say, event.span, 2)
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     if doers and not any(agent.controllable for agent in doers):
         longer = whole_above(duration, max(duration * 2, 2 * _all_time(scenario)))
-        yield _number("duration", event.name, f"a longer {event.name}", duration, longer, make, say, event.span, 2)
+        yield _number("duration", event.name, f"a longer {event.shown}", duration, longer, make, say, event.span, 2)
 
 
 def _number_knobs(rules: Rules, changes: Iterable[NumberChange]) -> Iterator[_Knob]:
@@ -377,7 +384,7 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
 
 
 def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[_Knob]:
-    ends = f"{connection.a} and {connection.b}"
+    ends = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}"
 
     def make(k: int) -> Variant:
         changed = tuple(replace(c, distance=k) if c == connection else c for c in scenario.connections)
@@ -418,7 +425,7 @@ def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_
     if not agent.controllable and (agent.can_do or agent.mobile is not None):
         ally = replace(agent, human=True, controllable=True)
         changed = replace(scenario, agents=tuple(ally if a.name == agent.name else a for a in scenario.agents))
-        label = f"{agent.name} following instructions (human controllable)"
+        label = f"{agent.shown} following instructions (human controllable)"
         yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
 
 

@@ -7,7 +7,7 @@ from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
-from pursue_gen.language.wording import answer_text, answered_text, events_words, listed, objective_text, units
+from pursue_gen.language.wording import answer_words, answered_words, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import names
@@ -25,7 +25,7 @@ class Words:
     """What to call things. `clocks`: clock → the moment since which it counts; `turns`: (rule, location) → its words.
 
     `places`: location of any agent → words; `moves`: (automaton, channel, location left by a step of its own) → words;
-    `parts`: location of any agent → (at, place), (way, from, to) or (doing, place, event).
+    `parts`: location of any agent → (at, place), (way, from, to) or (doing, place, event), by their names.
     """
 
     clocks: Dict[str, str]
@@ -39,7 +39,7 @@ class Words:
         """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
         objective = self.objectives.get(automaton)
         if isinstance(objective, Reach):
-            done = [objective.events[k].name for k in events_done(location)]
+            done = [objective.events[k].shown for k in events_done(location)]
             found = f"{listed(done)} done" if done else "not counting yet"
             return {"win": "reached", "unlocked": "to be reached", names.LATE: "too late"}.get(location, found)
         if objective is not None:
@@ -102,55 +102,70 @@ class Words:
 
 def words_of(scenario: Scenario, network: Network) -> Words:
     """The words for a scenario and its network."""
-    clocks = {names.agent_clock(agent.name): f"{agent.name}'s last step" for agent in scenario.agents}
+    clocks = {names.agent_clock(agent.name): f"{agent.shown}'s last step" for agent in scenario.agents}
     objectives = stated(scenario)
     for name, each in objectives.items():
         if isinstance(each, Respond):
-            clocks[clock_of(scenario, name)] = f"the last {answered_text(each)} or {answer_text(each)}"
+            clocks[clock_of(scenario, name)] = f"the last {answered_words(each)} or {answer_words(each)}"
         elif isinstance(each, Patrol):
             in_turn = " in its turn" if each.order else ""
-            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.name}{in_turn}, or the start"
+            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.shown}{in_turn}, or the start"
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
-            clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s last {assumption.event.name}"
+            clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s last {assumption.event.shown}"
         elif isinstance(assumption, Leaves):
-            clocks[names.assumption_clock(number)] = f"{assumption.agent.name}'s arrival at {assumption.place.name}"
+            clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s arrival at {assumption.place.shown}"
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     turns = {}
     for own in own_turns(scenario):
         for location in own.order.locations:
-            turns[own.name, location.name] = turn_words(own.order, location.name)
+            turns[own.name, location.name] = turn_words(scenario, own.order, location.name)
     for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
         for location in automaton.locations:
-            turns[rule.name, location.name] = turn_words(automaton, location.name)
+            turns[rule.name, location.name] = turn_words(scenario, automaton, location.name)
     for event, most in counted(scenario):
         automaton = network.automaton(names.count(event.name))
         for number, location in enumerate(automaton.locations):
-            turns[automaton.name, location.name] = f"{number} of {most} {event.name}"
-    places, moves = {}, {}
+            turns[automaton.name, location.name] = f"{number} of {most} {scenario.shown(event.name)}"
+    places: Dict[str, str] = {}
+    moves: Dict[Tuple[str, str, str], str] = {}
     parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}
+    places.update((poi.name, f"at {poi.label}") for poi in scenario.pois if poi.label)
     for a, b in (way for connection in scenario.connections for way in connection.directions):
-        places[names.going(a, b)] = f"on the way from {a} to {b}"
+        here, there = scenario.shown(a), scenario.shown(b)
+        places[names.going(a, b)] = f"on the way from {here} to {there}"
         parts[names.going(a, b)] = ("way", a, b)
         for agent in scenario.agents:
-            moves[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
-            moves[agent.name, "", names.going(a, b)] = f"arrives at {b} from {a}"
-            moves[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {b} from {a}"
+            moves[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {here} to {there}"
+            moves[agent.name, "", names.going(a, b)] = f"arrives at {there} from {here}"
+            moves[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {there} from {here}"
     for event in scenario.events:
         for poi in scenario.pois:
-            places[names.doing(event.name, poi.name)] = f"doing {event.name} at {poi.name}"
+            places[names.doing(event.name, poi.name)] = f"doing {event.shown} at {poi.shown}"
             parts[names.doing(event.name, poi.name)] = ("doing", poi.name, event.name)
         for agent in scenario.agents:
-            begins = f"does {event.name}" if event.duration is None else f"begins {event.name}"
+            begins = f"does {event.shown}" if event.duration is None else f"begins {event.shown}"
             moves[agent.name, event.name, ""] = begins
-            moves[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
+            moves[agent.name, names.done(event.name), ""] = f"has finished {event.shown}"
     return Words(clocks, turns, places, moves, parts, objectives)
 
 
 def zone_texts(zone: Zone) -> str:
     """The zone exactly, as plans and strategy files have it."""
     return " && ".join(constraint_texts(zone, space=" ")) or "always"
+
+
+def place_words(scenario: Scenario, location: str) -> str:
+    """Where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
+    for a, b in (way for connection in scenario.connections for way in connection.directions):
+        if location == names.going(a, b):
+            return f"on the way from {scenario.shown(a)} to {scenario.shown(b)}"
+    for event in scenario.events if names.is_doing(location) else ():
+        for poi in scenario.pois:
+            if location == names.doing(event.name, poi.name):
+                return f"doing {event.shown} at {poi.shown}"
+    return f"at {scenario.shown(location)}"
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:

@@ -36,24 +36,24 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
     """An event that ends earlier at the latest; one of the environment that ends later at the earliest."""
     if event.window is None:
         return
-    name, span, (low, high) = event.name, event.span, event.window
+    name, shown, span, (low, high) = event.name, event.shown, event.span, event.window
 
     def make(earliest: Number, latest: Number) -> Scenario:
         changed = replace(event, duration=earliest, latest=latest)
         return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
 
     def say(earliest: Number, latest: Number) -> str:
-        return f"{name} lasting {earliest} to {latest} instead of {low} to {high}"
+        return f"{shown} lasting {earliest} to {latest} instead of {low} to {high}"
 
     doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
     if high - low > 1:
         yield NumberChange(
-            "latest", name, f"a {name} that ends earlier", high, whole_below(high, floor(low) + 1),
+            "latest", name, f"a {shown} that ends earlier", high, whole_below(high, floor(low) + 1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
         yield NumberChange(
-            "earliest", name, f"a {name} that ends later", low, whole_above(low, ceil(high) - 1),
+            "earliest", name, f"a {shown} that ends later", low, whole_above(low, ceil(high) - 1),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
@@ -61,24 +61,25 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
 def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]:
     """A way that an agent takes in less time; one that is not controllable: in more."""
     low, high = travel.window
-    name, (a, b), span = travel.agent.name, travel.way, travel.span
+    name, who, span = travel.agent.name, travel.agent.shown, travel.span
+    a, b = travel.a.shown, travel.b.shown
 
     def make(earliest: Number, latest: Number) -> Scenario:
         changed = replace(travel, earliest=earliest, latest=latest)
         return replace(scenario, travels=tuple(changed if t == travel else t for t in scenario.travels))
 
     def say(earliest: Number, latest: Number) -> str:
-        return f"{name} going from {a} to {b} in {earliest} to {latest} instead of {low} to {high}"
+        return f"{who} going from {a} to {b} in {earliest} to {latest} instead of {low} to {high}"
 
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
             yield NumberChange(
-                "travel", name, f"{name} going faster from {a} to {b}", high, whole_below(high, 1),
+                "travel", name, f"{who} going faster from {a} to {b}", high, whole_below(high, 1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
         yield NumberChange(
-            "travel", name, f"{name} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
+            "travel", name, f"{who} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
 
@@ -91,11 +92,11 @@ def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Numbe
         return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
 
     def say(k: int) -> str:
-        return f"{event.name} at_most {k} times instead of {most}"
+        return f"{event.shown} at_most {k} times instead of {most}"
 
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     ours = any(agent.controllable for agent in doers)
     values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
     if values:
-        label = f"{event.name} {'more' if ours else 'less'} often"
+        label = f"{event.shown} {'more' if ours else 'less'} often"
         yield NumberChange("times", event.name, label, most, values, make, say, event.span)

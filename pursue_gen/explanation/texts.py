@@ -7,10 +7,11 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.explanation.endless import may_repeat
+from pursue_gen.explanation.network_words import place_words
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import answer_text, events_words, listed, missed_text, patroller, visited
+from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
@@ -37,7 +38,7 @@ def describe(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
         owner = play.game.automata[step.owner].name
         text = words.get(_key(play, step))
         if text is not None:
-            lines.append(TimedLine(step.at, owner, text + "".join(_remarks(scenario, play, step))))
+            lines.append(TimedLine(step.at, scenario.shown(owner), text + "".join(_remarks(scenario, play, step))))
     return (*lines, *_ending(scenario, play))
 
 
@@ -55,7 +56,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
     if play.first:
         step = CounterStep(Fraction(0), play.game.edges[play.first[0]].automaton, play.first)
         owner, *_ = key = _key(play, step)
-        first = f"{owner} {words.get(key, key[1])}"
+        first = f"{scenario.shown(owner)} {words.get(key, key[1])}"
     else:
         first = "the robots wait"
     others = {agent.name for agent in scenario.agents if not agent.controllable}
@@ -64,7 +65,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
         text = words.get(_key(play, step))
         owner = play.game.automata[step.owner].name
         if owner in others and text is not None and not is_end(play.game.origins[step.edges[0]]):
-            done.append(f"{owner} {text} at {time_text(step.at)}")
+            done.append(f"{scenario.shown(owner)} {text} at {time_text(step.at)}")
     ending = _ending(scenario, play)[0]
     return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({time_text(ending.at)})"]))
 
@@ -88,13 +89,14 @@ def _words(scenario: Scenario) -> Dict[_Key, str]:
     words: Dict[_Key, str] = {}
     for agent in scenario.agents:
         for event in scenario.events:
-            begins = event.name if event.duration is None else f"begins {event.name}"
+            begins = event.shown if event.duration is None else f"begins {event.shown}"
             words[agent.name, event.name, ""] = begins
-            words[agent.name, names.done(event.name), ""] = f"has finished {event.name}"
+            words[agent.name, names.done(event.name), ""] = f"has finished {event.shown}"
         for a, b in (way for connection in scenario.connections for way in connection.directions):
-            words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {a} to {b}"
-            words[agent.name, "", names.going(a, b)] = f"arrives at {b}"
-            words[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {b}"
+            there = scenario.shown(b)
+            words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {scenario.shown(a)} to {there}"
+            words[agent.name, "", names.going(a, b)] = f"arrives at {there}"
+            words[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {there}"
     return words
 
 
@@ -105,7 +107,7 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
         safety = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
         if isinstance(safety, Respond):
             if play.game.origins[k].target == names.AT_RISK:
-                yield f" ({answer_text(safety)} is due by {time_text(step.at + safety.deadline)})"
+                yield f" ({answer_words(safety)} is due by {time_text(step.at + safety.deadline)})"
             elif play.game.origins[k].target == names.IDLE:
                 yield " (in time)"
         if isinstance(safety, Patrol) and play.game.origins[k].target == names.AT_RISK:
@@ -138,7 +140,7 @@ def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
     moves = [move for move in joint_moves(game, state) if game.automata[move.owner].name in agents]
     words = _words(scenario)
     keys = [_key(play, CounterStep(play.at, move.owner, move.edges)) for move in moves if not move.controllable]
-    undone = ", ".join(dict.fromkeys(f"{key[0]}: {words[key]}" for key in keys))
+    undone = ", ".join(dict.fromkeys(f"{scenario.shown(key[0])}: {words[key]}" for key in keys))
     if undone and not any(move.controllable for move in moves):
         yield f"the robots can do nothing before one of these, and none of them needs to happen: {undone}"
     elif undone and play.end == "idle":
@@ -152,12 +154,15 @@ def _endless(scenario: Scenario, play: Play) -> str:
         edge = game.origins[move.edges[0]]
         if may_repeat(edge) and edge.sync is not None:
             repeated.setdefault(game.automata[move.owner].name, []).append(edge.sync.channel)
-    who = ", ".join(f"{name} with {' and '.join(dict.fromkeys(events))}" for name, events in repeated.items())
+    who = ", ".join(
+        f"{scenario.shown(name)} with {' and '.join(dict.fromkeys(map(scenario.shown, events)))}"
+        for name, events in repeated.items()
+    )
     return f"and so on without end, {who}: no time passes, and the robots never get to act"
 
 
 def _goal_clause(scenario: Scenario, before: str, after: str) -> str:
-    wanted = dict.fromkeys(ref.name for reach in scenario.reach for ref in reach.events)
+    wanted = dict.fromkeys(ref.shown for reach in scenario.reach for ref in reach.events)
     return f"{before}{listed(wanted)}{after}" if wanted else ""
 
 
@@ -165,17 +170,17 @@ def _bad(scenario: Scenario, play: Play) -> str:
     """The objective that is broken in the last state of the play."""
     game, objectives = play.game, stated(scenario)
     broken = (game.automata[k].name for k, place in game.bad if play.position.state.locations[k] == place)
-    return _broken(objectives.get(next(broken, "")), play)
+    return _broken(scenario, objectives.get(next(broken, "")), play)
 
 
-def _broken(objective: Optional[StatedObjective], play: Play) -> str:
+def _broken(scenario: Scenario, objective: Optional[StatedObjective], play: Play) -> str:
     if isinstance(objective, Avoid):
-        return f"{objective.event.name} has happened, which was to be avoided"
+        return f"{objective.event.shown} has happened, which was to be avoided"
     if isinstance(objective, Always):
         return f"{condition_words(objective.broken_if)}, which must never be"
     if isinstance(objective, NeverWith):
-        here = _place(play, objective.first.name)
-        return f"{objective.first.name} and {objective.second.name} are together: both {here}"
+        here = _place(scenario, play, objective.first.name)
+        return f"{objective.first.shown} and {objective.second.shown} are together: both {here}"
     if isinstance(objective, Respond):
         return f"too late: {missed_text(objective)}"
     if isinstance(objective, Patrol):
@@ -189,13 +194,13 @@ def _overdue(scenario: Scenario, play: Play) -> str:
     overdue, objectives = [play.game.automata[k].name for k in play.overdue], stated(scenario)
     passed = next((objectives[name] for name in overdue if name in objectives), None)
     if passed is not None:
-        return _broken(passed, play)
-    doing = ", ".join(f"{name} (now {_place(play, name)})" for name in overdue)
+        return _broken(scenario, passed, play)
+    doing = ", ".join(f"{scenario.shown(name)} (now {_place(scenario, play, name)})" for name in overdue)
     return f"nothing can go on: {doing} ought to be done by now, and cannot be"
 
 
-def _place(play: Play, agent: str) -> str:
+def _place(scenario: Scenario, play: Play, agent: str) -> str:
     for automaton, location in zip(play.game.automata, play.position.state.locations):
         if automaton.name == agent:
-            return names.in_words(automaton.locations[location])
+            return place_words(scenario, automaton.locations[location])
     return ""

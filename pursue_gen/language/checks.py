@@ -11,6 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, 
 from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
+from pursue_gen.language.labels import check_labels
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
@@ -57,6 +58,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     whole = reading.scenario is not None
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
+    findings += check_labels(scenario)
     findings += check_objectives(scenario)
     for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)

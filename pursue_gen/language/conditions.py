@@ -140,12 +140,12 @@ def condition_words(condition: Condition, holds: bool = True) -> str:
         return _joined(condition, condition_words) if holds else f"not ({_joined(condition, condition_words)})"
     if isinstance(condition, Holds):
         return f"{condition.state.name} is {'true' if condition.value is holds else 'false'}"
-    who, verb = _who(condition.who), "is" if holds else "is not"
+    who, verb = _who(condition.who, shown=True), "is" if holds else "is not"
     if condition.who.agent is None and not holds:
         who, verb = "no" + who[len("any") :], "is"
     if isinstance(condition, At):
-        return f"{who} {verb} at {condition.place.name}"
-    return f"{who} {verb} {'on its way' if isinstance(condition, OnWay) else f'doing {condition.event.name}'}"
+        return f"{who} {verb} at {condition.place.shown}"
+    return f"{who} {verb} {'on its way' if isinstance(condition, OnWay) else f'doing {condition.event.shown}'}"
 
 
 def _joined(condition: Union[AllOf, AnyOf], say: Callable[[Condition], str]) -> str:
@@ -157,5 +157,7 @@ def _bracketed(part: Condition, say: Callable[[Condition], str]) -> str:
     return f"({say(part)})" if isinstance(part, (AllOf, AnyOf)) else say(part)
 
 
-def _who(who: Who) -> str:
-    return who.agent.name if who.agent is not None else f"any {'robot' if who.robots else 'agent'}"
+def _who(who: Who, shown: bool = False) -> str:
+    if who.agent is None:
+        return f"any {'robot' if who.robots else 'agent'}"
+    return who.agent.shown if shown else who.agent.name

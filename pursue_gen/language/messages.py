@@ -12,15 +12,16 @@ from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
 
 FORMS: Dict[str, str] = {
-    "POI": 'poi "a"',
+    "POI": 'poi "a" (or with what people read: poi "a" label "security door")',
     "CONNECT": "connect a and b distance 3 one_way only_if open is_true (one_way and only_if are optional)",
     "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times only_if open is_true '
-             "(all but the name is optional; or: duration 6 to 9)",
+             '(all but the name is optional; or: duration 6 to 9; behind the name: label "do the work")',
     "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest; '
             'or: rule "order" for each robot: …)',
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
-    "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required)',
+    "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required; '
+             'behind the name: label "Porter 1")',
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
@@ -41,7 +42,7 @@ KEYWORDS: Dict[str, str] = {
     "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
     "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
     "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
-    "EACH": "each", "PATROL": "patrol", "IN": "in", "ORDER": "order", "EVERY": "every", "BY": "by",
+    "EACH": "each", "PATROL": "patrol", "IN": "in", "ORDER": "order", "EVERY": "every", "BY": "by", "LABEL": "label",
     "BEFORE": "before", "OR": "or",
     "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
@@ -58,7 +59,7 @@ MAY_BE_NAMES: Dict[str, str] = {
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
     "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
-    "OPTIONAL": "optional",
+    "OPTIONAL": "optional", "LABEL": "label",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
@@ -166,6 +167,8 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
         return _stray(chunk, index)
     if token.type == "WORD" and "NAME" in expected:
         name = shown(name_meant(chunk, index)[0])
+        if chunk[index - 1].type == "LABEL":
+            return f'put the label in quotes: label "{name}"'
         return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{name}"'
     if token.type == "NAME" and "WORD" in expected:
         name = proposal(text.strip('"'), RESERVED)
@@ -203,12 +206,14 @@ def _with_comma(whole: str, rest: str) -> str:
 def name_meant(chunk: List[Token], index: int) -> Tuple[str, Token]:
     """A usable name for the words at `index`, where a name in quotes is expected, and the last of these words.
 
-    It is one word; for a POI, whose name ends its statement, it is all words on the line.
+    It is one word; for a POI, whose name ends its statement, it is all words on the line. For a label, which may be any
+    text, it is the words themselves.
     """
     words = [chunk[index]]
     if chunk[0].type == "POI":
         words += [word for word in chunk[index + 1 :] if word.type == "WORD" and word.line == words[0].line]
-    return proposal(" ".join(words), RESERVED), words[-1]
+    text = " ".join(words)
+    return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
 
 
 def _stray(chunk: List[Token], index: int) -> str:

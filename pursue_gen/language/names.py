@@ -7,6 +7,7 @@ from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Ma
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.conditions import conditions_of, names_in
+from pursue_gen.language.labels import LABELLED, why_no_label
 from pursue_gen.language.messages import RESERVED, shown
 from pursue_gen.language.scenario import Patrol, Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
@@ -39,7 +40,7 @@ def check_names(scenario: Scenario) -> Iterator[Diagnostic]:
     sound = True
     taken = _taken(scenario)
     for kind, name, span in _declarations(scenario):
-        finding = _unfit(name, span, taken)
+        finding = _unfit(kind, name, span, taken)
         if finding is None and name in seen:
             finding = _again(name, kind, span, *seen[name])
         seen.setdefault(name, (kind, span))
@@ -180,10 +181,13 @@ def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:
         yield error("PML106", message, None, hint)
 
 
-def _unfit(name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:
+def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
     if not well_formed(name):
         hint = "use letters, digits and _, a letter first, for example " + proposal(name, RESERVED, taken)
+        if kind in LABELLED and not why_no_label(name):
+            better = proposal(name, RESERVED, taken)
+            hint += f'; people can read it as a label: {kind.lower()} "{better}" label "{name}"'
         message = f'"{shown(name, 60)}" cannot become the name of a ROS topic or a Python name'
         return error("PML101", message, span, hint if name else "give it a name")
     if len(name) > LONGEST:

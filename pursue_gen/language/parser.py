@@ -6,9 +6,9 @@ import os
 import select
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, FrozenSet, List, Optional, Tuple, Union
+from typing import Any, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
-from lark import Token
+from lark import Token, Tree
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
@@ -95,7 +95,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     """The scenario in a text and every finding about its syntax, in file order; never raises."""
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     statements = cut(text, file)
-    builder = _Builder(file)
+    builder = _Builder(file, dict(_labels(statements.trees)))
     parts = [part for tree in statements.trees for part in builder.parts(tree)]
     findings = statements.findings + builder.findings
 
@@ -133,8 +133,10 @@ def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic,
 class _Builder:
     """Makes the scenario's parts from the trees of statements, and notes what is wrong with their numbers and poses."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, labels: Mapping[str, str]) -> None:
+        """`labels`: of the names that have one."""
         self.file = file
+        self._labels = labels
         self.findings: List[Diagnostic] = []
 
     def parts(self, tree: Any) -> Tuple[Any, ...]:
@@ -154,7 +156,10 @@ class _Builder:
 
     def _ref(self, tree: Any) -> pml.Ref:
         token = tree.children[0]
-        return pml.Ref(str(token), span_of(token, self.file))
+        return self._use(str(token), token)
+
+    def _use(self, name: str, token: Token) -> pml.Ref:
+        return pml.Ref(name, span_of(token, self.file), self._labels.get(name, ""))
 
     def _refs(self, tree: Any) -> Tuple[pml.Ref, ...]:
         return tuple(self._ref(child) for child in tree.children) if tree is not None else ()
@@ -175,10 +180,10 @@ class _Builder:
         self.findings.append(no_count(token, value, MOST, span_of(token, self.file)))
         return 1
 
-    def _poi(self, name: Token, pose: Optional[Token], span: Span) -> pml.Poi:
+    def _poi(self, name: Token, _: Any, label: Optional[Token], pose: Optional[Token], span: Span) -> pml.Poi:
         found = PoseComment(None) if pose is None else read_poses(str(pose), span_of(pose, self.file))
         self.findings += found.findings
-        return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots)
+        return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots, _bare_or_none(label))
 
     def _connection(self, a: Any, b: Any, distance: Token, one_way: Any, only_if: Any, span: Span) -> pml.Connection:
         first, second = self._ref(a), self._ref(b)
@@ -187,8 +192,8 @@ class _Builder:
         return pml.Connection(first.name, second.name, length, span, ends, one_way is not None, condition)
 
     def _event(
-        self, name: Token, collaborative: Any, together: Any, location: Any, duration: Any, _: Any, most: Any,
-        _times: Any, only_if: Any, span: Span,
+        self, name: Token, _label: Any, label: Any, collaborative: Any, together: Any, location: Any, duration: Any,
+        _: Any, most: Any, _times: Any, only_if: Any, span: Span,
     ) -> pml.Event:
         earliest, latest = (None, None) if duration is None else self._window(duration)
         return pml.Event(
@@ -201,6 +206,7 @@ class _Builder:
             latest,
             None if most is None else self._count(most),
             self._condition(only_if),
+            _bare_or_none(label),
         )
 
     def _condition(self, tree: Any) -> Optional[Condition]:
@@ -217,7 +223,7 @@ class _Builder:
 
     def _travel(self, _: Any, agent: Any, a: Any, _to: Any, b: Any, _takes: Any, takes: Any, span: Span) -> pml.Travel:
         quoted = isinstance(agent, Token)
-        who = pml.Ref(_bare(agent), span_of(agent, self.file)) if quoted else self._ref(agent)
+        who = self._use(_bare(agent), agent) if quoted else self._ref(agent)
         return pml.Travel(who, self._ref(a), self._ref(b), *self._window(takes), span)
 
     def _rule(self, name: Token, each: Any, body: Any, span: Span) -> pml.Rule:
@@ -257,7 +263,8 @@ class _Builder:
         return pml.NeverAt(agent, self._ref(rest[0]), span)
 
     def _agent(
-        self, name: Token, human: Any, controllable: Any, mobile: Any, location: Any, can: Any, reacts: Any, span: Span
+        self, name: Token, _: Any, label: Any, human: Any, controllable: Any, mobile: Any, location: Any, can: Any,
+        reacts: Any, span: Span,
     ) -> pml.Agent:
         return pml.Agent(
             name=_bare(name),
@@ -268,6 +275,7 @@ class _Builder:
             can_do=self._refs(can),
             reacts_to=self._refs(reacts),
             span=span_of(name, self.file),
+            label=_bare_or_none(label),
         )
 
     def _optional(self, _: Any, number: Token, tree: Any, span: Span) -> Tuple[pml.StatedObjective, ...]:
@@ -307,6 +315,19 @@ class _Builder:
             span,
             None if within is None else self._number(within),
         )
+
+
+def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:
+    """Names with their labels, where they have one; the first declaration counts."""
+    for tree in reversed(list(trees)):
+        if isinstance(tree, Tree) and tree.data in ("poi", "event", "agent"):
+            name, _, label, *_ = tree.children
+            if isinstance(name, Token) and isinstance(label, Token):
+                yield _bare(name), _bare(label)
+
+
+def _bare_or_none(label: Optional[Token]) -> Optional[str]:
+    return None if label is None else _bare(label)
 
 
 def _bare(name: Token) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
@@ -25,10 +26,16 @@ class Pose:
 
 @dataclass(frozen=True)
 class Ref:
-    """A name where it is used (not declared)."""
+    """A name where it is used (not declared), with the label of what it stands for; "": it has none."""
 
     name: str
     span: Span
+    label: str = ""
+
+    @property
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
 
 
 @dataclass(frozen=True)
@@ -43,13 +50,19 @@ class Spot:
 class Poi:
     """A point of interest; `pose` is None where the author gave none or left the thesis's placeholder.
 
-    `spots` are the poses that single robots have there, each robot once.
+    `spots` are the poses that single robots have there, each robot once. `label`: what people read; None: the name.
     """
 
     name: str
     pose: Optional[Pose]
     span: Span
     spots: Tuple[Spot, ...] = ()
+    label: Optional[str] = None
+
+    @property
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
 
 
 @dataclass(frozen=True)
@@ -90,7 +103,7 @@ class Event:
     It ends later than `duration`, and at `latest` at the latest; None: within one time unit more. `at_most`: so often
     it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
-    `only_if`: what has to hold when it begins; None: nothing.
+    `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
     """
 
     name: str
@@ -102,6 +115,12 @@ class Event:
     latest: Optional[Number] = None
     at_most: Optional[int] = None
     only_if: Optional[Condition] = None
+    label: Optional[str] = None
+
+    @property
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
 
     @property
     def is_shared(self) -> bool:
@@ -183,7 +202,8 @@ class Dependency:
 class Agent:
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
-    `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves.
+    `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `label`: what
+    people read; None: the name.
     """
 
     name: str
@@ -194,6 +214,12 @@ class Agent:
     can_do: Tuple[Ref, ...]
     reacts_to: Tuple[Ref, ...]
     span: Span
+    label: Optional[str] = None
+
+    @property
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
 
     @property
     def is_robot(self) -> bool:
@@ -424,6 +450,16 @@ class Scenario:
     def objectives(self) -> Tuple[StatedObjective, ...]:
         """All objectives: those that always hold, then those that are reached once."""
         return (*self.safety, *self.reach)
+
+    @cached_property
+    def labels(self) -> Dict[str, str]:
+        """Name → what people read instead, of all places, events and agents with a label."""
+        parts: Tuple[Union[Poi, Event, Agent], ...] = (*self.pois, *self.events, *self.agents)
+        return {part.name: part.label for part in reversed(parts) if part.label}
+
+    def shown(self, name: str) -> str:
+        """What people read for a name: its label, or the name itself."""
+        return self.labels.get(name, name)
 
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""

@@ -36,7 +36,7 @@ _ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
-_OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES))
+_OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
@@ -180,7 +180,8 @@ def significant(tokens: Iterable[Token]) -> List[Token]:
     kept: List[Token] = []
     for token in tokens:
         if token.type == "POSE":
-            behind_poi = len(kept) > 1 and kept[-2].type == "POI" and kept[-1].type == "NAME"
+            before = [one.type for one in kept[-4:]]
+            behind_poi = before[-2:] == ["POI", "NAME"] or before == ["POI", "NAME", "LABEL", "NAME"]
             if not behind_poi or kept[-1].line != token.line:
                 continue
         kept.append(token)

@@ -31,7 +31,7 @@ def units(amount: str) -> str:
 
 def objective_words(scenario: Scenario) -> List[str]:
     """What is wanted, a sentence for each objective."""
-    return [_ranked(objective, _sentence(objective)) for objective, *_ in scenario.statements]
+    return [_ranked(objective, _sentence(scenario, objective)) for objective, *_ in scenario.statements]
 
 
 def promise_words(scenario: Scenario) -> List[str]:
@@ -55,32 +55,33 @@ def _ranked(objective: StatedObjective, text: str) -> str:
     return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
-def _sentence(objective: StatedObjective) -> str:
+def _sentence(scenario: Scenario, objective: StatedObjective) -> str:
     if isinstance(objective, Respond):
         trigger, response, deadline = objective.trigger, objective.response, units(str(objective.deadline))
         if isinstance(trigger, Ref):
-            begins = f"Whenever {trigger.name} happens"
+            begins = f"Whenever {trigger.shown} happens"
         else:
             begins = f"Whenever it becomes true that {condition_words(trigger)}"
-        answer = f"{response.name} happens" if isinstance(response, Ref) else condition_words(response)
+        answer = f"{response.shown} happens" if isinstance(response, Ref) else condition_words(response)
         return f"{begins}, {answer} within {deadline}."
     if isinstance(objective, Avoid):
-        return f"{objective.event.name} never happens."
+        return f"{objective.event.shown} never happens."
     if isinstance(objective, NeverWith):
-        where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.name}"
-        return f"{objective.first.name} and {objective.second.name} are never {where}."
+        where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.shown}"
+        return f"{objective.first.shown} and {objective.second.shown} are never {where}."
     if isinstance(objective, Patrol):
         every = _every(objective)
         if objective.order:
-            return f"{patroller(objective)} visits {listed(objective.order)} in this order, each {every}."
-        return f"{patroller(objective)} is at {objective.place.name} {every}."
+            places = listed(map(scenario.shown, objective.order))
+            return f"{patroller(objective)} visits {places} in this order, each {every}."
+        return f"{patroller(objective)} is at {objective.place.shown} {every}."
     if isinstance(objective, Always):
         return f"It {'always' if objective.holds else 'never'} holds that {condition_words(objective.condition)}."
     after = f" later than {units(str(objective.after))} after the start" if objective.after else ""
     within = "" if objective.within is None else f" within {units(str(objective.within))} after the start"
     verb = "happens" if len(objective.events) == 1 else "happen, in any order,"
     when = f"{after} and{within}" if after and within else after or within
-    return f"{listed(ref.name for ref in objective.events)} {verb}{when}".rstrip(",") + "."
+    return f"{listed(ref.shown for ref in objective.events)} {verb}{when}".rstrip(",") + "."
 
 
 def _every(patrol: Patrol) -> str:
@@ -115,7 +116,7 @@ def _period(patrol: Patrol, won: bool) -> Iterator[str]:
 
 def patroller(patrol: Patrol) -> str:
     """Who is to be at the place: an agent's name, or `any robot`."""
-    return "any robot" if patrol.who.agent is None else patrol.who.agent.name
+    return "any robot" if patrol.who.agent is None else patrol.who.agent.shown
 
 
 def answered_text(respond: Respond) -> str:
@@ -128,15 +129,25 @@ def answer_text(respond: Respond) -> str:
     return respond.response.name if isinstance(respond.response, Ref) else condition_text(respond.response)
 
 
+def answered_words(respond: Respond) -> str:
+    """What has to be answered, with what people read: an event's label, or a condition as it is written."""
+    return respond.trigger.shown if isinstance(respond.trigger, Ref) else condition_text(respond.trigger)
+
+
+def answer_words(respond: Respond) -> str:
+    """The answer, with what people read: an event's label, or a condition as it is written."""
+    return respond.response.shown if isinstance(respond.response, Ref) else condition_text(respond.response)
+
+
 def missed_text(respond: Respond) -> str:
     """What is wrong where the answer does not come, as in `no wave within 5 of fall`."""
     no = "no" if isinstance(respond.response, Ref) else "not once"
-    return f"{no} {answer_text(respond)} within {respond.deadline} of {answered_text(respond)}"
+    return f"{no} {answer_words(respond)} within {respond.deadline} of {answered_words(respond)}"
 
 
 def visited(patrol: Patrol) -> str:
     """Where a visit is due: a place, in its turn where the places have an order."""
-    return f"{patrol.place.name}, in its turn," if patrol.order else patrol.place.name
+    return f"{patrol.place.shown}, in its turn," if patrol.order else patrol.place.shown
 
 
 def listed(names: Iterable[str]) -> str:
@@ -147,7 +158,11 @@ def listed(names: Iterable[str]) -> str:
 
 def events_words(reach: Reach) -> str:
     """The events that are to be achieved, as in `load and unload`."""
-    return listed(ref.name for ref in reach.events)
+    return listed(ref.shown for ref in reach.events)
+
+
+def _by(patrol: Patrol) -> str:
+    return "any robot" if patrol.who.agent is None else patrol.who.agent.name
 
 
 def objective_text(objective: StatedObjective) -> str:
@@ -173,7 +188,7 @@ def patrol_text(patrol: Patrol, places: Iterable[str]) -> str:
     """A patrol of these places, or of those that have an order with its place."""
     some = f"{', '.join(patrol.order)} in order" if patrol.order else ", ".join(places)
     every = "" if patrol.every is None else f" every {patrol.every}"
-    return f"patrol {some}{every} by {patroller(patrol)}"
+    return f"patrol {some}{every} by {_by(patrol)}"
 
 
 def statement_text(objective: StatedObjective) -> str:
@@ -185,19 +200,19 @@ def statement_text(objective: StatedObjective) -> str:
 
 def assumption_words(assumption: Assumption) -> str:
     """What is assumed, as a sentence without its full stop; the same words as in the scenario where they read well."""
-    name = assumption.agent.name
+    name = assumption.agent.shown
     if isinstance(assumption, AtMost):
         times = "once" if assumption.times == 1 else f"{assumption.times} times"
         return (
-            f"{name} does {assumption.event.name} at most {times}"
+            f"{name} does {assumption.event.shown} at most {times}"
             if assumption.times
-            else (f"{name} never does {assumption.event.name}")
+            else (f"{name} never does {assumption.event.shown}")
         )
     if isinstance(assumption, Waits):
-        return f"{name} waits {units(str(assumption.time))} between one {assumption.event.name} and the next"
+        return f"{name} waits {units(str(assumption.time))} between one {assumption.event.shown} and the next"
     if isinstance(assumption, Leaves):
-        return f"{name} leaves {assumption.place.name} within {units(str(assumption.time))}"
-    return f"{name} is never at {assumption.place.name}"
+        return f"{name} leaves {assumption.place.shown} within {units(str(assumption.time))}"
+    return f"{name} is never at {assumption.place.shown}"
 
 
 def condition_of_promise(scenario: Scenario) -> str:
@@ -212,7 +227,7 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
         return "stays there"
     words = [f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
-    words += [f"{travel.a.name} to {travel.b.name} in {window_words(*travel.window)}" for travel in own]
+    words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(*travel.window)}" for travel in own]
     return ", ".join(words)
 
 

@@ -177,7 +177,9 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
         yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a number", snippet=True)
-    if "NAME" in expected and place.behind[0].type in DECLARED:
+    if "NAME" in expected and place.behind[-1].type == "LABEL":
+        yield Completion('"…"', '"${1:what people read}"', "NAME", "value", *span, "what people read", snippet=True)
+    elif "NAME" in expected and place.behind[0].type in DECLARED:
         example = _EXAMPLES[DECLARED[place.behind[0].type]]
         yield Completion(f'"{example}"', f'"${{1:{example}}}"', "NAME", "value", *span, "a new name", snippet=True)
     if "POSE" in expected and place.same_line:

@@ -34,13 +34,17 @@ _DECLARATIONS = {
 
 
 def fitting_name(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
-    """Renames to the example that the finding gives, everywhere."""
+    """Renames to the example that the finding gives, everywhere; people may still read the old name."""
     example = _EXAMPLE.search(finding.hint)
     if example is not None:
         try:
-            yield f"Rename it to {example.group(1)}", rename(document, at + 1, example.group(1))
+            edits = rename(document, at + 1, example.group(1))
         except PursueError:
             return  # that name is taken
+        yield f"Rename it to {example.group(1)}", edits
+        if finding.code == "PML101" and " label " in finding.hint and part is not None and part.name is not None:
+            labelled = Edit(end_of(part.name), end_of(part.name), f" label {part.name}")
+            yield f"Rename it to {example.group(1)}, with label {part.name}", (*edits, labelled)
 
 
 def delete_statement(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:

@@ -42,7 +42,8 @@ def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement
     expected = accepts(part.tokens[:wrong])
     if "NAME" in expected and token.type == "WORD":
         name, last = name_meant(list(part.tokens), wrong)
-        yield f'Put the name in quotes: "{name}"', (Edit(at, end_of(last), f'"{name}"'),)
+        what = "label" if part.tokens[wrong - 1].type == "LABEL" else "name"
+        yield f'Put the {what} in quotes: "{name}"', (Edit(at, end_of(last), f'"{name}"'),)
     elif "NAME" in expected and token.type == "STRAY":
         yield from _straight_quotes(document, at)
     elif "WORD" in expected and token.type == "NAME":

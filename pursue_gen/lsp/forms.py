@@ -36,6 +36,7 @@ MEANINGS: Dict[str, str] = {
     "AT_MOST": "How many times it happens in the whole mission, and no more.",
     "TIMES": "In the whole mission.",
     "FOR": "A rule for each of several: each of them has its own turn.",
+    "LABEL": "What people read in place of the name: any text without double quotes.",
     "PATROL": "Places at which somebody has to be again and again.",
     "IN": "In this order: a visit counts in its turn only.",
     "ORDER": "A visit counts in its turn only: first at the first place, then at the second, round after round.",

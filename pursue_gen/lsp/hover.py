@@ -7,6 +7,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
+from pursue_gen.language.labels import in_markdown, markdown
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.names import refs_of
 from pursue_gen.language.numbers import Number, exact, read_number
@@ -98,7 +99,7 @@ def _listed(lines: List[str]) -> List[str]:
 
 
 def _poi(scenario: Scenario, poi: Poi) -> List[str]:
-    lines = [f"**{poi.name}**: a place", ""]
+    lines = [f"**{poi.name}**: a place{_read_as(poi.label)}", ""]
     ways = [way for way in scenario.connections if poi.name in (way.a, way.b)]
     for way in ways:
         other = way.b if way.a == poi.name else way.a
@@ -106,7 +107,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
         movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
         times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
-        only = f", only while {condition_words(way.only_if)}" if way.only_if is not None else ""
+        only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
@@ -123,7 +124,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
 
 def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
-    lines = [f"**{event.name}**: an event", "", f"- happens {where}"]
+    lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
     lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
@@ -144,7 +145,7 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
         if dependency.event.name == event.name:
             lines.append(f"- only while {dependency.state.name} is {str(dependency.value).lower()}")
     if event.only_if is not None:
-        lines.append(f"- only while {condition_words(event.only_if)}")
+        lines.append(f"- only while {in_markdown(scenario, condition_words(event.only_if))}")
     for state in scenario.states:
         for value, refs in (("true", state.true_if), ("false", state.false_if)):
             if _in(event.name, refs):
@@ -205,13 +206,14 @@ def _state(scenario: Scenario, state: State) -> List[str]:
             lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
     for way in scenario.connections:
         if way.only_if is not None and any(ref.name == state.name for _, ref in names_in(way.only_if)):
-            lines.append(f"- between {way.a} and {way.b} only while {condition_words(way.only_if)}")
+            only_if = in_markdown(scenario, condition_words(way.only_if))
+            lines.append(f"- between {way.a} and {way.b} only while {only_if}")
     for event in scenario.events:
         if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
-            lines.append(f"- {event.name} only while {condition_words(event.only_if)}")
+            lines.append(f"- {event.name} only while {in_markdown(scenario, condition_words(event.only_if))}")
     for safety in scenario.safety:
         if isinstance(safety, Always) and any(ref.name == state.name for _, ref in names_in(safety.condition)):
-            lines.append(f"- must never be: {condition_words(safety.broken_if)}")
+            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
     return lines
 
 
@@ -219,7 +221,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
     if agent.human and agent.controllable:
         what = "a person who follows instructions"
-    lines = [f"**{agent.name}**: {what}", "", f"- starts at {agent.location.name}"]
+    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.location.name}"]
     if agent.mobile is None:
         lines.append("- stays there")
     else:
@@ -230,14 +232,15 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
-    lines += [f"- assumed: {assumption_words(a)}" for a in scenario.assumptions if a.agent.name == agent.name]
+    assumed = (assumption_words(each) for each in scenario.assumptions if each.agent.name == agent.name)
+    lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
         if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
             other = safety.second.name if safety.first.name == agent.name else safety.first.name
             where = "be where" if safety.place is None else f"be at {safety.place.name} while"
             lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
         if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
-            lines.append(f"- must never be: {condition_words(safety.broken_if)}")
+            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
     return lines
 
 
@@ -280,6 +283,10 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         later = f"later than {units(number)} of time after the start" if number else "at any time"
         return f"It counts when it happens {later}."
     return ""
+
+
+def _read_as(label: Optional[str]) -> str:
+    return f"; people read \u201c{markdown(label)}\u201d" if label else ""
 
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:

@@ -114,7 +114,7 @@ def shown(session: Session) -> Tuple[str, ...]:
 
 def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
     edge = session.setup.game.origins[offer.move.edges[0]]
-    what = f"{offer.agent}: {session.words.order(offer.agent, edge)}"
+    what = f"{session.setup.scenario.shown(offer.agent)}: {session.words.order(offer.agent, edge)}"
     when = window_text(session.play.now, offer.open_)
     return what, when if offer.drawn is None else f"{when} (comes at {time_text(offer.drawn)} if you say nothing)"
 
@@ -303,7 +303,7 @@ def _block_texts(session: Session, holding: Holding, size: int) -> List[str]:
     if holding.command is not None:
         first = holding.command.moves[0]
         said = session.words.order(first.automaton, first.edge)
-        says = said if first.automaton not in setup.agents else f"{first.automaton}: {said}"
+        says = said if first.automaton not in setup.agents else f"{setup.scenario.shown(first.automaton)}: {said}"
     when = f": {session.words.network.when(holding.zone)}" if holding.zone else " nothing else happens"
     lines.append(f"It says {says}, as long as{when}.")
     for command in holding.block.commands:

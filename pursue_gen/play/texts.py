@@ -11,7 +11,7 @@ from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import answer_text, events_words, listed, missed_text, patroller, visited
+from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga import names
@@ -41,11 +41,12 @@ def event_texts(scenario: Scenario, network: Network) -> EventTexts:
     ways = [way for connection in scenario.connections for way in connection.directions]
     for agent in scenario.agents:
         for event in scenario.events:
-            orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.name}"
-            orders[agent.name, names.done(event.name), ""] = f"finish {event.name}"
+            orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.shown}"
+            orders[agent.name, names.done(event.name), ""] = f"finish {event.shown}"
         for a, b in ways:
-            orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {a} to {b}"
-            orders[agent.name, "", names.going(a, b)] = f"arrive at {b}"
+            here, there = scenario.shown(a), scenario.shown(b)
+            orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {here} to {there}"
+            orders[agent.name, "", names.going(a, b)] = f"arrive at {there}"
     return EventTexts(network_words.words_of(scenario, network), orders)
 
 
@@ -55,10 +56,11 @@ def event_texts(scenario: Scenario, network: Network) -> EventTexts:
 def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
     """Where the agents are, what lasts and until when, the states, the rules' turns, the deadline."""
     where = {automaton.name: k for k, automaton in enumerate(setup.game.automata)}
-    widest = max(map(len, setup.agents), default=0)
+    shown = setup.scenario.shown
+    widest = max((len(shown(agent)) for agent in setup.agents), default=0)
     for agent in setup.agents:
         place = setup.game.automata[where[agent]].locations[play.position.state.locations[where[agent]]]
-        yield f"  {agent:<{widest}}  {words.network.place(agent, place)}{_lasting(setup, play, where[agent])}"
+        yield f"  {shown(agent):<{widest}}  {words.network.place(agent, place)}{_lasting(setup, play, where[agent])}"
     values = dict(zip(setup.game.variables, play.position.state.values))
     for state in setup.scenario.states:
         value = values.get(names.state_value(state.name), int(state.initially))
@@ -106,7 +108,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
         if isinstance(objective, Respond) and place == names.AT_RISK:
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
-            yield f"deadline: {answer_text(objective)} by {time_text(due)} at the latest"
+            yield f"deadline: {answer_words(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
             due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
@@ -114,21 +116,21 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
             yield f"{events_words(objective)} counts after {objective.after}"
         if isinstance(objective, Reach) and objective.within is not None and place != "win":
             done = {objective.events[k].name for k in events_done(place)}
-            left = listed(ref.name for ref in objective.events if ref.name not in done)
+            left = listed(ref.shown for ref in objective.events if ref.name not in done)
             yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
 
 
 def deed_text(setup: Setup, words: EventTexts, deed: PlayedMove) -> str:
     """A step that was made."""
     said = words.network.move(deed.agent, setup.game.origins[deed.edges[0]])
-    return said if deed.agent not in setup.agents else f"{deed.agent} {said}"
+    return said if deed.agent not in setup.agents else f"{setup.scenario.shown(deed.agent)} {said}"
 
 
 def move_text(setup: Setup, words: EventTexts, move: JointMove) -> str:
     """A step that will be made: who, and what."""
     owner = setup.owner(move)
     said = words.network.move(owner, setup.game.origins[move.edges[0]])
-    return said if owner not in setup.agents else f"{owner} {said}"
+    return said if owner not in setup.agents else f"{setup.scenario.shown(owner)} {said}"
 
 
 def window_text(now: Fraction, open_: Window) -> str:
@@ -147,12 +149,12 @@ def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
     """How a game ended, in a sentence."""
     at = time_text(play.now)
     if play.status == WON:
-        done = dict.fromkeys(ref.name for reach in setup.scenario.reach for ref in reach.events)
+        done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
         what = f": {listed(done)}" if done else ""
         return f"The robots have done it after {at} time units{what}."
     if play.status == LOST:
         return f"The robots have lost after {at} time units: {_lost(setup, words, play)}."
-    late = ", ".join(overdue(setup, play))
+    late = ", ".join(map(setup.scenario.shown, overdue(setup, play)))
     return f"Nothing can go on after {at} time units: {late} ought to move and cannot. The robots have not lost."
 
 
@@ -169,16 +171,16 @@ def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
         if isinstance(passed, Reach):
             return f"{events_words(passed)} not done within {passed.within} of the start"
     if late:
-        doing = ", ".join(f"{name} ({_place(setup, words, play, name)})" for name in late)
+        doing = ", ".join(f"{setup.scenario.shown(name)} ({_place(setup, words, play, name)})" for name in late)
         return f"{doing} ought to be done by now and cannot be, so nothing goes on"
     safety = objectives.get(next(iter(broken), ""))
     if isinstance(safety, Avoid):
-        return f"{safety.event.name} has happened, which was to be avoided"
+        return f"{safety.event.shown} has happened, which was to be avoided"
     if isinstance(safety, Always):
         return f"{condition_words(safety.broken_if)}, which must never be"
     if isinstance(safety, NeverWith):
         place = _place(setup, words, play, safety.first.name)
-        return f"{safety.first.name} and {safety.second.name} are together, both {place}"
+        return f"{safety.first.shown} and {safety.second.shown} are together, both {place}"
     return "the objective is broken"
 
 
@@ -196,20 +198,25 @@ def _only_while(way: Connection) -> str:
 
 def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
     """The map in text: each POI with who is there, and its ways with their distances; then who is on the way."""
+    shown = setup.scenario.shown
     at: Dict[str, List[str]] = {}
-    for agent in setup.agents:
-        at.setdefault(_place(setup, words, play, agent), []).append(agent)
-    widest = max((len(poi.name) for poi in setup.scenario.pois), default=0)
+    away: Dict[str, List[str]] = {}
+    for automaton, number in zip(setup.game.automata, play.position.state.locations):
+        if automaton.name not in setup.agents:
+            continue
+        location = automaton.locations[number]
+        part = words.network.parts.get(location, ("at", location))
+        group, key = (away, words.network.place(automaton.name, location)) if part[0] == "way" else (at, part[1])
+        group.setdefault(key, []).append(shown(automaton.name))
+    widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{to} ({c.distance}{_only_while(c)})"
+            f"{shown(to)} ({c.distance}{_only_while(c)})"
             for c in setup.scenario.connections
             for a, to in c.directions
             if a == poi.name
         ]
-        there = [a for place, people in at.items() if f" {place}".endswith(f" at {poi.name}") for a in people]
-        here = f"   here: {', '.join(there)}" if there else ""
-        yield f"  {poi.name:<{widest}}  to {', '.join(ways) or 'nowhere'}{here}"
-    for place, people in at.items():
-        if place.startswith("on the way"):
-            yield f"  {place}: {', '.join(people)}"
+        here = f"   here: {', '.join(at[poi.name])}" if poi.name in at else ""
+        yield f"  {poi.shown:<{widest}}  to {', '.join(ways) or 'nowhere'}{here}"
+    for place, people in away.items():
+        yield f"  {place}: {', '.join(people)}"

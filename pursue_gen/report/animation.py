@@ -100,7 +100,7 @@ def _mark(agent: Agent, look: AgentLook, at: Point, number: int, count: int, ide
     dx, dy = _offset(number, count)
     anchor = "middle" if abs(dx) < 9 else "start" if dx > 0 else "end"
     label = text(dx + (0 if anchor == "middle" else math.copysign(13, dx)), dy - (12 if anchor == "middle" else -5),
-                 agent.name, "pg-strong pg-halo", anchor)
+                 agent.shown, "pg-strong pg-halo", anchor)
     busy = tag("circle", class_="busy", cx=dx, cy=dy, r=13.0, fill="none", stroke=look.colour, stroke_width=2.5,
                visibility="hidden")
     shape = mark(look, dx, dy, 9.0, stroke="#ffffff", stroke_width=1.5)
@@ -124,7 +124,7 @@ def _tracks(scenario: Scenario, recording: Recording) -> List[Dict[str, Any]]:
     segments, count = _segments(scenario, recording), len(scenario.agents)
     return [
         {
-            "name": agent.name,
+            "name": agent.shown,
             "offset": [round(v, 1) for v in _offset(number, count)],
             "segments": [
                 [one.start, one.end, *(round(v, 1) for v in (*one.a, *one.b)), one.description,
@@ -148,7 +148,7 @@ def _step_text(step: Step, words: Words, recording: Recording) -> str:
     if not step.event:
         return step.reason or ("start" if step is recording.steps[0] else step.status)
     event = event_text(step, words, recording.network)
-    sentence = f"{step.agent} {event}" if step.agent in recording.agents else event
+    sentence = f"{recording.scenario.shown(step.agent)} {event}" if step.agent in recording.agents else event
     last = step is recording.steps[-1] and step.status != "running"
     return f"{sentence}; {ending_text(recording)}" if last else sentence
 
@@ -156,7 +156,7 @@ def _step_text(step: Step, words: Words, recording: Recording) -> str:
 def _agent_lines(scenario: Scenario, recording: Recording) -> List[str]:
     """A line for each agent: where it is at the start."""
     segments = _segments(scenario, recording)
-    return [f"<li><b>{safe(agent.name)}</b> <span>{safe(segments[agent.name][0].description)}</span></li>"
+    return [f"<li><b>{safe(agent.shown)}</b> <span>{safe(segments[agent.name][0].description)}</span></li>"
             for agent in scenario.agents]
 
 

@@ -13,7 +13,7 @@
   const state = (n) => { const [places, values, wait, ours, others, goal] = book.states[n]; return { places, values, wait, ours, others, goal }; };
   const step = ([who, text, target, when]) => ({ who: book.automata[who].shown, number: who, text: book.texts[text], target, when });
   const place = (k, p) => book.automata[k].places[p][0];
-  const where = (s) => agents.map((k) => `${book.automata[k].name} ${place(k, s.places[k])}`).join("; ");
+  const where = (s) => agents.map((k) => `${book.automata[k].shown} ${place(k, s.places[k])}`).join("; ");
   const rest = (s) => [
     ...book.automata.map((a, k) => [a, k]).filter(([a, k]) => !agents.includes(k) && a.kind !== "states")
       .map(([a, k]) => `${a.shown}: ${place(k, s.places[k])}`),

@@ -103,7 +103,7 @@ def _state(strategy: StrategyData, number: int, situation: Situation) -> str:
     lines = [f"#{number}"]
     for (name, kind, places), place in zip(strategy.automata, situation.places):
         if kind in ("robot", "person", "other"):
-            lines.append(f"{name} {places[place][0]}")
+            lines.append(f"{strategy.labels.get(name, name)} {places[place][0]}")
     if situation.goal:
         lines[0] += " goal reached"
     if situation.wait or (not situation.commands and not situation.goal):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from string import ascii_letters
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -61,6 +61,7 @@ class StrategyData:
     zones: Tuple[Tuple[str, str], ...]
     situations: Tuple[Situation, ...]
     left_out: Tuple[str, ...] = ()
+    labels: Mapping[str, str] = field(default_factory=dict)
 
 
 _ANYWHERE: Tuple[str, Tuple[str, ...]] = ("anywhere", ())
@@ -80,7 +81,7 @@ def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> Strat
     situations = builder.situations()
     shown = (state.name for state in scenario.states if names.state_value(state.name) in builder.game.variables)
     left_out = tuple(a.name for a in won.network.automata if a.name not in {a.name for a in builder.game.automata})
-    return StrategyData(automata, tuple(shown), owners, tuple(builder.zones), situations, left_out)
+    return StrategyData(automata, tuple(shown), owners, tuple(builder.zones), situations, left_out, scenario.labels)
 
 
 def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tuple[str, ...]]:
@@ -115,7 +116,8 @@ def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyDat
         for a in words.game.automata
     )
     variables: Tuple[str, ...] = ()
-    return StrategyData(automata, variables, _owners(scenario, won, reach_obj), tuple(zones), tuple(situations))
+    owners = _owners(scenario, won, reach_obj)
+    return StrategyData(automata, variables, owners, tuple(zones), tuple(situations), (), scenario.labels)
 
 
 def _shifted(
@@ -149,7 +151,7 @@ def as_json(data: StrategyData) -> Dict[str, Any]:
     ]
     return {
         "automata": [
-            {"name": name, "shown": shown_name(name, kind), "kind": kind, "places": places}
+            {"name": name, "shown": data.labels.get(name) or shown_name(name, kind), "kind": kind, "places": places}
             for name, kind, places in data.automata
         ],
         "variables": list(data.variables),

@@ -8,7 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
-from pursue_gen.language.wording import answer_text, events_words, visited
+from pursue_gen.language.wording import answer_words, events_words, visited
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.report.statuses import broken, changes, conditions, holding
@@ -81,8 +81,9 @@ def draw(recording: Recording, ident: str = _ID) -> str:
 def section(recording: Recording, ident: str = _ID) -> Section:
     """The timeline as a part of a page, with a table of all steps."""
     words = words_of(recording.scenario, recording.network)
+    shown = recording.scenario.shown
     rows = [
-        (_time(step.at), step.agent, _step_text(step, words, recording.network), changed)
+        (_time(step.at), shown(step.agent), _step_text(step, words, recording.network), changed)
         for step, changed in zip(recording.steps, changes(recording))
     ]
     heads = ("Time", "Who", "What", "What that changes")
@@ -106,10 +107,10 @@ def _scale(recording: Recording, words: Words) -> Scale:
     left = _SIDE + 30 + 8.4 * min(longest, 21)
     end = max(recording.end, 1.0)
     bars = (
-        (len(_bar_label(words, stay.what)) + 1) * _BOLD / (stay.end - stay.start)
+        (len(_bar_label(recording, words, stay.what)) + 1) * _BOLD / (stay.end - stay.start)
         for agent in recording.agents
         for stay in stays(recording, agent)
-        if stay.over and stay.end > stay.start and _bar_label(words, stay.what)
+        if stay.over and stay.end > stay.start and _bar_label(recording, words, stay.what)
     )
     wanted = sorted(bars)
     roomy = end * wanted[int(_LABELLED * (len(wanted) - 1))] if wanted else 0.0
@@ -117,15 +118,17 @@ def _scale(recording: Recording, words: Words) -> Scale:
     return Scale(left, inner / end, left + inner + _RIGHT + 40, end)
 
 
-def _bar_label(words: Words, location: str) -> str:
+def _bar_label(recording: Recording, words: Words, location: str) -> str:
     """What stands above a movement or an action; nothing above a wait."""
     part = words.parts.get(location, ("at", location))
-    return "" if part[0] == "at" else f"{part[1]} → {part[2]}" if part[0] == "way" else part[2]
+    shown = recording.scenario.shown
+    return "" if part[0] == "at" else f"{shown(part[1])} → {shown(part[2])}" if part[0] == "way" else shown(part[2])
 
 
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
-    lanes = [*recording.agents, *(s.name for s in scenario.states), *(r.name for r in scenario.rules)]
+    lanes = [*map(scenario.shown, recording.agents), *(s.name for s in scenario.states)]
+    lanes += [rule.name for rule in scenario.rules]
     lanes += [own.name for own in own_turns(scenario)]
     lanes += [names.count(event.name) for event, _ in counted(scenario)]
     return [*lanes, *conditions(scenario), *_due(scenario).values()]
@@ -167,7 +170,8 @@ def _lanes(
     lanes = []
     for number, agent in enumerate(recording.agents):
         fill = f"url(#{ident}-fill-{number})"
-        lanes.append(Lane(agent, tuple(_agent(recording, words, scale, agent, looks[agent], fill)), agent))
+        bars = tuple(_agent(recording, words, scale, agent, looks[agent], fill))
+        lanes.append(Lane(recording.scenario.shown(agent), bars, agent))
     for state in recording.scenario.states:
         changes = ((step.at, str(step.values.get(names.state_value(state.name), 0))) for step in recording.steps)
         found = [stay for stay in lasting(recording, changes) if stay.what == "1"]
@@ -195,29 +199,30 @@ def _agent(
     recording: Recording, words: Words, scale: Scale, agent: str, look: AgentLook, fill: str
 ) -> Iterator[str]:
     """Movements and actions as bars, waits as lines, and what takes no time as marks."""
-    found, taken = stays(recording, agent), 0.0
-    for number, stay in enumerate(found):
-        part, label = words.parts.get(stay.what, ("at", stay.what)), _bar_label(words, stay.what)
+    found, taken, shown = stays(recording, agent), 0.0, recording.scenario.shown
+    labels = [_bar_label(recording, words, stay.what) for stay in found]
+    for number, (stay, label) in enumerate(zip(found, labels)):
+        part = words.parts.get(stay.what, ("at", stay.what))
         x = scale.x(stay.start)
         if not label:
-            yield _line(scale, stay, f"at {part[1]}", "wait", max(0.0, taken - x))
+            yield _line(scale, stay, f"at {shown(part[1])}", "wait", max(0.0, taken - x))
             continue
-        after = next((scale.x(other.start) for other in found[number + 1 :] if _bar_label(words, other.what)), None)
+        after = next((scale.x(found[k].start) for k in range(number + 1, len(found)) if labels[k]), None)
         room = (scale.width if after is None else after) - x
         taken = x + min(room, (len(label) + 1) * _BOLD)
-        ink = ("#ffffff", f"{label} at {part[1]}", 3.0) if part[0] == "doing" else (fill, f"from {label}", 1.5)
+        ink = ("#ffffff", f"{label} at {shown(part[1])}", 3.0) if part[0] == "doing" else (fill, f"from {label}", 1.5)
         yield _bar(scale, stay, _label(x, room, label, "pg-strong"), look.colour, *ink)
     free = 0.0
     for before, step in zip(recording.steps, recording.steps[1:]):
         if step.agent != agent or before.locations.get(agent) != step.locations.get(agent):
             continue
-        x, label = scale.x(step.at), step.event
-        tooltip = tag("title", safe(f"{agent}: {label} at {_time(step.at)}"))
-        shown = mark(look, x, 28, 8.0, stroke="#ffffff", stroke_width=1.5)
+        x, label = scale.x(step.at), shown(step.event)
+        tooltip = tag("title", safe(f"{shown(agent)}: {label} at {_time(step.at)}"))
+        drawn = mark(look, x, 28, 8.0, stroke="#ffffff", stroke_width=1.5)
         room = x - len(label) * _LETTER / 2
         under = text(x, 50, label, "pg-small pg-strong") if room > free else ""
         free = x + len(label) * _LETTER / 2 if under else free
-        yield tag("g", tooltip, shown, under, class_="instant")
+        yield tag("g", tooltip, drawn, under, class_="instant")
 
 
 def _turns(name: str, found: Sequence[Stay], words: Words, scale: Scale) -> Lane:
@@ -233,7 +238,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
         found, objective = stays(recording, automaton), objectives[automaton]
         if isinstance(objective, Respond):
             risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
-            yield Lane(name, _deadline(recording, scale, risks, answer_text(objective)))
+            yield Lane(name, _deadline(recording, scale, risks, answer_words(objective)))
         elif isinstance(objective, Patrol):
             risks = [(stay, stay.start + objective.period) for stay in found if stay.what == names.AT_RISK]
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
@@ -250,9 +255,9 @@ def _due(scenario: Scenario) -> Dict[str, str]:
     found: Dict[str, str] = {}
     for automaton, objective in stated(scenario).items():
         if isinstance(objective, Respond):
-            found[automaton] = f"deadline: {answer_text(objective)}"
+            found[automaton] = f"deadline: {answer_words(objective)}"
         elif isinstance(objective, Patrol):
-            found[automaton] = f"visits: {objective.place.name}"
+            found[automaton] = f"visits: {objective.place.shown}"
         elif isinstance(objective, Reach) and objective.within is not None:
             found[automaton] = f"deadline: {events_words(objective)}"
     return found if len(found) > 1 else dict.fromkeys(found, "deadline")

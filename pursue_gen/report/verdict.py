@@ -118,8 +118,8 @@ def _game(rules: Rules) -> str:
 def _agents(scenario: Scenario) -> str:
     rows = []
     for agent in scenario.agents:
-        does = ", ".join(ref.name for ref in agent.can_do) or "-"
-        reacts = ", ".join(ref.name for ref in agent.reacts_to) or "-"
+        does = ", ".join(ref.shown for ref in agent.can_do) or "-"
+        reacts = ", ".join(ref.shown for ref in agent.reacts_to) or "-"
         speed = speed_words(agent, scenario)
-        rows.append((agent.name, kind_words(agent), agent.location.name, speed, does, reacts))
+        rows.append((agent.shown, kind_words(agent), agent.location.shown, speed, does, reacts))
     return table(("agent", "is", "starts at", "moves", "can do", "takes part in"), rows, "Who is there")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import answer_text, assumption_words, events_words, listed, objective_text
+from pursue_gen.language.wording import answer_words, assumption_words, events_words, listed, objective_text
 from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
@@ -31,13 +31,14 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for event, most in counted(scenario):
         automaton = network.automaton(names.count(event.name))
         left = {place.name: _left(most - number) for number, place in enumerate(automaton.locations)}
-        found.append(Status(automaton.name, event.name, left))
+        found.append(Status(automaton.name, scenario.shown(event.name), left))
     for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
-        texts = {place.name: _turn(automaton, place.name) for place in automaton.locations}
+        texts = {place.name: _turn(scenario, automaton, place.name) for place in automaton.locations}
         found.append(Status(rule.name, rule.name, texts))
     for own in own_turns(scenario):
-        texts = {str(number): _turn(own.order, place.name) for number, place in enumerate(own.order.locations)}
+        order = own.order
+        texts = {str(k): _turn(scenario, order, place.name) for k, place in enumerate(order.locations)}
         found.append(Status(own.variable, own.name, texts))
     variables = {name for name, _ in network.variables}
     for state in scenario.states:
@@ -52,20 +53,21 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     return tuple(found)
 
 
-def turn_words(automaton: Automaton, location: str) -> str:
+def turn_words(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What a rule waits for in a location, as in `next: load or wait`."""
-    shown = (f"the end of {_event(c)}" if c.endswith(_END) else c for c in _channels(automaton, location, leaving=True))
+    channels = _channels(automaton, location, leaving=True)
+    shown = (f"the end of {_event(scenario, c)}" if c.endswith(_END) else _event(scenario, c) for c in channels)
     return "next: " + " or ".join(shown)
 
 
-def _turn(automaton: Automaton, location: str) -> str:
+def _turn(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What has been done last, and what is next; or what goes on."""
     following = _channels(automaton, location, leaving=True)
     if following and all(channel.endswith(_END) for channel in following):
-        return " and ".join(f"{_event(channel)} goes on" for channel in following)
-    before = [_event(channel) for channel in _channels(automaton, location, leaving=False)]
+        return " and ".join(f"{_event(scenario, channel)} goes on" for channel in following)
+    before = [_event(scenario, channel) for channel in _channels(automaton, location, leaving=False)]
     done = f"{before[0]} done, " if len(before) == 1 and location != automaton.initial else ""
-    return done + turn_words(automaton, location)
+    return done + turn_words(scenario, automaton, location)
 
 
 def _channels(automaton: Automaton, location: str, leaving: bool) -> List[str]:
@@ -74,8 +76,9 @@ def _channels(automaton: Automaton, location: str, leaving: bool) -> List[str]:
     return list(dict.fromkeys(edge.sync.channel for edge in edges if edge.sync))
 
 
-def _event(channel: str) -> str:
-    return channel[: -len(_END)] if channel.endswith(_END) else channel
+def _event(scenario: Scenario, channel: str) -> str:
+    """What people read for the event of a channel."""
+    return scenario.shown(channel[: -len(_END)] if channel.endswith(_END) else channel)
 
 
 def _left(number: int) -> str:
@@ -89,7 +92,7 @@ def _assumptions(scenario: Scenario) -> Iterator[Status]:
         holds = {"1": "assumed", "0": "broken: not assumed any more"}
         yield Status(names.assumption(number), assumption_words(assumption), holds)
         if isinstance(assumption, AtMost) and assumption.times:
-            label = f"{assumption.event.name} by {assumption.agent.name}"
+            label = f"{assumption.event.shown} by {assumption.agent.shown}"
             done = {str(times): f"{times} of {assumption.times} times" for times in range(assumption.times + 1)}
             yield Status(names.assumption_count(number), label, done)
 
@@ -98,13 +101,13 @@ def _duty(objective: StatedObjective, location: str) -> str:
     """What an objective is at in a location of its automaton."""
     texts: Dict[str, str] = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
     if isinstance(objective, Reach):
-        done = [objective.events[number].name for number in events_done(location)]
+        done = [objective.events[number].shown for number in events_done(location)]
         found = f"{listed(done)} done" if done else "not counting yet"
         texts = {"win": "reached", "unlocked": f"{events_words(objective)} to be done", names.LATE: "too late"}
         return texts.get(location, found)
     if isinstance(objective, Respond):
-        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{answer_text(objective)} is due"})
+        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{answer_words(objective)} is due"})
     elif isinstance(objective, Patrol):
-        who = "a robot" if objective.who.agent is None else objective.who.agent.name
+        who = "a robot" if objective.who.agent is None else objective.who.agent.shown
         texts.update({names.IDLE: f"{who} is there", names.AT_RISK: "a visit is due"})
     return texts.get(location, location)

@@ -14,6 +14,7 @@ import jinja2
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
+from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Connection, Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed, objective_text
 from pursue_gen.partition import SubStrategy, partition, strategy_file
@@ -256,7 +257,7 @@ def _promise(scenario: Scenario) -> str:
     """What the mission guarantees, in a sentence, with the names of the scenario."""
     parts = [_reaches(reach) for reach in scenario.reach]
     parts += [f"keeps `{_source(scenario, safety)}`" for safety in scenario.safety]
-    assumed = condition_of_promise(scenario)
+    assumed = in_markdown(scenario, condition_of_promise(scenario))
     kept = f"The mission {listed(parts)}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
     given_up = [f"`{objective_text(one.objective)}`" for one in scenario.given_up]
     return f"{kept} What is optional and had to be given up: {listed(given_up)}." if given_up else kept

@@ -41,6 +41,8 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
+    if scenario.labels:
+        data["labels"] = inline(scenario.labels)
     if scenario.assumptions:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
     return data

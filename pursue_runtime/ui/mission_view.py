@@ -35,7 +35,7 @@ class PossibleWord(NamedTuple):
 class Task(NamedTuple):
     """What an agent is doing (a person: what it is to do), in words, and the word that a person reports its end with.
 
-    `label` is for the button: Arrived or Done.
+    `label` is for the button: Arrived or Done. `shown`: what people read for the agent.
     """
 
     agent: str
@@ -43,6 +43,7 @@ class Task(NamedTuple):
     text: str
     label: str
     word: str
+    shown: str
 
 
 def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
@@ -60,7 +61,7 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
                 continue
             closes = min([bound.bound - clocks[bound.left] for bound in zone if bound.left], default=float("inf"))
             word = report_word(model, automaton.name, edge.word)
-            text = f"{automaton.name} {phrase(automaton, edge).does}"
+            text = f"{model.shown(automaton.name)} {phrase(model, automaton, edge).does}"
             found.setdefault(word, PossibleWord(word, opens, closes, automaton.name, text))
     return list(found.values())
 
@@ -84,17 +85,19 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
             continue
         if automaton.name in state.held:
             resume = format_report(RobotReport(automaton.name, RESUME))
-            found.append(Task(automaton.name, automaton.kind, "held, until it is to continue", "Resume", resume))
+            text, shown = "held, until it is to continue", model.shown(automaton.name)
+            found.append(Task(automaton.name, automaton.kind, text, "Resume", resume, shown))
             continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
         ends = (edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target))
         end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
             is_person = automaton.kind == "human"
-            text = _instruction_text(begin, automaton.edges) if is_person else _activity_text(begin, automaton.edges)
+            say = _instruction_text if is_person else _activity_text
+            text = say(model, begin, automaton.edges)
             label = "Arrived" if is_movement(location) and not is_person else "Done"
             word = report_word(model, automaton.name, end.word)
-            found.append(Task(automaton.name, automaton.kind, text, label, word))
+            found.append(Task(automaton.name, automaton.kind, text, label, word, model.shown(automaton.name)))
     return found
 
 
@@ -217,9 +220,10 @@ class MissionView:
         """Return a line with the location of each agent."""
         if self.state is None:
             return "waiting for the first state"
+        model, at = self._model, self.state.locations
         places = [
-            f"{automaton.name} {where(automaton, self.state.locations.get(automaton.name, '?'))}"
-            for automaton in self._model.of_kind("robot", "human", "agent")
+            f"{model.shown(automaton.name)} {where(model, automaton, at.get(automaton.name, '?'))}"
+            for automaton in model.of_kind("robot", "human", "agent")
         ]
         return f"{self.elapsed(now):8.1f}  " + "  ".join(places)
 
@@ -257,23 +261,24 @@ class MissionView:
             return ""
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == here:
-                text = "" if is_end(edge.source, edge.target) else _instruction_text(edge, automaton.edges, " now")
-                return text and f"{person}: {text}"
+                over = is_end(edge.source, edge.target)
+                text = "" if over else _instruction_text(self._model, edge, automaton.edges, " now")
+                return text and f"{self._model.shown(person)}: {text}"
         return ""
 
 
-def _instruction_text(edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
+def _instruction_text(model: Model, edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
     """What a person does who takes this edge."""
     if is_movement(edge.target):
-        return f"go from {edge.source} to {_arrival(edges, edge)}{when}"
-    return f"do {edge.word}{when}, at {edge.source}"
+        return f"go from {model.shown(edge.source)} to {model.shown(_arrival(edges, edge))}{when}"
+    return f"do {model.shown(edge.word)}{when}, at {model.shown(edge.source)}"
 
 
-def _activity_text(edge: Edge, edges: Sequence[Edge]) -> str:
+def _activity_text(model: Model, edge: Edge, edges: Sequence[Edge]) -> str:
     """What an agent does that has taken this edge."""
     if is_movement(edge.target):
-        return f"from {edge.source} to {_arrival(edges, edge)}"
-    return f"{edge.word}, at {edge.source}"
+        return f"from {model.shown(edge.source)} to {model.shown(_arrival(edges, edge))}"
+    return f"{model.shown(edge.word)}, at {model.shown(edge.source)}"
 
 
 def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
@@ -283,7 +288,7 @@ def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
 
 def report_text(task: Task) -> str:
     """What the report of the end of a task says."""
-    return f"{task.agent} is done: {task.text}" if task.label == "Done" else f"{task.agent}: {task.label.lower()}"
+    return f"{task.shown} is done: {task.text}" if task.label == "Done" else f"{task.shown}: {task.label.lower()}"
 
 
 def menu(offers: Sequence[PossibleWord]) -> List[str]:

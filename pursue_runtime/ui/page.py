@@ -110,6 +110,7 @@ class Page:
         nobody controls."""
         return {
             "scenario": self._model.scenario,
+            "labels": self._model.labels,
             "places": {name: list(place) for name, place in self._plan.places.items()},
             "ways": [list(way) for way in self._plan.ways],
             "one_ways": [list(way) for way in self._plan.one_ways],
@@ -151,10 +152,10 @@ class Page:
         if state.seq and state.event not in ("", START) and (last is None or last.seq != state.seq):
             fresh.append(self.note(at, sentence(self._model, state, last), self._kind(state.agent), state.event))
         for name in state.lost if last is None else sorted(set(state.lost) - set(last.lost)):
-            fresh.append(self.note(at, f"{name} counts as lost", BAD))
+            fresh.append(self.note(at, f"{self._model.shown(name)} counts as lost", BAD))
         if last is not None:
             for name in sorted(set(last.lost) - set(state.lost)):
-                fresh.append(self.note(at, f"{name} is back"))
+                fresh.append(self.note(at, f"{self._model.shown(name)} is back"))
             if last.plan != state.plan:
                 fresh.append(self.note(at, f"plan {state.plan} is in force"))
         if state.status == HOLDING and (last is None or (last.status, last.reason) != (HOLDING, state.reason)):
@@ -176,14 +177,16 @@ class Page:
         """Where an agent is, what it does, and between which moments that ends."""
         location = state.locations.get(automaton.name, automaton.initial)
         place, to = self._where(automaton, location)
+        shown = self._model.shown
         window = end_window(self._model, automaton, location)
-        agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to, "doing": f"at {place or location}",
+        agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to,
+                                 "doing": f"at {shown(place or location)}",
                                  "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
         begin = begin_of(automaton, location)
         if to:
-            agent["doing"] = f"from {place} to {to}"
+            agent["doing"] = f"from {shown(place)} to {shown(to)}"
         elif begin is not None and is_action(location):
-            agent["doing"] = f"{begin.word}, at {place or begin.source}"
+            agent["doing"] = f"{shown(begin.word)}, at {shown(place or begin.source)}"
             agent["doing"] += " (has finished)" if automaton.name in state.finished else ""
         if window is not None and window.clock in state.clocks:
             since = at - state.clocks[window.clock]
@@ -215,7 +218,8 @@ class Page:
             "The strategy decides": [name for name in free if name not in alone],
             "Nobody controls": [name for name in free if name in alone],
         }
-        return " ".join(f"{what}: {', '.join(names)}." for what, names in groups.items() if names)
+        shown = self._model.shown
+        return " ".join(f"{what}: {', '.join(map(shown, names))}." for what, names in groups.items() if names)
 
     def _tasks(self, state: SystemState, agents: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
         """What agents do now whose ends are reported here, and the word for the end."""
@@ -242,7 +246,7 @@ class Page:
         event = word.rpartition(":")[2]
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
-        return phrase(automaton, edge).label if edge is not None else event
+        return phrase(self._model, automaton, edge).label if edge is not None else self._model.shown(event)
 
     def _kind(self, agent: str) -> str:
         return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)

@@ -18,20 +18,21 @@ class Phrase(NamedTuple):
     does: str
 
 
-def phrase(automaton: Automaton, edge: Edge) -> Phrase:
+def phrase(model: Model, automaton: Automaton, edge: Edge) -> Phrase:
     """An edge of an agent in words."""
+    source, target, word = (model.shown(name) for name in (edge.source, edge.target, edge.word))
     if is_end(edge.source, edge.target):
         if is_movement(edge.source):
-            return Phrase(f"arrive at {edge.target}", f"arrives at {edge.target}")
+            return Phrase(f"arrive at {target}", f"arrives at {target}")
         begin = begin_of(automaton, edge.source)
-        word = begin.word if begin is not None else edge.word
+        word = word if begin is None else model.shown(begin.word)
         return Phrase(f"{word} is done", f"ends {word}")
     if is_movement(edge.target):
-        to = destination(automaton, edge.target)
-        return Phrase(f"{edge.source} → {to}", f"sets off from {edge.source} to {to}")
+        to = model.shown(destination(automaton, edge.target))
+        return Phrase(f"{source} → {to}", f"sets off from {source} to {to}")
     if is_action(edge.target):
-        return Phrase(edge.word, f"begins {edge.word}")
-    return Phrase(edge.word, f"does {edge.word}")
+        return Phrase(word, f"begins {word}")
+    return Phrase(word, f"does {word}")
 
 
 def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> str:
@@ -48,7 +49,8 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     before = last.locations.get(state.agent, "") if last is not None else ""
     edges = [edge for edge in automaton.edges if edge.word == state.event and edge.source != edge.target]
     likely = sorted(edges, key=lambda edge: (edge.target != here, edge.source != before))
-    return f"{state.agent} {phrase(automaton, likely[0]).does if likely else 'does ' + state.event}"
+    does = phrase(model, automaton, likely[0]).does if likely else f"does {model.shown(state.event)}"
+    return f"{model.shown(state.agent)} {does}"
 
 
 def _starts(model: Model) -> str:
@@ -56,14 +58,15 @@ def _starts(model: Model) -> str:
     return f"the mission starts{'; it does not promise: ' if model.given_up else ''}{', '.join(model.given_up)}"
 
 
-def where(automaton: Automaton, location: str) -> str:
+def where(model: Model, automaton: Automaton, location: str) -> str:
     """Where an agent is, in few words: a POI, the way between two, or an action and its POI."""
     begin = begin_of(automaton, location)
     if begin is None:
-        return location
+        return model.shown(location)
+    source = model.shown(begin.source)
     if is_movement(location):
-        return f"{begin.source} → {destination(automaton, location)}"
-    return f"{begin.word} at {begin.source}"
+        return f"{source} → {model.shown(destination(automaton, location))}"
+    return f"{model.shown(begin.word)} at {source}"
 
 
 def begin_of(automaton: Automaton, location: str) -> Optional[Edge]:

@@ -14,9 +14,12 @@ SLIPS = [
     ("poi", "PML010", 4, "expected a name in quotes after `poi`, but the statement ends", 'the form is: poi "a"'),
     ('poi "a', "PML012", 5, "no closing quote", 'write it as "name"'),
     ("poi “a”", "PML010", 5, "found `“`", "use straight double quotes"),
-    ('poi "a" "b"', "PML010", 9, "expected the end of the statement", "the form is"),
+    ('poi "a" "b"', "PML010", 9, "expected `label` or the end of the statement", "the form is"),
     ('pois "a"', "PML011", 1, "expected a statement, found `pois`", "did you mean poi?"),
     ('Poi "a"', "PML011", 1, "expected a statement", "did you mean poi?"),
+    ('poi "a" label', "PML010", 14, "expected a name in quotes after `label`", "the form is"),
+    ('poi "a" label b', "PML010", 15, "expected a name in quotes after `label`, found `b`", 'label "b"'),
+    ('connect a and b distance 3 label "c"', "PML010", 28, "found `label`", "the form is"),
     ("hello", "PML011", 1, "expected a statement", "a statement begins with poi, connect, event"),
     (")", "PML011", 1, "expected a statement", "a statement begins with"),
     ("connect a b distance 3", "PML010", 11, "expected `and` after `a`, found `b`", "connect a and b distance 3"),
@@ -174,5 +177,5 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `location`, `duration`, `at_most`, `collaborative`, `only_if` or the end of the statement"
+    expected = "expected `location`, `duration`, `at_most`, `collaborative`, `label`, `only_if` or the end"
     assert expected in finding.message

@@ -11,7 +11,7 @@ syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after and at at_most avoid before between can_do collaborative controllable distance do does
 syntax keyword pursueKeyword duration false_if from human if initially leaves location mobile never never_with one_way
 syntax keyword pursueKeyword only_if or reacts_to takes then times to together true_if waits within
-syntax keyword pursueKeyword always any by every in order patrol doing no not on_way robot each for
+syntax keyword pursueKeyword always any by every in label order patrol doing no not on_way robot each for
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

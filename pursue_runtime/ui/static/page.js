@@ -45,6 +45,7 @@ function onPress(button, act) { // aria-disabled keeps the focus where it is; so
   button.addEventListener("click", () => { if (button.getAttribute("aria-disabled") !== "true") act(); });
 }
 
+const shown = (name) => (Object.prototype.hasOwnProperty.call(scene.labels, name) ? scene.labels[name] : name); // what people read for it
 const short = (name) => (name.length > 24 ? name.slice(0, 23) + "…" : name);
 const units = (number) => Math.max(0, number).toFixed(1);
 
@@ -144,8 +145,8 @@ function setAgents() {
     const row = make("li", "agent-row"), line = make("div"), doing = make("span"), next = make("div", "next");
     const progress = make("progress");
     progress.max = 1;
-    progress.setAttribute("aria-label", `progress of ${agent.name}`);
-    line.append(make("span", `tag ${agent.kind}`, agent.name), " ", doing);
+    progress.setAttribute("aria-label", `progress of ${shown(agent.name)}`);
+    line.append(make("span", `tag ${agent.kind}`, shown(agent.name)), " ", doing);
     row.append(line, progress, next);
     widgets.rows.set(agent.name, { row, doing, progress, next });
     return row;
@@ -185,8 +186,8 @@ function setButtons() {
     if (!groups.has(agent)) {
       const group = make("div", "group"), inside = make("div");
       group.setAttribute("role", "group");
-      group.setAttribute("aria-label", agent);
-      group.append(make("span", "tag agent", agent), inside);
+      group.setAttribute("aria-label", shown(agent));
+      group.append(make("span", "tag agent", shown(agent)), inside);
       groups.set(agent, { group, inside });
     }
     const button = make("button"), time = make("small");
@@ -210,7 +211,7 @@ function setMap() {
   map.marks.clear();
   $("where").hidden = names.length === 0;
   if (!names.length || !width) return;
-  const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(name).length));
+  const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
   const above = 2 * POI + MARK * Math.min(3, scene.agents.length), below = 2 * POI, side = Math.min(width / 4, 16 + 4.2 * longest);
   const xs = names.map((name) => scene.places[name][0]), ys = names.map((name) => scene.places[name][1]);
   const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
@@ -238,10 +239,10 @@ function setMap() {
   }
   for (const name of names) {
     const { x, y } = map.points.get(name);
-    labelled(picture, "poi", name, 2 * POI, 14).setAttribute("transform", `translate(${x} ${y})`);
+    labelled(picture, "poi", shown(name), 2 * POI, 14).setAttribute("transform", `translate(${x} ${y})`);
   }
   for (const { name, kind } of scene.agents) {
-    const group = labelled(picture, `mark ${kind}`, name, 22, 4);
+    const group = labelled(picture, `mark ${kind}`, shown(name), 22, 4);
     group.dataset.agent = name;
     map.marks.set(name, { group, half: group.querySelector("rect").width.baseVal.value / 2, x: null, y: null });
   }
@@ -318,7 +319,7 @@ function setView(fresh) {
   $("status").dataset.is = status;
   say($("status"), status);
   document.title = `${status} · ${scene.scenario}`;
-  const lost = view.lost.length ? `Lost: ${view.lost.join(", ")}. ` : "";
+  const lost = view.lost.length ? `Lost: ${view.lost.map(shown).join(", ")}. ` : "";
   const missing = view.missing.length ? `Not ready yet: ${view.missing.join(", ")}` : "";
   say($("why"), lost + (view.verdict || view.reason || missing));
   say($("turn"), view.turn);
@@ -375,10 +376,10 @@ function showAgent(widget, agent, now) {
 function showTask(widget, name, task, now, here) {
   widget.row.classList.toggle("idle", !task);
   widget.word = task ? task.word : "";
-  say(widget.text, task ? `${name}: ${task.text}` : `${name}: ${widget.idle}`);
+  say(widget.text, task ? `${shown(name)}: ${task.text}` : `${shown(name)}: ${widget.idle}`);
   say(widget.done, task ? task.label : widget.done.textContent);
   say(widget.time, task && task.low !== null ? `for ${units(now - task.since)} now; planned: ${units(task.low - task.since)} to ${units(task.high - task.since)}` : "");
-  widget.done.setAttribute("aria-label", task ? `${task.label}: ${name}, ${task.text}` : widget.done.textContent);
+  widget.done.setAttribute("aria-label", task ? `${task.label}: ${shown(name)}, ${task.text}` : widget.done.textContent);
   enable(widget.done, here && Boolean(task) && widget.pressed !== widget.word);
 }
 

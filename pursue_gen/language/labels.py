@@ -1,0 +1,61 @@
+"""Labels: what people read in place of a name."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Dict, Iterator, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.scenario import Scenario
+
+LABELLED = ("POI", "event", "agent")
+"""The kinds of things that may have a label."""
+
+_SIGNS = re.compile(r"[!-/:-@\[-`{-~]")
+"""The signs that mean something in Markdown; a backslash before one of them makes it an ordinary sign."""
+
+LONGEST_LABEL = 60
+"""Letters of a label: pictures and buttons have little room."""
+
+
+def why_no_label(label: str) -> str:
+    """Why a text cannot be a label; the empty string: it can."""
+    if not label.strip():
+        return "it is empty"
+    if label != label.strip():
+        return "it begins or ends with a blank"
+    if len(label) > LONGEST_LABEL:
+        return f"it is longer than {LONGEST_LABEL} letters"
+    if '"' in label or not label.isprintable():
+        return "it has characters that cannot be seen, or that change the direction of writing"
+    return ""
+
+
+def markdown(text: str) -> str:
+    """The text as Markdown that shows just that."""
+    return _SIGNS.sub(r"\\\g<0>", text)
+
+
+def in_markdown(scenario: Scenario, text: str) -> str:
+    """A text with what people read in this scenario as Markdown: labels may hold any sign, names none that matters."""
+    return markdown(text) if scenario.labels else text
+
+
+def check_labels(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Findings about labels: those that cannot be shown, and things of one kind that people cannot tell apart."""
+    kinds: Dict[str, Tuple[Any, ...]] = {"POI": scenario.pois, "event": scenario.events, "agent": scenario.agents}
+    for kind, parts in kinds.items():
+        seen: Dict[str, Tuple[str, Span]] = {part.name: (part.name, part.span) for part in parts if part.label is None}
+        for part in parts:
+            if part.label is None:
+                continue
+            why = why_no_label(part.label)
+            if why:
+                hint = f"write 1 to {LONGEST_LABEL} letters, signs and blanks; without a label people read {part.name}"
+                yield error("PML282", f"the label of {part.name} cannot be shown: {why}", part.span, hint)
+            elif part.label in seen:
+                name, span = seen[part.label]
+                what = "place" if kind == "POI" else kind
+                message = f'people read "{part.label}" for the {what} {name} in line {span.line}, too'
+                yield warning("PML283", message, part.span, "give one of them another label")
+            seen.setdefault(part.label, (part.name, part.span))
