@@ -40,10 +40,13 @@ class StateTable(Generic[Payload]):
     """Payloads by discrete state. An entry may leave out automata and variables: it then holds whatever they are.
 
     Entries may name different sets, and several may apply in one state: each then speaks of what matters to a part of
-    the strategy. `names`: the automata and variables that any entry names.
+    the strategy. `names`: the automata and variables that any entry names. `left_out_clocks` matter to none of them.
     """
 
-    def __init__(self, entries: Iterable[Tuple[Mapping[str, object], Payload]]) -> None:
+    def __init__(
+        self, entries: Iterable[Tuple[Mapping[str, object], Payload]], left_out_clocks: Iterable[str] = ()
+    ) -> None:
+        self._left_out_clocks = frozenset(left_out_clocks)
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
         for state, payload in entries:
             names = tuple(sorted(state))
@@ -80,12 +83,14 @@ class StateTable(Generic[Payload]):
     def standing(self, before: SystemState, state: SystemState) -> List[Entry]:
         """Those of the entries that apply in both of two states in a row for which nothing has changed in between.
 
-        What they name is as it was, and no clock was reset but those of automata that they do not name.
+        What they name is as it was, and no clock was reset but those of automata that they do not name, and those that
+        the strategy leaves out.
         """
         known = self.applying(before)
         both = [entry for entry in self.applying(state) if entry in known]
         aged = before.clocks_at(state.stamp)
         reset = {clock for clock, value in state.clocks.items() if abs(value - aged.get(clock, INFINITY)) >= EPSILON}
+        reset -= self._left_out_clocks
         owners = {automaton_clock(name): name for name in state.locations}
         return [entry for entry in both if not any(c not in owners or owners[c] in entry[0] for c in reset)]
 
@@ -118,7 +123,8 @@ class Cover(StateTable[Tuple[Zone, ...]]):
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        super().__init__((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
+        entries = ((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
+        super().__init__(entries, _left_out_clocks(data))
         self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
 
     def zones(self, state: SystemState) -> List[List[Zone]]:
@@ -135,6 +141,10 @@ class Cover(StateTable[Tuple[Zone, ...]]):
             if awaited:
                 return awaited
         return []
+
+
+def _left_out_clocks(data: Mapping[str, Any]) -> List[str]:
+    return list(map(str, data.get("left_out_clocks", ())))
 
 
 def read_cover(data: Mapping[str, Any]) -> Cover:
@@ -159,7 +169,7 @@ class Strategy:
             }
             self.reaction = float(exact(data["reaction"]))
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
-            self._table = StateTable(entries)
+            self._table = StateTable(entries, _left_out_clocks(data))
             # What it reads of a state: automata and variables, and clocks.
             self.names = self._table.names
             commands = [command for _, part in entries for command in part]

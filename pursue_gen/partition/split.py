@@ -32,7 +32,7 @@ class SubStrategy:
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
     no program: its commands are instructions to people. `reacts_to` has, for its robots that take part in collaborative
     events of others, these events and the controllable agents that do them. `objectives` are those of `agents` that
-    are no agents: the automata of objectives.
+    are no agents: the automata of objectives. `left_out_clocks`: as the strategy has them.
     """
 
     controller: str
@@ -40,6 +40,7 @@ class SubStrategy:
     blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
     reacts_to: Tuple[Tuple[str, str, Tuple[str, ...]], ...] = ()
     objectives: Tuple[str, ...] = ()
+    left_out_clocks: Tuple[str, ...] = ()
 
     @property
     def commands(self) -> int:
@@ -87,6 +88,7 @@ def partition(
             _select(strategy, commanded, controllers == GENERAL),
             _reactions(agents, commanded),
             tuple(automaton for automaton in commanded if automaton in objectives),
+            strategy.left_out_clocks,
         )
         for name, commanded in owners.items()
     )

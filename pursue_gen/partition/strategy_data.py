@@ -6,7 +6,7 @@ docs/run_time.md describes the format.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, Iterable, List, Union
+from typing import Any, Dict, Iterable, List, Sequence, Union
 
 from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.partition.split import SubStrategy
@@ -26,12 +26,13 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
         reacts_to.setdefault(robot, {})[event] = list(doers)
     named = not {REACH, OBJECTIVE}.issuperset(sub.objectives)
     return {
-        "format": 2 if named else 1,
+        "format": 2 if named or sub.left_out_clocks else 1,
         "controller": sub.controller,
         "commands_agents": list(sub.agents),
         **({"objectives": list(sub.objectives)} if named else {}),
         **({"reacts_to": reacts_to} if reacts_to else {}),
         "reaction": number(reaction),
+        **_left_out(sub.left_out_clocks),
         "strategy": [
             {"state": _state(state), "commands": [_command(command) for command in commands]}
             for state, commands in sub.blocks
@@ -40,13 +41,19 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state the zones in which the strategy is defined, wait or command; its stages, if it has any."""
+    """For each state the zones in which the strategy is defined, wait or command; its stages, if it has any, and the
+    clocks that it leaves out."""
     cover = []
     for block in strategy.blocks:
         zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
         cover.append({"state": _state(block.state), "zones": _zones(zones)})
     stages = [[list(place) for place in milestones] for milestones in strategy.stages]
-    return {"format": 1, **({"stages": stages} if stages else {}), "cover": cover}
+    left_out = _left_out(strategy.left_out_clocks)
+    return {"format": 2 if left_out else 1, **({"stages": stages} if stages else {}), **left_out, "cover": cover}
+
+
+def _left_out(clocks: Sequence[str]) -> Dict[str, List[str]]:
+    return {"left_out_clocks": list(clocks)} if clocks else {}
 
 
 def number(value: Number) -> Union[int, float, str]:

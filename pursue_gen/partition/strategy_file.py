@@ -24,7 +24,9 @@ def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fract
         "In a state below, the command is due as soon as one of its zones (clocks in time units) holds.",
     )
     data = strategy_data(sub, reaction)
-    data["commands_agents"] = inline(data["commands_agents"])
+    for name in ("commands_agents", "left_out_clocks"):
+        if name in data:
+            data[name] = inline(data[name])
     data["strategy"] = [{**entry, "state": inline(entry["state"])} for entry in data["strategy"]]
     return yaml_text(data, head)
 
@@ -38,5 +40,7 @@ def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
     data = cover_data(strategy)
     if "stages" in data:
         data["stages"] = [inline(milestones) for milestones in data["stages"]]
+    if "left_out_clocks" in data:
+        data["left_out_clocks"] = inline(data["left_out_clocks"])
     data["cover"] = [{**entry, "state": inline(entry["state"])} for entry in data["cover"]]
     return yaml_text(data, head)

@@ -44,6 +44,7 @@ class Advisor:
 
     def __init__(self, setup: Setup, strategy: Strategy) -> None:
         self._setup, self.size = setup, len(strategy.blocks)
+        self._left_out_clocks = frozenset(strategy.left_out_clocks)
         self._blocks = Blocks(strategy)
 
     def decision(self, play: PlayState) -> Optional[Decision]:
@@ -53,10 +54,11 @@ class Advisor:
 
     def standing(self, before: PlayState, play: PlayState) -> Tuple[StandingDecision, ...]:
         """What had been decided before a move, and stands after it: the same block holds, and no clock of an automaton
-        that it names was reset."""
+        that it names was reset, but those that the strategy leaves out."""
         network, game = self._setup.network, self._setup.game
         aged = later(before.entry, play.since - before.since)
         reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
+        reset -= self._left_out_clocks
         touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
         held = dict(self._holding(play))
         return tuple(

@@ -85,6 +85,8 @@ def verify(
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
     if strategy.stages:
+        if strategy.left_out_clocks:
+            return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
         how = limit, prompt, limits, progress
         return _in_stages(network, objective, strategy, reaction, ranks, how)
     part, matters = proven_part(network, objective, strategy)

@@ -5,6 +5,9 @@ that part alone (`named_part`), and what `why_it_matters` finds is held against 
 of the network shows the part as one of its own plays: what is left out changes nothing in the part, takes no command
 from the controller, and cannot stop time. A move that changes nothing in the part is no move there (see `moves`).
 Edges that can never be taken while only the strategy commands change nothing at all: they are dead (see `live`).
+
+A strategy may also leave out clocks of that part. It is then proven for the part without them, and without the bounds
+on them: they may only have kept the environment from acting.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, start_of
+from pursue_gen.tga.pauses import without_clocks
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, raw
 
@@ -25,14 +29,24 @@ from pursue_gen.zones.dbm import Dbm, raw
 def named_part(network: Network, strategy: Strategy) -> Network:
     """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages.
 
-    The first block says what is named: one that names something else covers nothing.
+    The first block says what is named: one that names something else covers nothing. The clocks that it leaves out are
+    not in the part.
     """
     names = _names(network, strategy)
-    return network if names is None else part_of(network, *names)
+    part = network if names is None else part_of(network, *names)
+    return without_clocks(part, strategy.left_out_clocks)
 
 
 def proven_part(network: Network, objective: Objective, strategy: Strategy) -> Tuple[Network, str]:
     """The same without dead edges, and why what it leaves out may matter; "" if it cannot."""
+    part, why = _named_of(network, objective, strategy)
+    for clock in strategy.left_out_clocks:
+        why = why or _why_a_clock_matters(clock, part, strategy)
+    return (part, why) if why else (without_clocks(part, strategy.left_out_clocks), "")
+
+
+def _named_of(network: Network, objective: Objective, strategy: Strategy) -> Tuple[Network, str]:
+    """The same, with all clocks of the part."""
     names = _names(network, strategy)
     if names is None:
         return network, ""
@@ -41,13 +55,43 @@ def proven_part(network: Network, objective: Objective, strategy: Strategy) -> T
     return part, why_it_matters(alive, objective, part, extent.places)
 
 
+def _why_a_clock_matters(clock: str, part: Network, strategy: Strategy) -> str:
+    """Why the controller may need a clock; "" where bounds on it do nothing but keep the environment from acting.
+
+    Each bound on it has to be a lower one, on a move that the environment begins and is never obliged to make.
+    """
+    if clock in _compared(strategy):
+        return f"it compares {clock}, which it leaves out"
+    for automaton in part.automata:
+        stays = {location.name for location in automaton.locations if location.invariant}
+        if any(bound.clock == clock for location in automaton.locations for bound in location.invariant):
+            return f"{clock} bounds a stay of {automaton.name}"
+        for edge in automaton.edges:
+            what = f"{automaton.name} goes from {edge.source} to {edge.target}"
+            if edge.controllable and clock in edge.resets:
+                return f"the controller resets {clock} where {what}"
+            for bound in edge.guard.clocks:
+                if bound.clock != clock:
+                    continue
+                if edge.controllable or (edge.sync is not None and not edge.sync.sends):
+                    return f"{clock} is compared where {what}, which the environment does not begin"
+                if bound.op not in (">", ">=") or edge.source in stays:
+                    return f"{clock} may oblige {automaton.name} to go from {edge.source} to {edge.target}"
+    return ""
+
+
+def _compared(strategy: Strategy) -> Set[Optional[str]]:
+    """The clocks that the strategy compares."""
+    zones = (zone for block in strategy.blocks for zone in (*block.wait, *(z for c in block.commands for z in c.zones)))
+    return {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
+
+
 def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
     """The part with the clocks that the strategy compares, though only dead edges of the part's automata may.
 
     Where the network says how its clocks start, all clocks of these automata stay: it may say so by differences.
     """
-    zones = (zone for block in strategy.blocks for zone in (*block.wait, *(z for c in block.commands for z in c.zones)))
-    compared = {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
+    compared = _compared(strategy)
     if network.start:
         names = {automaton.name for automaton in part.automata}
         compared.update(clock for a in network.automata if a.name in names for clock in clocks_of(a))

@@ -59,12 +59,13 @@ class PlanTable(Generic[Payload]):
 @dataclass(frozen=True)
 class Orders:
     """A strategy by state. `owners`: the nodes that command an agent; `reaction`: how late a command may come, in time
-    units."""
+    units; `left_out_clocks`: those that do not matter to it."""
 
     commands: PlanTable[Command] = field(default_factory=PlanTable)
     cover: PlanTable[Tuple[Zone, ...]] = field(default_factory=PlanTable)
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
+    left_out_clocks: FrozenSet[str] = frozenset()
 
     def after(
         self, move: Move, place: DiscreteState, moves: Moves, since: Mapping[Entry, Since], before: Since, now: Since
@@ -72,10 +73,12 @@ class Orders:
         """For each block that holds after a move, since when what it decides stands: as before it (`since`; `before`
         where that says nothing), or from `now` on.
 
-        It stands if the block held before as well, and the move resets no clock of an automaton that it names.
+        It stands if the block held before as well, and the move resets no clock of an automaton that it names, but
+        those that the strategy leaves out.
         """
         there, resets = after(move, place)
-        touched = {name for name, clocks in moves.clocks.items() if clocks.intersection(resets)}
+        reset = set(resets) - self.left_out_clocks
+        touched = {name for name, clocks in moves.clocks.items() if clocks & reset}
         held = self.cover.holding(place)
         return {
             block: since.get(block, before) if block in held and touched.isdisjoint(block[0]) else now
@@ -91,7 +94,8 @@ def since_for(agent: str, since: Mapping[Entry, Since], now: Since) -> List[Sinc
 
 def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:
     """The workspace's own strategy."""
-    orders = Orders(owners=_owners((sub.controller, sub.agents) for sub in subs), reaction=float(reaction))
+    owners, left_out = _owners((sub.controller, sub.agents) for sub in subs), frozenset(strategy.left_out_clocks)
+    orders = Orders(owners=owners, reaction=float(reaction), left_out_clocks=left_out)
     for block in strategy.blocks:
         state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}
         for command in block.commands:
@@ -107,7 +111,8 @@ def of_plan(data: Mapping[str, Any]) -> Orders:
         strategies = {**data["strategies"], **({"UI": data["people"]} if data.get("people") else {})}
         owners = _owners((name, part["commands_agents"]) for name, part in strategies.items())
         reaction = max((exact(part["reaction"]) for part in strategies.values()), default=Fraction(1, 10))
-        orders = Orders(owners=owners, reaction=float(reaction))
+        left_out = frozenset(map(str, data["cover"].get("left_out_clocks", ())))
+        orders = Orders(owners=owners, reaction=float(reaction), left_out_clocks=left_out)
         for part in strategies.values():
             for entry in part["strategy"]:
                 for command in entry["commands"]:

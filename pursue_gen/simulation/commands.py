@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.words import event_word
@@ -47,9 +47,13 @@ Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
 
 
 class Commands:
-    """The commands of one plan, by discrete state (names of automata and variables to locations and values)."""
+    """The commands of one plan, by discrete state (names of automata and variables to locations and values), and the
+    clocks that it leaves out."""
 
-    def __init__(self, entries: Iterable[Tuple[Mapping[str, str], ZonedCommand]]) -> None:
+    def __init__(
+        self, entries: Iterable[Tuple[Mapping[str, str], ZonedCommand]], left_out_clocks: Iterable[str] = ()
+    ) -> None:
+        self.left_out_clocks = frozenset(left_out_clocks)
         self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[ZonedCommand]]] = {}
         for state, held in entries:
             names = tuple(sorted(state))
@@ -77,19 +81,21 @@ def commands_of(strategy: Strategy) -> Commands:
             first = command.moves[0]
             zones = tuple(tuple(Limit(c.left, c.right, float(c.bound)) for c in zone) for zone in command.zones)
             entries.append((state, ZonedCommand(first.automaton, event_word(first.automaton, first.edge), zones)))
-    return Commands(entries)
+    return Commands(entries, strategy.left_out_clocks)
 
 
 def commands_in(strategies: Iterable[Mapping[str, Any]]) -> Commands:
     """Those of a new plan, from the data that its controllers get (as in strategy.yaml)."""
     entries = []
+    left_out: Set[str] = set()
     for data in strategies:
+        left_out.update(data.get("left_out_clocks", ()))
         for entry in data["strategy"]:
             state = {str(name): str(value) for name, value in entry["state"].items()}
             for command in entry["commands"]:
                 zones = tuple(_zone(text) for text in command["when"])
                 entries.append((state, ZonedCommand(str(command["agent"]), str(command["do"]), zones)))
-    return Commands(entries)
+    return Commands(entries, left_out)
 
 
 _COMPARISON = re.compile(r"(.+?)\s*(<=|<|==)\s*(.+)")

@@ -154,12 +154,12 @@ class Judge:
 
     def _standing(self, before: SystemState, state: SystemState, move: JointMove, now: float) -> Dict[Entry, float]:
         """For each block that holds now, since when: what it decided stands if it held before as well, and the move
-        resets no clock of an automaton that it names."""
+        resets no clock of an automaton that it names, but those that the plan leaves out."""
         plan = self._plans.get(state.plan)
         if plan is None:
             return {}
         network = self._arena.network
-        reset = {network.clocks[index - 1] for index in move.resets}
+        reset = {network.clocks[index - 1] for index in move.resets} - plan.left_out_clocks
         touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
         goes_on = (before.status, state.status, before.plan) == ("running", "running", state.plan)
         held = plan.holding(before.discrete()) if goes_on else []

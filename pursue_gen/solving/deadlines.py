@@ -57,7 +57,8 @@ def proven_in_time(won: Solution, faster: Faster, options: SolveOptions, states:
     took = worst_case(counted, won.objective, strategy, won.reaction, STATES, options.limits)
     worst = faster.kept if took is None else min(took, faster.kept)
     guarantee = bounds(counted, won.objective, won.reaction, worst)
-    return replace(won, network=with_clocks_of(counted, won.network), strategy=strategy, guarantee=guarantee)
+    found = won.with_strategy(strategy)
+    return replace(found, network=with_clocks_of(counted, won.network), guarantee=guarantee)
 
 
 def better(

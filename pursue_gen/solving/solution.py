@@ -11,15 +11,16 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.crowds import little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.crowds import Found, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.solving.without_pauses import verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
-from pursue_gen.synthesis.solve import Stats, Verdict, solve
+from pursue_gen.synthesis.solve import Stats, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -28,6 +29,9 @@ _CANNOT_BE_MET = "SYN021"
 
 _MANY = 100
 """A strategy with more blocks than this is compared with one in stages."""
+
+_MORE = 8
+"""So many times as much work may be spent on an environment that takes no pauses, before the game in one piece."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
@@ -55,6 +59,10 @@ class Solution:
     warnings: Tuple[Diagnostic, ...] = ()
     within: Optional[Fraction] = None
 
+    def with_strategy(self, strategy: Strategy) -> Solution:
+        """The same with another strategy, which was proven for the part of the network that this one speaks of."""
+        return replace(self, strategy=replace(strategy, left_out_clocks=self.strategy.left_out_clocks))
+
     @property
     def part(self) -> Network:
         """The part of the network that the strategy speaks of: what is not in it cannot matter."""
@@ -73,8 +81,9 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     verdict = None
     in_parts = not options.whole and not options.limits.work
     if in_parts:
-        verdict = _with_little_work(game, objective, rules.reaction, options)
-        some = None if verdict else won_by_some(game, objective, rules.reaction, options.since(start))
+        work = little_work(game)
+        verdict = verdict_with(game, objective, rules.reaction, work, options)
+        some = None if verdict else _won_in_parts(game, objective, rules.reaction, work, options.since(start))
         if some is not None:
             return Solution(game, objective, some.strategy, rules.reaction, some.stats, rules=rules)
     if verdict is None:
@@ -103,18 +112,14 @@ def _smaller(won: Solution, options: SolveOptions) -> Solution:
     return smaller if takes is not None and (took is None or takes <= _SLOWER * took) else won
 
 
-def _with_little_work(
-    game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Optional[Verdict]:
-    """The verdict, if it takes little work (see `crowds`)."""
-    work = little_work(game)
-    limits = replace(options.limits, work=work, states=max(3000, work // 40))
-    try:
-        return solve(game, objective, reaction, options.engine, limits, options.progress)
-    except PursueError as problem:
-        if problem.exit_status != 5:
-            raise
-        return None
+def _won_in_parts(
+    game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions
+) -> Optional[Found]:
+    """A proven strategy that leaves something out: clocks of the environment, or agents; None where none is found."""
+    start = time.monotonic()
+    found = won_without_pauses(game, objective, reaction, work, options)
+    found = found or won_by_some(game, objective, reaction, options.since(start))
+    return found or won_without_pauses(game, objective, reaction, _MORE * work, options.since(start))
 
 
 def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
@@ -139,7 +144,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
             raise
         return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
     counted = with_clocks_of(with_counter(won.part), won.network)
-    fast = replace(won, network=counted, strategy=unscaled(strategy, counted, faster.fine))
+    fast = replace(won, network=counted).with_strategy(unscaled(strategy, counted, faster.fine))
     took = guaranteed(fast, LIMIT, left)
     if took.worst is None or took.most is None or found.most is None:
         return replace(fast, guarantee=found)

@@ -159,7 +159,7 @@ def _proven(
         if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
             raise
         return None
-    found = replace(won, strategy=proven)
+    found = won.with_strategy(proven)
     guarantee = guaranteed(found, STATES, options.limits)
     if guarantee.worst is None or (known.worst is not None and guarantee.worst * MUCH > known.worst):
         return None

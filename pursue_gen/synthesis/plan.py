@@ -17,7 +17,7 @@ import re
 from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.synthesis.plan_parts import left_out_lines, read_stages, spoken_of
+from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_stages, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
     assign_meaning,
@@ -241,8 +241,9 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
-    stages = read_stages(text[: header.start()], network, file)
-    reader = _Reader(_Names(spoken_of(text[: header.start()], network, file)), file, bool(stages))
+    above = text[: header.start()]
+    stages, left_out_clocks = read_stages(above, network, file), read_left_out_clocks(above, network, file)
+    reader = _Reader(_Names(spoken_of(above, network, file)), file, bool(stages))
     first = text.count("\n", 0, header.end()) + 1
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
@@ -264,7 +265,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     if not blocks:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", _RUN_AGAIN)
-    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages)
+    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages, left_out_clocks)
 
 
 def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:

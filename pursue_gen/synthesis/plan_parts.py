@@ -1,6 +1,7 @@
 """The lines of a plan that say what it does not speak of, or which stages it has, written and read:
 
     -- Left out: visitor Pvisitor
+    -- Left out clocks: Cguest
     -- Stage: Slocked=1
     -- Stage: rule1.rule10 rule2.rule20
     -- Stage: reachObj.win
@@ -21,11 +22,12 @@ from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
+_LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 
 
 def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
-    """The line with the automata and variables that the strategy does not name; none where it names everything.
+    """The lines with the automata, variables and clocks that the strategy leaves out; none where there are none.
 
     Of a strategy in stages a line for each of them, with its milestones.
     """
@@ -41,7 +43,8 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     named = {name for name, _ in (*state.locations, *state.values)}
     every = (*(automaton.name for automaton in network.automata), *(name for name, _ in network.variables))
     left = [name for name in every if name not in named]
-    return [f" -- Left out: {' '.join(left)}"] if left else []
+    lines = [f" -- Left out: {' '.join(left)}"] if left else []
+    return lines + [f" -- Left out clocks: {' '.join(clocks)}" for clocks in (strategy.left_out_clocks,) if clocks]
 
 
 def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
@@ -57,6 +60,18 @@ def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ..
             milestones.append((name, value))
         stages.append(tuple(milestones))
     return tuple(stages)
+
+
+def read_left_out_clocks(text: str, network: Network, file: str) -> Tuple[str, ...]:
+    """The clocks that a plan leaves out, whose text above its title this is. Raises PursueError for an unknown one."""
+    clocks: List[str] = []
+    for match in _LEFT_OUT_CLOCKS.finditer(text):
+        clocks += match.group(1).split()
+        unknown = [clock for clock in clocks if clock not in network.clocks]
+        if unknown:
+            message = f"the plan leaves out the clock '{unknown[0]}', which the network does not have"
+            raise _unknown(text, match, message, file)
+    return tuple(clocks)
 
 
 def _unknown(text: str, match: Match[str], message: str, file: str) -> PursueError:

@@ -18,6 +18,7 @@ from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.pauses import pauses, without_clocks
 
 
 @dataclass(frozen=True)
@@ -83,11 +84,14 @@ def solve(
     progress: Optional[Listener] = None,
     whole: bool = False,
     soonest: bool = False,
+    without_pauses: bool = False,
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
     What cannot matter is left out of the game first, and not named in the strategy (`cone`), unless `whole` is set.
-    `soonest`: for a quick strategy, with more work (see `Engine.solve`).
+    `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
+    takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
+    lost so may be won.
 
     `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
     a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
@@ -97,8 +101,10 @@ def solve(
     chosen = choose(engine)
     game = compile_game(network, objective, reaction)
     part = cone_of_influence(network, objective)
-    if part is not network:
-        game = compile_game(network if whole else part, objective, reaction, part)
+    gone = pauses(part) if without_pauses else ()
+    if gone or part is not network:
+        part = without_clocks(part, gone)
+        game = compile_game(without_clocks(network, gone) if whole else part, objective, reaction, part)
     if not chosen.holds(game):
         if engine is not None:
             hint = "leave the choice to pursue-gen, or use --engine python"
@@ -117,12 +123,14 @@ def solve(
         # Without ranks that hold across states: within one state, what was won later stands later.
         order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
         blocks, order = without_overtaking(game, blocks, order)
-        cautious = partial(_cautious, game, blocks, order)
+        cautious = partial(_cautious, game, blocks, order, gone)
         ranks = None if ranks is None else order
     known = None if ranks is None else to_ranks(blocks, ranks)
-    return Verdict(True, to_strategy(game, blocks), stats, known, cautious)
+    return Verdict(True, to_strategy(game, blocks, gone), stats, known, cautious)
 
 
-def _cautious(game: Game, blocks: Tuple[RawBlock, ...], ranks: Tuple[Tuple[int, ...], ...]) -> Optional[Strategy]:
+def _cautious(
+    game: Game, blocks: Tuple[RawBlock, ...], ranks: Tuple[Tuple[int, ...], ...], gone: Tuple[str, ...]
+) -> Optional[Strategy]:
     earlier = ended_earlier(game, blocks, ranks)
-    return None if earlier is None else to_strategy(game, earlier)
+    return None if earlier is None else to_strategy(game, earlier, gone)

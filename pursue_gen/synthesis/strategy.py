@@ -60,11 +60,15 @@ class Strategy:
     One in `stages` has for each of them its milestones, locations or values of variables to be reached, the goal last;
     the stage ends when all of them are. A block is for one milestone: the one that it names and is not at, of the first
     stage that is not over.
+
+    `left_out_clocks`: pauses of the environment (see `tga.pauses`) on which it does not rely. Its zones do not compare
+    them, it wins whatever they are, and what only resets them makes no command stale.
     """
 
     blocks: Tuple[Block, ...]
     counter: bool = False
     stages: Tuple[Tuple[Place, ...], ...] = ()
+    left_out_clocks: Tuple[str, ...] = ()
 
     def numbers_of(self, stage: int, place: Place) -> Tuple[int, ...]:
         """The numbers of the blocks that lead to a milestone."""

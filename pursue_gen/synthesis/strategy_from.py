@@ -22,13 +22,15 @@ class _Known:
     zones: Dict[Matrix, Zone]
 
 
-def to_strategy(game: Game, blocks: Iterable[RawBlock]) -> Strategy:
+def to_strategy(game: Game, blocks: Iterable[RawBlock], left_out_clocks: Sequence[str] = ()) -> Strategy:
     """The strategy of a game from an engine's blocks, in their order; zones of one action are gathered.
 
-    Each zone's matrix must be canonical (raw bounds, scaled as the game's; INF or more: no bound).
+    `left_out_clocks`: those of the network that are not in the game. Each zone's matrix must be canonical (raw bounds,
+    scaled as the game's; INF or more: no bound).
     """
     known = _Known({}, {})
-    return Strategy(tuple(_block(game, block, known) for block in blocks))
+    named = tuple(_block(game, block, known) for block in blocks)
+    return Strategy(named, left_out_clocks=tuple(left_out_clocks))
 
 
 def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict[ZoneKey, int]:

@@ -60,6 +60,8 @@ class PlayByPlay:
         self.named = {name for name, _ in first.locations} if first else {a.name for a in network.automata}
         values = {name for name, _ in first.values} if first else {name for name, _ in network.variables}
         self._clocks_named = {c for a in network.automata if a.name in self.named for c in clocks_of(a)}
+        self._left_out = frozenset(strategy.left_out_clocks)
+        self._clocks_named -= self._left_out
         self._places = [k for k, automaton in enumerate(network.automata) if automaton.name in self.named]
         self._values = [k for k, (name, _) in enumerate(network.variables) if name in values]
         self.blocks: Dict[Tuple[Tuple[str, ...], Tuple[int, ...]], Block] = {
@@ -180,8 +182,12 @@ class PlayByPlay:
                 if in_flight and not self._is_seen(now, move):
                     continue
                 after = self.after(now, move)
-                if after[:2] != now[:2] or any(edge.resets for _, edge in move):  # else nothing has happened
+                if after[:2] != now[:2] or self._resets(move) or after != now:  # else nothing has happened
                     yield after
+
+    def _resets(self, move: Move) -> bool:
+        """True if the move resets a clock that is not left out: it is one even where the clock is 0 already."""
+        return any(clock not in self._left_out for _, edge in move for clock in edge.resets)
 
     def _is_seen(self, now: Entry, move: Move) -> bool:
         """True if the move changes something of what the strategy names: else a command on its way stands."""

@@ -178,3 +178,23 @@ def test_each_part_has_to_be_covered() -> None:
     moment, state = made.tick_from(19.0)
     assert moment == pytest.approx(22.1) and state.status == "holding"
     assert "no strategy at these clocks" in state.reason
+
+
+SHOUTING = CHASE.replace(
+    "  - {from: b, to: gone,",
+    "  - {from: b, to: b, word: shout, sync: send, when: [Cthief > 1], reset: [Cthief], controllable: false}\n"
+    "  - {from: b, to: gone,",
+    1,
+)
+NAMED = COVER.replace("bot:", "thief: b, bot:")
+
+
+@pytest.mark.parametrize("left_out", [True, False])
+def test_a_clock_that_is_left_out_makes_no_command_stale(left_out: bool) -> None:
+    cover = NAMED.replace("format: 1", "format: 2\nleft_out_clocks: [Cthief]") if left_out else NAMED
+    made = Journey(SHOUTING, cover, on_uncovered="plan", controllers=("one",))
+    made.hear("_start_", 0.0)
+    assert made.hear("shout", 6.0).seq == 2
+    state = made.hear("bot:bot_a2b@1", 6.05)
+    assert (made.mission.counts["stale"] == 0) is left_out
+    assert (state is not None and state.locations["bot"] == "going_a_to_b") is left_out

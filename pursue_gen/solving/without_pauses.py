@@ -1,0 +1,67 @@
+"""Games against an environment that takes no pauses: where agents may call at any time, they are far smaller.
+
+Whoever may call again a time unit after his last call has a clock that only keeps him from calling (`tga.pauses`). A
+strategy may win without relying on it: it is solved and proven for agents that call as often as they like. A call that
+changes nothing then is no move, and makes no command stale. Where that does not win, nothing is known.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from fractions import Fraction
+from typing import Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import LIMIT
+from pursue_gen.solving.crowds import Found
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.pauses import pauses
+
+_NOT_PROVEN, _LIMIT_HIT = 4, 5
+"""The exit statuses of strategies that do not win, and of errors at a limit."""
+
+
+def verdict_with(
+    game: Network,
+    objective: Objective,
+    reaction: Fraction,
+    work: int,
+    options: SolveOptions,
+    without_pauses: bool = False,
+) -> Optional[Verdict]:
+    """The verdict, if it takes no more than so much work."""
+    limits = replace(options.limits, work=work, states=max(3000, work // 40))
+    how = options.engine, limits, options.progress
+    try:
+        return solve(game, objective, reaction, *how, without_pauses=without_pauses)
+    except PursueError as problem:
+        if problem.exit_status != _LIMIT_HIT:
+            raise
+        return None
+
+
+def won_without_pauses(
+    game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions, states: int = LIMIT
+) -> Optional[Found]:
+    """A proven strategy that leaves the clocks of pauses out; None where so much work finds none, or there are none.
+
+    `states`: the most symbolic states of each look of the checker.
+    """
+    start = time.monotonic()
+    if not pauses(game):
+        return None
+    verdict = verdict_with(game, objective, reaction, work, options, without_pauses=True)
+    if verdict is None or verdict.strategy is None:
+        return None
+    how = reaction, verdict.ranks, options.since(start)
+    try:
+        proven = prove(game, objective, verdict.strategy, *how, states=states, otherwise=verdict.cautious)
+    except PursueError as problem:
+        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
+            raise
+        return None
+    return Found(proven, verdict.stats)

@@ -1,0 +1,59 @@
+"""Pauses of the environment: clocks that only say how soon one of its agents may act again.
+
+An agent that nobody controls rests one time unit between two of its events. Its clock then matters to its own next
+event alone. An environment without that rest can do all that it could before, at the same times and others, so what is
+won against it is won. Where such agents may call at any time the rests are what makes a game large: they cut the
+clocks' values into slices, one for each call that may come before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, Collection, Tuple
+
+from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.part import start_of
+
+
+def pauses(network: Network) -> Tuple[str, ...]:
+    """The clocks of the network that are pauses of the environment alone.
+
+    Such a clock bounds no stay, and only from below when its agent may send, or act alone, where no invariant obliges
+    it to; no edge of the controller names it.
+    """
+    tested = {bound.clock for a in network.automata for edge in a.edges for bound in edge.guard.clocks}
+    others = {clock for automaton in network.automata for clock in _compared_otherwise(automaton)}
+    return tuple(clock for clock in network.clocks if clock in tested and clock not in others)
+
+
+def without_clocks(network: Network, clocks: Collection[str]) -> Network:
+    """The network without these clocks: no edge tests or resets them. No invariant may name them."""
+    gone = frozenset(clocks)
+    if not gone:
+        return network
+    kept = tuple(clock for clock in network.clocks if clock not in gone)
+    automata = tuple(replace(a, edges=tuple(_without(edge, gone) for edge in a.edges)) for a in network.automata)
+    return replace(network, clocks=kept, automata=automata, start=start_of(network, kept))
+
+
+def _compared_otherwise(automaton: Automaton) -> AbstractSet[str]:
+    """The clocks that the automaton names in another way than a pause is named."""
+    found = {bound.clock for location in automaton.locations for bound in location.invariant}
+    bounded = {location.name for location in automaton.locations if location.invariant}
+    for edge in automaton.edges:
+        sends = edge.sync is None or edge.sync.sends
+        tests = edge.guard.clocks
+        if edge.controllable:
+            found.update(edge.resets)
+        if edge.controllable or not sends or edge.source in bounded:
+            found.update(bound.clock for bound in tests)
+        found.update(bound.clock for bound in tests if bound.op not in (">", ">="))
+    return found
+
+
+def _without(edge: Edge, clocks: AbstractSet[str]) -> Edge:
+    if clocks.isdisjoint(edge.resets) and all(bound.clock not in clocks for bound in edge.guard.clocks):
+        return edge
+    tests = tuple(bound for bound in edge.guard.clocks if bound.clock not in clocks)
+    resets = tuple(clock for clock in edge.resets if clock not in clocks)
+    return replace(edge, guard=replace(edge.guard, clocks=tests), resets=resets)
