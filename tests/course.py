@@ -1,0 +1,266 @@
+"""What the statements of a scenario permit, said without its network: for comparison with what the network permits.
+
+Kept here are where agents are, what they are busy with, states, the rest of each rule's round, and counts. Rules are
+expressions of which each symbol takes away the first part (a derivative), not automata.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Tuple, Union
+
+from pursue_gen.language.conditions import Condition
+from pursue_gen.language.scenario import (
+    Agent,
+    AtMost,
+    Both,
+    Choice,
+    Event,
+    Leaves,
+    NeverAt,
+    Ref,
+    RuleBody,
+    Scenario,
+    Sequence,
+    Waits,
+)
+from pursue_gen.simulation.meaning import holds
+from pursue_runtime.locations import is_movement
+
+Rest = Union[str, Tuple[str, "Rest", "Rest"]]
+"""The rest of a round: a symbol, or ("then" | "or" | "and", first, second); "" when it is over."""
+
+
+@dataclass
+class Stay:
+    """Where an agent is, since when, and what it is busy with: a movement `to` a place, or an `event`.
+
+    `doer`: False for one that takes part in what another one does.
+    """
+
+    place: str
+    since: float
+    to: str = ""
+    event: str = ""
+    doer: bool = True
+    rested: float = 0.0
+    """The moment from which it rests before it may begin something: the end of its last action or movement."""
+    came: float = 0.0
+    """When it came to the place; whoever has taken part in something there counts as having come with its end."""
+
+    @property
+    def location(self) -> str:
+        """The name that the location has everywhere in a mission."""
+        if self.to:
+            return f"going_{self.place}_to_{self.to}"
+        return f"doing_{self.event}_in_{self.place}" if self.event else self.place
+
+    @property
+    def is_idle(self) -> bool:
+        return not self.to and not self.event
+
+
+@dataclass
+class Course:
+    """One play of a scenario; times are time units from its start."""
+
+    scenario: Scenario
+    now: float = 0.0
+    stays: Dict[str, Stay] = field(default_factory=dict)
+    states: Dict[str, bool] = field(default_factory=dict)
+    rests: Dict[Tuple[str, str], Rest] = field(default_factory=dict)
+    begun: Dict[str, int] = field(default_factory=dict)
+    done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
+    """(agent, event) → beginnings and ends"""
+
+    def __post_init__(self) -> None:
+        self.events = {event.name: event for event in self.scenario.events}
+        self.agents = {agent.name: agent for agent in self.scenario.agents}
+        self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
+        self.states = {state.name: state.initially for state in self.scenario.states}
+
+    @property
+    def locations(self) -> Dict[str, str]:
+        return {name: stay.location for name, stay in self.stays.items()}
+
+    # What may begin -------------------------------------------------------------------------------------------------
+
+    def holds(self, condition: Optional[Condition]) -> bool:
+        values = {f"S{name}": int(value) for name, value in self.states.items()}
+        return condition is None or holds(condition, self.scenario, self.locations, values)
+
+    def may_set_off(self, agent: str, a: str, b: str) -> bool:
+        """Whether it may set off from a to b, whatever the time."""
+        stay = self.stays[agent]
+        ways = [way for way in self.scenario.connections if (a, b) == (way.a, way.b)]
+        ways += [way for way in self.scenario.connections if (a, b) == (way.b, way.a) and not way.one_way]
+        never = (each for each in self.scenario.assumptions if isinstance(each, NeverAt))
+        if any((each.agent.name, each.place.name) == (agent, b) for each in never):
+            return False
+        moves = self.agents[agent].mobile is not None
+        return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
+
+    def may_begin(self, agent: str, name: str) -> bool:
+        """Whether it may do the event, or begin it, whatever the time."""
+        event, stay = self.events[name], self.stays[agent]
+        if stay.event or (stay.to and (event.duration is not None or event.location is not None)):
+            return False
+        if event.location is not None and event.location.name != stay.place:
+            return False
+        if event.collaborative and not self.partners(agent, event):
+            return False
+        if event.is_shared and self._goes_on(name):
+            return False
+        if event.at_most is not None and self.begun.get(name, 0) >= event.at_most:
+            return False
+        for dependency in self.scenario.dependencies:
+            if dependency.event.name == name and self.states[dependency.state.name] is not dependency.value:
+                return False
+        times = len(self.done.get((agent, name), ()))
+        limits = [each for each in self.scenario.assumptions if isinstance(each, AtMost)]
+        if any((each.agent.name, each.event.name) == (agent, name) and times >= each.times for each in limits):
+            return False
+        return self.holds(event.only_if) and all(after(rest, name) is not None for rest in self._turns(agent, name))
+
+    def partners(self, agent: str, event: Event) -> List[str]:
+        """Those who can take part now: idle at the same place, or on the same way in the other direction."""
+        stay = self.stays[agent]
+        reacting = (other for other in self.scenario.agents if any(ref.name == event.name for ref in other.reacts_to))
+        others = [(other.name, self.stays[other.name]) for other in reacting if other.name != agent]
+        if stay.to:
+            return [name for name, other in others if (other.place, other.to) == (stay.to, stay.place)]
+        return [name for name, other in others if other.is_idle and other.place == stay.place]
+
+    def _goes_on(self, event: str) -> bool:
+        several = sum(any(ref.name == event for ref in agent.can_do) for agent in self.scenario.agents) > 1
+        return several and any(stay.event == event for stay in self.stays.values())
+
+    def _turns(self, agent: str, event: str) -> List[Rest]:
+        """The rests of the rounds of all rules that name the event and bind the agent."""
+        return [self._rest(key) for key in self._bound(agent, event)]
+
+    def _bound(self, agent: str, event: str) -> List[Tuple[str, str]]:
+        found = []
+        for rule in self.scenario.rules:
+            bound = rule.each == "" or self.agents[agent].is_robot or rule.each == "agent"
+            if event in events_in(rule.body) and bound:
+                found.append((rule.name, agent if rule.each else ""))
+        return found
+
+    def _rest(self, key: Tuple[str, str]) -> Rest:
+        rule = next(rule for rule in self.scenario.rules if rule.name == key[0])
+        return self.rests.get(key) or whole(rule.body, self.events)
+
+    # What happens ---------------------------------------------------------------------------------------------------
+
+    def set_off(self, agent: str, a: str, b: str) -> None:
+        stay = self.stays[agent]
+        assert self.now - stay.rested > 1 - 1e-9, "it has to rest"
+        for each in self.scenario.assumptions:
+            if isinstance(each, Leaves) and (each.agent.name, each.place.name) == (agent, a):
+                assert self.now - stay.came <= each.time + 1e-9, "it is assumed to leave sooner"
+        self.stays[agent] = Stay(a, self.now, to=b)
+
+    def take(self, agent: str, word: str, target: str) -> None:
+        """The agent does what leads it to this location; `word` is the event, where it is one."""
+        stay = self.stays[agent]
+        if stay.to and target == stay.to:
+            self.arrive(agent)
+        elif stay.event:
+            self.end(agent)
+        elif is_movement(target) and not stay.to:
+            self.set_off(agent, stay.place, target.rpartition("_to_")[2])
+        else:
+            self.begin(agent, word)
+
+    def arrive(self, agent: str) -> None:
+        stay = self.stays[agent]
+        low, high = self._window(self.agents[agent], stay)
+        assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
+        self.stays[agent] = Stay(stay.to, self.now, rested=self.now, came=self.now)
+
+    def _window(self, agent: Agent, stay: Stay) -> Tuple[float, float]:
+        """Between which times a movement ends."""
+        for travel in self.scenario.travels:
+            if (travel.agent.name, travel.a.name, travel.b.name) == (agent.name, stay.place, stay.to):
+                return travel.earliest, travel.earliest + 1 if travel.latest is None else travel.latest
+        lengths = [w.distance for w in self.scenario.connections if {w.a, w.b} == {stay.place, stay.to}]
+        low = lengths[0] * (agent.mobile or 0)
+        return low, low + 1
+
+    def begin(self, agent: str, name: str) -> None:
+        """It does the event, or begins it."""
+        event, stay = self.events[name], self.stays[agent]
+        assert stay.to or self.now - stay.rested > 1 - 1e-9, "it has to rest"
+        for each in self.scenario.assumptions:
+            if isinstance(each, Waits) and (each.agent.name, each.event.name) == (agent, name):
+                ends = [end for _, end in self.done.get((agent, name), ())]
+                assert not ends or self.now - ends[-1] >= each.time - 1e-9, "it is assumed to wait longer"
+        partners = self.partners(agent, event) if event.collaborative else []
+        self._advance(agent, name, name)
+        self.begun[name] = self.begun.get(name, 0) + 1
+        self.done.setdefault((agent, name), []).append((self.now, self.now))
+        self._set_states(name)
+        if event.duration is None:
+            stay.rested = stay.rested if stay.to else self.now
+            return
+        for who in (agent, *(partners if event.is_shared else ())):
+            here = self.stays[who]
+            self.stays[who] = Stay(here.place, self.now, event=name, doer=who == agent, came=here.came)
+
+    def end(self, agent: str) -> None:
+        """It has done what it was busy with."""
+        stay = self.stays[agent]
+        event = self.events[stay.event]
+        low = event.duration or 0
+        high = low + 1 if event.latest is None else event.latest
+        assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
+        self._advance(agent, event.name, f"{event.name}DONE")
+        beginning, _ = self.done[agent, event.name][-1]
+        self.done[agent, event.name][-1] = (beginning, self.now)
+        for who, other in list(self.stays.items()):
+            takes_part = event.is_shared and other.event == event.name and other.place == stay.place
+            if who == agent or takes_part:
+                came = other.came if who == agent else self.now
+                self.stays[who] = Stay(other.place, self.now, rested=self.now, came=came)
+
+    def _advance(self, agent: str, event: str, symbol: str) -> None:
+        for key in self._bound(agent, event):
+            rest = after(self._rest(key), symbol)
+            assert rest is not None, (key, symbol)
+            self.rests[key] = rest
+
+    def _set_states(self, event: str) -> None:
+        for state in self.scenario.states:
+            if event in {ref.name for ref in state.true_if}:
+                self.states[state.name] = True
+            if event in {ref.name for ref in state.false_if}:
+                self.states[state.name] = False
+
+
+def events_in(body: RuleBody) -> List[str]:
+    """The events that a rule names."""
+    return [body.name] if isinstance(body, Ref) else [*events_in(body.first), *events_in(body.second)]
+
+
+def whole(body: RuleBody, events: Dict[str, Event]) -> Rest:
+    """A round as an expression over symbols: an event without duration is one, a lasting one its beginning and end."""
+    if isinstance(body, Ref):
+        return body.name if events[body.name].duration is None else ("then", body.name, f"{body.name}DONE")
+    word = {Sequence: "then", Choice: "or", Both: "and"}[type(body)]
+    return word, whole(body.first, events), whole(body.second, events)
+
+
+def after(rest: Rest, symbol: str) -> Optional[Rest]:
+    """The rest behind a symbol; None where it is not the symbol's turn."""
+    if isinstance(rest, str):
+        return "" if rest == symbol else None
+    word, first, second = rest
+    left, right = after(first, symbol), after(second, symbol)
+    if word == "or":
+        return left if left is not None else right
+    if word == "then":
+        return None if left is None else second if left == "" else (word, left, second)
+    if left is not None:
+        return second if left == "" else (word, left, second)
+    return None if right is None else first if right == "" else (word, first, right)

@@ -1,0 +1,138 @@
+"""Random whole scenarios with every kind of statement: two robots, a person and a guest, two or three places."""
+
+from __future__ import annotations
+
+from typing import List, Sequence, Tuple
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError, Severity
+from pursue_gen.language import check, parse
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who, condition_text
+from pursue_gen.language.scenario import Scenario
+from tests.conditions import ref
+
+EVENTS = ("load", "drop", "ride", "wave", "sing")
+"""What robots and the person may do; the guest calls."""
+
+
+def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrategy[str]:
+    """Conditions on these places and agents, on doing `load`, and on the state `open`."""
+    who = st.sampled_from([Who(None), Who(None, robots=True), *(Who(ref(name)) for name in agents)])
+    atoms: st.SearchStrategy[Condition] = (
+        st.builds(At, who, st.sampled_from([ref(place) for place in places]))
+        | st.builds(OnWay, who)
+        | st.builds(Doing, st.just(Who(None)), st.just(ref("load")))
+        | st.builds(Holds, st.just(ref("open")), st.booleans())
+    )
+    literals = atoms | atoms.map(Not)
+    pairs = st.lists(literals, min_size=2, max_size=2).map(tuple)
+    return (literals | pairs.map(AllOf) | pairs.map(AnyOf)).map(condition_text)
+
+
+@st.composite
+def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
+    """A scenario without errors, and its text; `small`: one that is solved in little time."""
+    places = ["a", "b"] if small or draw(st.booleans()) else ["a", "b", "c"]
+    names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
+    condition = conditions(places, names)
+
+    def maybe(text: str, chance: int = 4) -> str:
+        return text if draw(st.integers(0, chance)) == 0 else ""
+
+    def place() -> str:
+        return draw(st.sampled_from(places))
+
+    def window() -> str:
+        low = draw(st.integers(1, 4))
+        return f"{low}" + maybe(f" to {low + draw(st.integers(1, 3))}")
+
+    def only_if() -> str:
+        return maybe(f" only_if {draw(condition)}")
+
+    lines = [f'poi "{name}"' for name in places]
+    lines += [
+        f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{only_if()}"
+        for x, y in zip(places, places[1:])
+    ]
+    limit = f" at_most {draw(st.integers(1, 3))} times"
+    lines += [
+        f'event "load" location {place()} duration {window()}{maybe(limit)}{only_if()}',
+        f'event "drop"{maybe(f" location {place()}", 1)}{maybe(limit)}{only_if()}',
+        f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
+        f" duration {window()}{only_if()}",
+        f'event "wave" collaborative{only_if()}',
+        f'event "sing" duration {window()}{only_if()}',
+        f'event "call"{maybe(limit, 2)}{only_if()}',
+    ]
+    shuffled = draw(st.permutations([*EVENTS, "call"]))
+    for number in range(draw(st.integers(0, 2))):
+        some, word = shuffled[3 * number : 3 * number + 3], st.sampled_from(("before", "or", "and"))
+        each = draw(st.sampled_from(("", "", " for each robot", " for each agent")))
+        lines.append(f'rule "r{number}"{each}: ({some[0]} {draw(word)} {some[1]}) {draw(word)} {some[2]}')
+    first = draw(st.sampled_from(("true", "false")))
+    lines.append(f'state "open": initially {first}, true_if drop false_if call')
+    needing = draw(st.sampled_from(("load", "sing", "ride", "")))
+    lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
+    lines += _agents(draw, names, place)
+    lines += _travels(draw, names[:-1], places)
+    lines += _assumptions(draw, place)
+    lines += _objectives(draw, small, condition, place)
+    text = "\n".join([*lines, ""])
+    try:
+        scenario = parse(text, "story.pur", "story")
+    except PursueError:
+        assume(False)
+        raise
+    assume(all(finding.severity is not Severity.ERROR for finding in check(scenario)))
+    return text, scenario
+
+
+def _agents(draw: st.DrawFn, names: Sequence[str], place: object) -> List[str]:
+    lines = []
+    for name in names[:-1]:
+        own = [event for event in EVENTS if name == "bot1" or draw(st.booleans())]
+        kind = "human controllable" if name == "nurse" else "controllable"
+        can_do = f" can_do {', '.join(own)}" if own else ""
+        reacts = [event for event in ("ride", "wave") if event not in own]
+        reacts_to = f" reacts_to {', '.join(reacts)}" if reacts else ""
+        lines.append(f'agent "{name}" {kind} mobile {draw(st.integers(1, 2))} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
+    moves = " mobile 2" if draw(st.booleans()) else ""
+    lines.append(f'agent "guest"{moves} location {place()} can_do call reacts_to ride, wave')  # type: ignore[operator]
+    return lines
+
+
+def _travels(draw: st.DrawFn, names: Sequence[str], places: Sequence[str]) -> List[str]:
+    if draw(st.integers(0, 2)):
+        return []
+    low = draw(st.integers(1, 5))
+    return [f"travel {draw(st.sampled_from(names))} from {places[0]} to {places[1]} takes {low} to {low + 2}"]
+
+
+def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
+    drawn = {
+        "at_most": f"assume: guest does call at_most {draw(st.integers(0, 2))} times",
+        "waits": f"assume: guest waits {draw(st.integers(1, 9))} between call",
+        "leaves": f"assume: guest leaves {place()} within {draw(st.integers(4, 20))}",  # type: ignore[operator]
+        "never": f"assume: guest never at {place()}",  # type: ignore[operator]
+    }
+    return [drawn[kind] for kind in draw(st.lists(st.sampled_from(list(drawn)), max_size=2, unique=True))]
+
+
+def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], place: object) -> List[str]:
+    where = place()  # type: ignore[operator]
+    kinds = {
+        "avoid": "objective: avoid call",
+        "respond": f"objective: if call then drop within {draw(st.integers(5, 30))}",
+        "condition": f"objective: avoid {draw(condition)}",
+        "always": f"objective: always {draw(condition)}",
+        "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
+        "patrol": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
+    }
+    safety = draw(st.lists(st.sampled_from(list(kinds)), max_size=1 if small else 2, unique=True))
+    event = draw(st.sampled_from(("load", "drop", "sing", "wave")))
+    later = draw(st.sampled_from(("", " after 3", f" within {draw(st.integers(10, 60))}")))
+    also = " and drop" if event != "drop" and draw(st.integers(0, 3)) == 0 else ""
+    reach = [f"reach_objective: do {event}{also}{later}"] if not safety or draw(st.integers(0, 2)) else []
+    return [kinds[kind] for kind in safety] + reach
