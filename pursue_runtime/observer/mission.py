@@ -182,6 +182,7 @@ class Mission:
         moves = self._due_command(position, now)
         if moves:
             return self._take_command(moves, now)
+        has_broken = False
         for name, delay in self._bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
                 continue
@@ -193,13 +194,15 @@ class Mission:
             overstays = overstayed(self.model, position, name, self._tolerance)
             if overstays:
                 self._note_broken(overstays)
+                has_broken = True
                 continue
             self.late.add(name)
             self._log("warn", f"{name} is late: it should have left {place} by now")
         for name, delay in self._late_agents(position):
             if delay + self._lost_after <= EPSILON:
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
-        return self._after_losses(now)
+        states = self._after_losses(now)
+        return states or (self._new_state(now) if has_broken else [])  # no two states have one number
 
     def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
         """Hold the mission until this controller, which is silent, is back."""

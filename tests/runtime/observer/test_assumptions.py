@@ -10,7 +10,7 @@ import yaml
 from pursue_gen.replanning import replan
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.state import HOLDING, RUNNING, STOPPED, SystemState
+from pursue_runtime.state import HOLDING, RUNNING, STOPPED, SystemState, rewinds
 from pursue_runtime.strategy import read_cover
 from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE, PLAYROOM, SPACED, TWICE, files, model
 
@@ -106,6 +106,22 @@ def test_whoever_stays_too_long_breaks_the_assumption_and_is_not_late() -> None:
     assert (state.values["assume1"], state.late, state.status) == (0, (), HOLDING)
     assert "visitor leaves gallery within 30 units" in state.reason
     assert story.mission.next_moment(30.2) is None, "nothing is awaited any more but the planner's answer"
+
+
+MOVING = MUSEUM.replace('"bot" controllable', '"bot" controllable mobile 1')
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_a_state_in_which_an_assumption_is_broken_has_a_number_of_its_own(held: bool) -> None:
+    """Nodes refuse a state that has the number of another one, and other values: that would stop the mission."""
+    story = Story(MOVING.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"))
+    before = story.hear((0.0, "_start_"), (2.0, "bot_hall2gallery"))
+    if held:  # the reason of the hold stays the same
+        before = story.hear((2.5, "bot:_held_"))
+    states = story.mission.on_time(30.2)
+    assert states and states[-1].values["assume1"] == 0 and states[-1].status == HOLDING
+    assert states[0].seq == before.seq + 1 and not rewinds(states[0], before)
+    assert story.mission.state(31.0).values == states[-1].values and story.mission.seq == states[-1].seq
 
 
 def test_what_no_assumption_excludes_is_impossible_as_before() -> None:
