@@ -12,7 +12,14 @@ from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.lesser import without_conditions
-from pursue_gen.explanation.number_changes import SLOWER, NumberChange, count_changes, event_changes, travel_changes
+from pursue_gen.explanation.number_changes import (
+    SLOWER,
+    NumberChange,
+    battery_changes,
+    count_changes,
+    event_changes,
+    travel_changes,
+)
 from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
@@ -195,6 +202,8 @@ def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
         yield from _distance_knobs(scenario, rules, connection)
     for travel in scenario.travels:
         yield from _number_knobs(rules, travel_changes(scenario, travel))
+    for battery in scenario.batteries:
+        yield from _number_knobs(rules, battery_changes(scenario, battery))
     yield from _order_knobs(scenario, rules)
     for agent in scenario.agents:
         yield from _control_knobs(scenario, rules, agent)

@@ -42,6 +42,7 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
     found = [Part(agent.name, _agent(agent.name)) for agent in scenario.agents]
     found += [Part(f"rule {rule.name}", _rule(rule.name)) for rule in scenario.rules]
     found += [Part(f"at_most of {event.name}", _limit(event.name)) for event in scenario.events if event.at_most]
+    found += [Part(f"the battery of {one.agent.name}", _battery(one.agent.name)) for one in scenario.batteries]
     for need in scenario.dependencies:
         value = "true" if need.value else "false"
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
@@ -86,6 +87,7 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
             replace(a, can_do=_others(a.can_do, gone), reacts_to=_others(a.reacts_to, gone)) for a in agents
         ),
         travels=tuple(travel for travel in scenario.travels if travel.agent.name != name),
+        batteries=tuple(battery for battery in scenario.batteries if battery.agent.name != name),
         assumptions=tuple(a for a in scenario.assumptions if a.agent.name != name and not _names(a, gone)),
     )
 
@@ -124,6 +126,13 @@ def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
 def _rule(name: str) -> Callable[[Scenario], Scenario]:
     def left_out(scenario: Scenario) -> Scenario:
         return replace(scenario, rules=tuple(rule for rule in scenario.rules if rule.name != name))
+
+    return left_out
+
+
+def _battery(name: str) -> Callable[[Scenario], Scenario]:
+    def left_out(scenario: Scenario) -> Scenario:
+        return replace(scenario, batteries=tuple(one for one in scenario.batteries if one.agent.name != name))
 
     return left_out
 

@@ -9,7 +9,7 @@ from typing import Callable, Iterator, Sequence
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.numbers import Number, whole_above, whole_below
-from pursue_gen.language.scenario import Event, Scenario, Travel
+from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 
 SLOWER = 32
 """How many times slower an agent, or longer an event, is tried."""
@@ -19,7 +19,8 @@ SLOWER = 32
 class NumberChange:
     """A number that may be another one of `values`, the smallest change first; times are in time units.
 
-    `make` is the scenario with that value, `say` describes it. `what` is latest, earliest, travel or times.
+    `make` is the scenario with that value, `say` describes it. `what` is latest, earliest, travel,
+    capacity, recharges or times.
     """
 
     what: str
@@ -81,6 +82,27 @@ def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]
         yield NumberChange(
             "travel", name, f"{who} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
+        )  # fmt: skip
+
+
+def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[NumberChange]:
+    """A battery that holds more, or that is recharged faster."""
+    name, before, span = battery.agent.name, battery.capacity, battery.span
+
+    def with_battery(changed: Battery) -> Scenario:
+        return replace(scenario, batteries=tuple(changed if b == battery else b for b in scenario.batteries))
+
+    yield NumberChange(
+        "capacity", name, f"a larger battery of {name}", before, range(before + 1, 3 * before + 1),
+        lambda k: with_battery(replace(battery, capacity=k)),
+        lambda k: f"a battery of {name} with capacity {k} instead of {before}", span,
+    )  # fmt: skip
+    if battery.dock is not None:
+        rate = battery.recharges
+        yield NumberChange(
+            "recharges", name, f"a battery of {name} that is recharged faster", rate, whole_above(rate, 4 * rate + 1),
+            lambda k: with_battery(replace(battery, recharges=k)),
+            lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
         )  # fmt: skip
 
 

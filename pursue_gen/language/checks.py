@@ -9,6 +9,7 @@ from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, U
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
 from pursue_gen.language.assumption_checks import check_assumptions
+from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.labels import check_labels
@@ -73,6 +74,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_conditions(scenario)
             findings += check_poses(scenario)
             findings += check_assumptions(scenario)
+            findings += check_batteries(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     return _presentable(in_order(dict.fromkeys(findings)))  # a statement may be several objectives

@@ -106,6 +106,8 @@ def _plain_words(scenario: Scenario) -> Iterator[Word]:
         yield "C" + agent.name, f"the clock of {agent.name}", agent.span
         if has_conditions:
             yield "W" + agent.name, f"with what {agent.name} is busy", agent.span
+    for battery in scenario.batteries:
+        yield "L" + battery.agent.name, f"the level of {battery.agent.name}'s battery", battery.span
     end = scenario.agents[-1].span if scenario.agents else Span(scenario.file, 1, 1, 1, 1)
     words = ["Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"]
     for number, _ in enumerate(scenario.safety[1:], 2):

@@ -23,6 +23,7 @@ FORMS: Dict[str, str] = {
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required; '
              'behind the name: label "Porter 1")',
     "TRAVEL": "travel bot from a to b takes 5 to 8",
+    "BATTERY": "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
     "assume: visitor leaves hall within 30 · assume: visitor never at store",
     "OBJECTIVE": "objective: if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20) · "
@@ -50,7 +51,8 @@ KEYWORDS: Dict[str, str] = {
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
     "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves", "NEVER": "never",
     "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
-    "ROBOT": "robot", "OPTIONAL": "optional",
+    "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
+    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges",
 }  # fmt: skip
 """The words of the language, by token."""
 
@@ -59,7 +61,8 @@ MAY_BE_NAMES: Dict[str, str] = {
     "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
     "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
-    "OPTIONAL": "optional", "LABEL": "label",
+    "OPTIONAL": "optional", "LABEL": "label", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
+    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 

@@ -160,6 +160,9 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for travel in scenario.travels:
         yield from all_of("agent", [travel.agent])
         yield from all_of("POI", [travel.a, travel.b])
+    for battery in scenario.batteries:
+        yield from all_of("agent", [battery.agent])
+        yield from all_of("POI", [battery.dock])
     for assumption in scenario.assumptions:
         yield from all_of("agent", [assumption.agent])
         yield from all_of("event", [getattr(assumption, "event", None)])

@@ -117,6 +117,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         reach=only(pml.Reach),
         travels=only(pml.Travel),
         assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
+        batteries=only(pml.Battery),
     )
     broken = any(finding.severity is Severity.ERROR for finding in statements.findings)
     return Reading(None if broken else value, in_order(findings), value, statements.lost if broken else frozenset())
@@ -222,9 +223,27 @@ class _Builder:
         return self._number(low), None if high is None else self._number(high)
 
     def _travel(self, _: Any, agent: Any, a: Any, _to: Any, b: Any, _takes: Any, takes: Any, span: Span) -> pml.Travel:
-        quoted = isinstance(agent, Token)
-        who = self._use(_bare(agent), agent) if quoted else self._ref(agent)
-        return pml.Travel(who, self._ref(a), self._ref(b), *self._window(takes), span)
+        return pml.Travel(self._agent_ref(agent), self._ref(a), self._ref(b), *self._window(takes), span)
+
+    def _agent_ref(self, agent: Any) -> pml.Ref:
+        """An agent's name, with quotes or without."""
+        if not isinstance(agent, Token):
+            return self._ref(agent)
+        ref = self._use(_bare(agent), agent)
+        bare = replace(ref.span, column=ref.span.column + 1, end_column=ref.span.end_column - 1)
+        return replace(ref, span=bare)
+
+    def _battery(
+        self, _: Any, agent: Any, capacity: Token, uses: Token, recharges: Optional[Token], dock: Any, span: Span
+    ) -> pml.Battery:
+        return pml.Battery(
+            self._agent_ref(agent),
+            self._count(capacity),
+            self._number(uses),
+            0 if recharges is None else self._number(recharges),
+            None if dock is None else self._ref(dock),
+            span,
+        )
 
     def _rule(self, name: Token, each: Any, body: Any, span: Span) -> pml.Rule:
         who = "" if each is None else str(each.data)[len("each_") :]

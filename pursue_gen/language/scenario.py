@@ -252,6 +252,20 @@ class Travel:
 
 
 @dataclass(frozen=True)
+class Battery:
+    """The battery of a robot, full at the start: it holds `capacity`, and a robot that is on its way or at work uses
+    `uses` per time unit. At work at `dock` it uses nothing, and `recharges` as much per time unit (None, 0: nowhere).
+    """
+
+    agent: Ref
+    capacity: int
+    uses: Number
+    recharges: Number
+    dock: Optional[Ref]
+    span: Span
+
+
+@dataclass(frozen=True)
 class Respond:
     """`if trigger then response within deadline` (time units): events, or conditions.
 
@@ -430,6 +444,7 @@ class Scenario:
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
+    batteries: Tuple[Battery, ...] = ()
 
     @property
     def optional(self) -> Tuple[int, ...]:

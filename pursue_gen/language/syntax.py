@@ -36,6 +36,8 @@ _ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
+_SECOND = {"TRAVEL": "FROM", "BATTERY": "CAPACITY"}
+"""Statements whose first word may be a name, and the word behind the agent that they are about."""
 _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
@@ -166,7 +168,7 @@ class _Reader:
 def _declared(chunk: List[Token]) -> Set[str]:
     """The names that a statement with an error in it perhaps declares."""
     kind = kind_of(chunk)
-    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "OBJECTIVE", "REACH_OBJECTIVE", "OPTIONAL", "TAIL"):
+    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "BATTERY", "OBJECTIVE", "REACH_OBJECTIVE", "OPTIONAL", "TAIL"):
         tokens = [token for token in chunk if token.type == "UNCLOSED_COMMENT"]
     elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
         tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
@@ -200,10 +202,10 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
-        if token.type == "TRAVEL":  # an event may be called so
-            from_follows = index + 2 < len(tokens) and tokens[index + 2].type == "FROM"
+        if token.type in _SECOND:  # an event may be called so
+            second = index + 2 < len(tokens) and tokens[index + 2].type == _SECOND[token.type]
             ended = index == 0 or tokens[index - 1].type in _ENDS
-            begins = goes_on or from_follows or (opens_line and (ended or following == "WORD"))
+            begins = goes_on or second or (opens_line and (ended or following == "WORD"))
         elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
             begins = False  # a rule is for each robot, or agent
         elif token.type == "OPTIONAL":  # a name may be called so; none is before a number

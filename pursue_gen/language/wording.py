@@ -12,6 +12,7 @@ from pursue_gen.language.scenario import (
     Assumption,
     AtMost,
     Avoid,
+    Battery,
     Leaves,
     NeverWith,
     Patrol,
@@ -221,14 +222,21 @@ def condition_of_promise(scenario: Scenario) -> str:
     return f"as long as {', and '.join(says)}" if says else ""
 
 
+def battery_words(battery: Battery) -> str:
+    """What a battery holds, what is used, and where it is recharged."""
+    text = f"battery of {battery.capacity}, uses {battery.uses} per unit"
+    return text if battery.dock is None else f"{text}, recharges {battery.recharges} per unit at {battery.dock.shown}"
+
+
 def speed_words(agent: Agent, scenario: Scenario) -> str:
-    """How fast an agent is, in words."""
+    """How fast an agent is, in words, and what its battery holds."""
+    batteries = [battery_words(battery) for battery in scenario.batteries if battery.agent.name == agent.name]
     if agent.mobile is None:
-        return "stays there"
+        return ", ".join(["stays there", *batteries])
     words = [f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
     words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(*travel.window)}" for travel in own]
-    return ", ".join(words)
+    return ", ".join(words + batteries)
 
 
 def window_words(low: Number, high: Number) -> str:

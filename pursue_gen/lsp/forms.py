@@ -72,6 +72,12 @@ MEANINGS: Dict[str, str] = {
     "NO": "None of them: no robot, no agent.",
     "ROBOT": "The agents that are controllable and not human.",
     "DO": "The event that is wanted.",
+    "BATTERY": "The battery of a robot: what it holds, what is used, and where it is recharged. It never runs empty.",
+    "CAPACITY": "What the battery holds when it is full, as it is at the start.",
+    "USES": "What the robot uses in a unit of time on its way or at work. To stand still uses nothing.",
+    "PER": "For each unit of time.",
+    "UNIT": "A unit of time.",
+    "RECHARGES": "What is added in a unit of time in which the robot does something at the dock.",
     "OPTIONAL": "An objective that is given up where it cannot be promised with the rest; 1 is kept longest.",
     "AFTER": "It counts when it happens later than so many units of time after the start.",
 }
@@ -123,6 +129,12 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     ),
     "TRAVEL": (Form("an agent's own time for a way", "travel {agent} from {POI} to {POI} takes {=5} to {=8}"),),
+    "BATTERY": (
+        Form(
+            "a battery that is recharged at a place",
+            "battery {agent} capacity {=100} uses {=2} per unit recharges {=5} per unit at {POI}",
+        ),
+    ),
     "ASSUME": (
         Form("how often somebody does something", "assume: {agent} does {event} at_most {=2} times"),
         Form("how long somebody waits in between", "assume: {agent} waits {=5} between {event}"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
+from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.labels import in_markdown, markdown
@@ -30,7 +31,7 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
-from pursue_gen.language.wording import answer_text, answered_text, assumption_words
+from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import MEANINGS
 from pursue_gen.lsp.tokens import Statement
@@ -232,6 +233,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
+    lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
     assumed = (assumption_words(each) for each in scenario.assumptions if each.agent.name == agent.name)
     lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
@@ -263,6 +265,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
         ways = [f"- {name}: {lasts((time, exact(time + 1)))}" for name, time in times]
         return "\n".join(lines + _listed(ways))
+    if part.kind == "BATTERY":
+        return _battery(scenario, part)
     if word == "OPTIONAL":
         return "The first one to be given up is the one with the greatest number; those with one number go together."
     if word == "WITHIN" and part.kind == "ASSUME":
@@ -287,6 +291,17 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
 
 def _read_as(label: Optional[str]) -> str:
     return f"; people read \u201c{markdown(label)}\u201d" if label else ""
+
+
+def _battery(scenario: Scenario, part: Statement) -> str:
+    """At how many levels a battery can be."""
+    agents = {agent.name for agent in scenario.agents}
+    for battery in scenario.batteries:
+        here = battery.span.line == part.tokens[0].line and battery.agent.name in agents
+        if here and battery.capacity <= MOST_CAPACITY:
+            count = len(levels(scenario, battery))
+            return f"The battery can be at {count} levels; the game has up to {count} times as many states."
+    return ""
 
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:

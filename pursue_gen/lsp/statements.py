@@ -7,7 +7,9 @@ from typing import Dict, List, Tuple
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.tokens import Statement
 
-_ORDER = ("POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "TRAVEL", "ASSUME", "OBJECTIVE")
+_ORDER = (
+    "POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "TRAVEL", "BATTERY", "ASSUME", "OBJECTIVE",
+)  # fmt: skip
 _RANK: Dict[str, int] = {kind: rank for rank, kind in enumerate(_ORDER)}
 
 

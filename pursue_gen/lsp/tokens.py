@@ -38,6 +38,8 @@ _USED: Dict[Tuple[str, str], str] = {
     ("TRAVEL", "TRAVEL"): "agent",
     ("TRAVEL", "FROM"): "POI",
     ("TRAVEL", "TO"): "POI",
+    ("BATTERY", "BATTERY"): "agent",
+    ("BATTERY", "AT"): "POI",
     ("ASSUME", "ASSUME"): "agent",
     ("ASSUME", "DOES"): "event",
     ("ASSUME", "BETWEEN"): "event",
@@ -55,6 +57,9 @@ _USED: Dict[Tuple[str, str], str] = {
     ("REACH_OBJECTIVE", "AND"): "event",
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
+
+_QUOTED = ("TRAVEL", "BATTERY")
+"""Statements in which the agent that they are about may have quotes."""
 
 _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 
@@ -189,7 +194,7 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
             kind = _USED.get((part.kind, token.type))
         elif kind is not None and named[index] and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
-        elif kind is not None and token.type == "NAME" and part.kind == "TRAVEL":  # quotes are possible there
+        elif kind is not None and token.type == "NAME" and part.kind in _QUOTED:
             name = str(token)[1:-1]
             found.append(Occurrence(name, kind, start + 1, start + 1 + len(name), False, number))
         elif token.type == "POSE":

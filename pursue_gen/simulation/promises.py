@@ -1,12 +1,12 @@
 """What the objectives of a scenario mean for the course of a mission, without the network: by its events and places.
 
 A mission may end as won only where everything to be reached has happened in time, and nothing was broken before; and as
-lost only where an objective is broken.
+lost only where an objective is broken. The batteries of robots are never empty while they need them.
 """
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, Optional, Set, Union
+from typing import Dict, FrozenSet, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import At, Condition
@@ -15,7 +15,7 @@ from pursue_gen.language.wording import objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
 from pursue_gen.tga.names import going, has_happened
-from pursue_runtime.locations import place_of
+from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 
 
@@ -35,6 +35,8 @@ class Promises:
         self._turns: Dict[Span, int] = {}
         self._where: Dict[str, str] = {}
         self._broken: Dict[str, float] = {}
+        self._levels: Dict[str, float] = {each.agent.name: float(each.capacity) for each in scenario.batteries}
+        self._seen: Dict[str, Tuple[float, str]] = {}
         self._begun: Optional[float] = None
         self._seq = 0
 
@@ -63,6 +65,24 @@ class Promises:
                 self._broken.setdefault(objective_text(reach), at)
         if self._exact:
             self._check(state)
+            self._check_batteries(state, at)
+
+    def _check_batteries(self, state: SystemState, at: float) -> None:
+        """Takes from each battery what its robot has used since the state before, or adds what it has recharged."""
+        for battery in self._scenario.batteries:
+            name = battery.agent.name
+            here = state.locations.get(name, "")
+            before, was = self._seen.get(name, (at, here))
+            self._seen[name] = (at, here)
+            if not is_under_way(was):
+                continue
+            rate = -float(battery.uses)
+            if battery.dock is not None and is_action(was) and place_of(was, self._places) == battery.dock.name:
+                rate = float(battery.recharges)
+            level = min(float(battery.capacity), self._levels[name] + rate * (at - before))
+            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses):
+                self.problems.append(f"the battery of {name} has run empty")
+            self._levels[name] = level
 
     def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
         """True if the objective is broken now."""

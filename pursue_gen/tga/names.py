@@ -140,6 +140,11 @@ def busy_with(agent: str) -> str:
     return f"W{agent}"
 
 
+def level(agent: str) -> str:
+    """The variable that holds the level of an agent's battery."""
+    return f"L{agent}"
+
+
 def has_happened(event: Event) -> str:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
     return event.name if event.duration is None else done(event.name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, Tuple
 
+from pursue_gen.language.batteries import levels
 from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
 from pursue_gen.language.wording import answer_words, assumption_words, events_words, listed, objective_text
 from pursue_gen.tga import names
@@ -44,6 +45,9 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for state in scenario.states:
         if names.state_value(state.name) in variables:
             found.append(Status(names.state_value(state.name), state.name, {"0": "false", "1": "true"}))
+    for battery in scenario.batteries:
+        texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
+        found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.name}", texts))
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         places = [place.name for place in network.automaton(name).locations]

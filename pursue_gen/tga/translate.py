@@ -10,6 +10,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
+from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
@@ -38,13 +39,15 @@ def translate(scenario: Scenario) -> Network:
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [states] if states else []
-    automata += [assumed(bound(agent_automaton(agent, around), own), scenario) for agent in scenario.agents]
+    agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
+    automata += [assumed(bound(agent, own), scenario) for agent in agents]
     automata += [safety_automaton(each, scenario, codes, conditions, k) for k, each in enumerate(scenario.safety)]
     automata += [reach_automaton(each, happened, k) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
+    variables += battery_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network

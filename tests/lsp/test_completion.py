@@ -31,6 +31,8 @@ WHOLE = SMALL + "{}"
     ("line", "names"),
     [
         ("connect |", ["a", "b"]),
+        ("battery |", ["bot", "man"]),
+        ("battery bot capacity 9 uses 1 per unit recharges 2 per unit at |", ["a", "b"]),
         ("optional 1 reach_objective: do |", ["work", "hand", "rest"]),
         ("optional 1 objective: patrol |", ["a", "b"]),
         ("connect a and |", ["b"]),

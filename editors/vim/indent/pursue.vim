@@ -12,7 +12,7 @@ if exists('*PursueIndent')
   finish
 endif
 
-let s:statement = '^\s*\%(agent\|assume\|connect\|event\|objective\|optional\|poi\|reach_objective\|rule\|state\|stateDependency\|travel\)\>'
+let s:statement = '^\s*\%(agent\|assume\|battery\|connect\|event\|objective\|optional\|poi\|reach_objective\|rule\|state\|stateDependency\|travel\)\>'
 let s:goes_on = '^\s*\%(and\|distance\|one_way\|location\|duration\|collaborative\|together\|from\|to\|takes\|before\|or\|initially\|true_if\|false_if\|only_if\|'
       \ . 'human\|controllable\|mobile\|can_do\|reacts_to\|then\|within\|in\|every\|by\|does\|at_most\|times\|waits\|between\|leaves\|never\|never_with\|do\|after\)\>'
 

@@ -6,12 +6,13 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume connect event objective optional poi reach_objective rule state stateDependency travel
+syntax keyword pursueStatement agent assume battery connect event objective optional poi reach_objective rule state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after and at at_most avoid before between can_do collaborative controllable distance do does
 syntax keyword pursueKeyword duration false_if from human if initially leaves location mobile never never_with one_way
 syntax keyword pursueKeyword only_if or reacts_to takes then times to together true_if waits within
-syntax keyword pursueKeyword always any by every in label order patrol doing no not on_way robot each for
+syntax keyword pursueKeyword always any by capacity every in label order patrol doing no not on_way per recharges
+syntax keyword pursueKeyword robot each for unit uses
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

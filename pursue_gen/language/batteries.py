@@ -1,0 +1,152 @@
+"""Batteries: what a robot uses and recharges, at which levels its battery can be, and what is wrong with them.
+
+What a movement or an action may use at most is taken off when it begins, so a battery never runs empty on the way; what
+is recharged at least is added when an action at the dock ends. The one is rounded up, the other down: levels are whole.
+"""
+
+from __future__ import annotations
+
+from math import ceil, floor
+from typing import Dict, Iterator, List, Mapping, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.scenario import Agent, Battery, Event, Scenario
+
+MOST_CAPACITY = 10_000
+"""The largest capacity: levels are values of a variable."""
+
+MOST_LEVELS = 60
+"""The most levels at which a battery can be: each multiplies the states of the game."""
+
+
+def movements_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
+    """From and to of each movement of the battery's robot, and what it uses at most."""
+    agent = _agent(scenario, battery)
+    return {way: ceil(battery.uses * window[1]) for way, window in scenario.movements(agent).items()}
+
+
+def actions_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
+    """Event and place of each of its robot's actions elsewhere than at the dock, and what that uses at most."""
+    return {
+        (event.name, place): ceil(battery.uses * event.window[1])
+        for event, place in _actions(scenario, battery)
+        if event.window is not None and not is_dock(battery, place)
+    }
+
+
+def recharges(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
+    """Event and place of each of its robot's actions at the dock, and what that recharges at least."""
+    return {
+        (event.name, place): floor(battery.recharges * event.duration)
+        for event, place in _actions(scenario, battery)
+        if event.duration is not None and is_dock(battery, place)
+    }
+
+
+def is_dock(battery: Battery, place: str) -> bool:
+    """True for the place where the battery is recharged."""
+    return battery.dock is not None and battery.dock.name == place
+
+
+def levels(scenario: Scenario, battery: Battery) -> Tuple[int, ...]:
+    """Every level at which the battery can be, the full one first."""
+    uses = {*movements_use(scenario, battery).values(), *actions_use(scenario, battery).values()}
+    gains = set(recharges(scenario, battery).values())
+    found, waiting = {battery.capacity}, [battery.capacity]
+    while waiting:
+        level = waiting.pop()
+        following = {level - use for use in uses if use <= level}
+        following |= {min(battery.capacity, level + gain) for gain in gains}
+        waiting += following - found
+        found |= following
+    return tuple(sorted(found, reverse=True))
+
+
+def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Findings about batteries whose names are declared."""
+    agents = {agent.name: agent for agent in scenario.agents}
+    seen: Dict[str, Span] = {}
+    for battery in scenario.batteries:
+        agent = agents.get(battery.agent.name)
+        if agent is None:
+            continue
+        if agent.name in seen:
+            message = f"line {seen[agent.name].line} gives {agent.name} a battery already"
+            yield error("PML311", message, battery.span, "delete one of the two")
+        seen.setdefault(agent.name, battery.span)
+        problems = [*_of(agent, battery, scenario), *_numbers(battery)]
+        yield from problems
+        if not problems:
+            yield from _levels(scenario, battery)
+
+
+def _of(agent: Agent, battery: Battery, scenario: Scenario) -> Iterator[Diagnostic]:
+    name = agent.name
+    if not agent.is_robot:
+        message = f"{name} is no robot: a strategy sees to the batteries of robots"
+        hint = f"write controllable behind {name} (and no human), or delete this line"
+        yield error("PML310", message, battery.agent.span, hint)
+    events = {event.name: event for event in scenario.events}
+    for ref in agent.reacts_to:
+        if events[ref.name].is_shared:
+            message = f"{name} takes part in {ref.name} until it ends, and others decide when: it could run empty"
+            hint = f"let {name} be the one that can_do {ref.name}, or delete together"
+            yield error("PML314", message, ref.span, hint)
+
+
+def _numbers(battery: Battery) -> Iterator[Diagnostic]:
+    numbers: List[Tuple[str, Number]] = [("capacity", battery.capacity), ("uses", battery.uses)]
+    numbers += [] if battery.dock is None else [("recharges", battery.recharges)]
+    for word, number in numbers:
+        if number <= 0:
+            hint = f"leave out {word} … at" if word == "recharges" else "delete this line if it does not matter"
+            yield error("PML312", f"{word} 0: expected more than 0", battery.span, hint)
+    if battery.capacity > MOST_CAPACITY:
+        message = f"capacity {battery.capacity}: expected {MOST_CAPACITY} or less"
+        yield error("PML312", message, battery.span, "choose a larger unit, for example per cent")
+
+
+def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:
+    name, capacity = battery.agent.name, battery.capacity
+    if battery.dock is not None and not recharges(scenario, battery):
+        dock = battery.dock.name
+        message = f"{name} never recharges: it can do nothing at {dock} that lasts"
+        hint = f'let it: event "charge" location {dock} duration 10, and can_do charge'
+        yield error("PML313", message, battery.dock.span, hint)
+        return
+    count = len(levels(scenario, battery))
+    if count > MOST_LEVELS:
+        message = f"the battery of {name} can be at {count} levels, and multiplies the states of the game by as many"
+        hint = f"at most {MOST_LEVELS} are possible; " + _coarser(scenario, battery)
+        yield error("PML315", message, battery.span, hint)
+    for way, use in movements_use(scenario, battery).items():
+        if use > capacity:
+            message = f"a full battery does not last {name} from {way[0]} to {way[1]}: that uses up to {use}"
+            yield warning("PML316", message, battery.span, f"{name} never sets off on it; write capacity {use} or more")
+
+
+def _coarser(scenario: Scenario, battery: Battery) -> str:
+    """What would give the battery fewer levels."""
+    shown = ", ".join(str(use) for use in sorted(set(_uses(scenario, battery))))
+    return f"choose a larger unit, or times with a common divisor (movements and actions use, at most: {shown})"
+
+
+def _uses(scenario: Scenario, battery: Battery) -> List[int]:
+    return [*movements_use(scenario, battery).values(), *actions_use(scenario, battery).values()]
+
+
+def _actions(scenario: Scenario, battery: Battery) -> Iterator[Tuple[Event, str]]:
+    """The lasting events that the battery's robot can do, with each place where it can."""
+    agent = _agent(scenario, battery)
+    able = {ref.name for ref in agent.can_do}
+    everywhere = [agent.location.name] if agent.mobile is None else [poi.name for poi in scenario.pois]
+    for event in scenario.events:
+        if event.name in able and event.duration is not None:
+            for place in everywhere if event.location is None else [event.location.name]:
+                yield event, place
+
+
+def _agent(scenario: Scenario, battery: Battery) -> Agent:
+    agents: Mapping[str, Agent] = {agent.name: agent for agent in scenario.agents}
+    return agents[battery.agent.name]
