@@ -12,7 +12,7 @@ from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenari
 from pursue_gen.language.wording import kind_words, speed_words, window_words
 
 _WIDTH, _WIDEST = 640.0, 1600.0
-_MARGIN = 80.0
+_MARGIN, _RIM = 80.0, 12.0
 _LINE = 19.0
 _LETTER = 7.8  # px, a generous guess at how wide a letter is
 _ROOMY = 14  # so many places fit the usual width
@@ -35,7 +35,7 @@ def draw(
     poses of their places get the agent's mark.
     """
     width = min(_WIDEST, _WIDTH * math.sqrt(max(1.0, len(poses) / _ROOMY)))
-    paper = Paper(poses, floor, width)
+    paper = Paper(poses, floor, width, margin_of(scenario))
     places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
@@ -65,13 +65,23 @@ def draw(
     return svg(width, above + below + 10, title, description, body, ident)
 
 
+def margin_of(scenario: Scenario) -> float:
+    """How much room the labels beside places at the rim need, in pixels."""
+    bound = (event for event in scenario.events if event.location is not None)
+    labels = [f"⚙ {event.shown}{_lasts(event)}" for event in bound if event.label]
+    labels += [poi.label for poi in scenario.pois if poi.label]
+    labels += [f"{agent.label}    " for agent in scenario.agents if agent.label]  # its mark is before it
+    return min(max([_MARGIN, *(_LETTER * len(label) / 2 + _RIM for label in labels)]), _WIDTH / 3)
+
+
 class Paper:
     """From metres to points on the picture (y downwards), one scale for both directions."""
 
-    def __init__(self, poses: Mapping[str, Pose], floor: Optional[Floor], width: float) -> None:
+    def __init__(self, poses: Mapping[str, Pose], floor: Optional[Floor], width: float, around: float) -> None:
+        """`around`: the margin, in pixels, where there is no floor plan."""
         points = [(pose.x, pose.y) for pose in poses.values()] + list(floor.corners() if floor else ())
         xs, ys = [x for x, _ in points] or [0.0], [y for _, y in points] or [0.0]
-        margin = 30.0 if floor else _MARGIN
+        margin = 30.0 if floor else around
         self.scale = (width - 2 * margin) / max(max(xs) - min(xs), max(ys) - min(ys), 1e-6)
         self._left = (width - self.scale * (max(xs) - min(xs))) / 2 - self.scale * min(xs)
         self._top = margin + self.scale * max(ys)

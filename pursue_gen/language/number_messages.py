@@ -23,11 +23,11 @@ def no_number(text: str, value: Optional[Number], most: int, span: Span) -> Diag
     return error("PML280", message, span, "round it, or choose a smaller unit")
 
 
-def no_count(text: str, value: Optional[Number], most: int, span: Span, why: str) -> Diagnostic:
-    """What cannot be a whole number; `why` says what needs one."""
+def no_count(text: str, value: Optional[Number], most: int, span: Span) -> Diagnostic:
+    """What cannot be a number of times, or a rank."""
     if value is not None and value > most:
         return _too_large(text, most, span)
-    hint = f"write digits only: {why}" if value is None else why
+    hint = "write digits only" if value is None else "write it without decimals"
     return error("PML014", f"expected a whole number, found {shown(text)}", span, hint)
 
 

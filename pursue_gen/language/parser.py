@@ -173,12 +173,12 @@ class _Builder:
         self.findings.append(no_number(token, value, MOST, span_of(token, self.file)))
         return 1
 
-    def _count(self, token: Token, why: str = "things happen a whole number of times") -> int:
-        """The token's value, which is a whole number, as `why` says; 1 after a complaint."""
+    def _count(self, token: Token) -> int:
+        """The token's value, which says how often, or a rank; 1 after a complaint."""
         value = read_number(token)
         if isinstance(value, int) and value <= MOST:
             return value
-        self.findings.append(no_count(token, value, MOST, span_of(token, self.file), why))
+        self.findings.append(no_count(token, value, MOST, span_of(token, self.file)))
         return 1
 
     def _poi(self, name: Token, _: Any, label: Optional[Token], pose: Optional[Token], span: Span) -> pml.Poi:
@@ -298,7 +298,7 @@ class _Builder:
         )
 
     def _optional(self, _: Any, number: Token, tree: Any, span: Span) -> Tuple[pml.StatedObjective, ...]:
-        rank = self._count(number, "1 is kept longest, then 2, and so on")
+        rank = self._count(number)
         if not rank:
             hint = "1 is kept longest, then 2, and so on; without optional it has to be met in any case"
             message = "the number behind optional is 0; expected 1 or more"

@@ -164,10 +164,11 @@ def _segments(scenario: Scenario, recording: Recording) -> Dict[str, List[Segmen
     """Agent → its movements and stops on the picture, in order of time."""
     words = words_of(scenario, recording.network)
     where, computed = poses(scenario)
-    ground = map_svg.draw(replace(scenario, agents=()), where, computed)
+    places_alone = replace(scenario, agents=())
+    ground = map_svg.draw(places_alone, where, computed)
     found = re.search(r'viewBox="0 0 ([\d.]+)', ground)
     assert found is not None, "a map has a size"
-    paper = map_svg.Paper(where, None, float(found.group(1)))
+    paper = map_svg.Paper(where, None, float(found.group(1)), map_svg.margin_of(places_alone))
     places = {name: paper.point(pose.x, pose.y) for name, pose in where.items()}
     return {agent.name: _segments_of(agent, recording, words, places) for agent in scenario.agents}
 

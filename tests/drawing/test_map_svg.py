@@ -135,3 +135,17 @@ def test_nothing_covers_anything_where_much_happens_and_many_start() -> None:
     shift = sum(float(g.attrib["transform"].split()[1][:-1]) for g in picture.iter(f"{SVG}g"))
     rows = sorted(float(words.attrib["y"]) for words in picture.iter(f"{SVG}text"))
     assert rows[0] + shift > 12 and all(low - high > 11 for high, low in zip(rows, rows[1:]))
+
+
+def test_labels_at_the_rim_have_room() -> None:
+    text = TEXT.replace('poi "shop"', 'poi "shop" label "the shop of the porters"').replace(
+        'event "meet"', 'event "meet" label "meet whoever comes by"'
+    )
+    scenario = parse(text.replace('agent "bot"', 'agent "bot" label "Porter 1 of the hall"'), "house.pur", "house")
+    picture = ElementTree.fromstring(draw(scenario, poses((0, 0), (3, 0), (9, 4)), False))
+    width = float(picture.get("width", 0))
+    words = [words for words in picture.iter(f"{SVG}text") if words.get("text-anchor") == "middle"]
+    assert {"the shop of the porters", "⚙ meet whoever comes by", "Porter 1 of the hall"} <= {w.text for w in words}
+    for one in words:
+        half = 3.5 * len(one.text or "")
+        assert half < float(one.get("x", 0)) < width - half, one.text

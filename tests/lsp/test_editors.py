@@ -192,7 +192,8 @@ def type_of(kind: str, value: str) -> str:
     if kind in KEYWORDS:
         return "Keyword.Declaration" if kind in FORMS else "Keyword.Constant" if value in CONSTANTS else "Keyword"
     names = {"NAME": "Literal.String", "POSE": "Comment.Special", "LINE_COMMENT": "Comment.Single", "WORD": "Name"}
-    more = {"BLOCK_COMMENT": "Comment.Multiline", "TAIL": "Comment.Preproc", "NUMBER": "Literal.Number.Integer"}
+    number = f"Literal.Number.{'Float' if '.' in value else 'Integer'}"
+    more = {"BLOCK_COMMENT": "Comment.Multiline", "TAIL": "Comment.Preproc", "NUMBER": number}
     return {**names, **more}.get(kind, "Punctuation")
 
 
