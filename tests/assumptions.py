@@ -71,6 +71,25 @@ GOODBYE = "reach_objective: do goodbye"
 UNTOUCHED = "objective: avoid touch"
 
 
+ROOMS = """\
+poi "east"
+poi "west"
+connect east and west distance 3
+event "sing" location west duration 2
+event "hush" location east
+state "loud": initially false, true_if sing false_if hush
+agent "cleaner" controllable mobile 1 location east
+agent "anna" mobile 4 location west can_do sing
+agent "ben" mobile 4 location east can_do hush
+{}
+objective: cleaner never_with anna at east
+objective: cleaner never_with ben at west
+"""
+"""A cleaner who keeps out of the way of two visitors; lost without an assumption."""
+
+APART = "assume: not (anna at east and ben at west)"
+
+
 def scenario(text: str) -> Scenario:
     """The scenario of a text."""
     return parse(text, "story.pur", "story")

@@ -13,6 +13,7 @@ from pursue_gen.language.scenario import (
     Avoid,
     Both,
     Choice,
+    NeverHolds,
     NeverWith,
     Patrol,
     Reach,
@@ -88,13 +89,17 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
         ),
         travels=tuple(travel for travel in scenario.travels if travel.agent.name != name),
         batteries=tuple(battery for battery in scenario.batteries if battery.agent.name != name),
-        assumptions=tuple(a for a in scenario.assumptions if a.agent.name != name and not _names(a, gone)),
+        assumptions=tuple(a for a in scenario.assumptions if not _names(a, name, gone)),
     )
 
 
-def _names(assumption: Assumption, gone: AbstractSet[str]) -> bool:
-    """True if the assumption is about one of these events."""
-    return isinstance(assumption, (AtMost, Waits)) and assumption.event.name in gone
+def _names(assumption: Assumption, agent: str, gone: AbstractSet[str]) -> bool:
+    """True if the assumption is about the agent or one of these events."""
+    if isinstance(assumption, NeverHolds):
+        return False  # nor can be left out what a condition names
+    return assumption.agent.name == agent or (
+        isinstance(assumption, (AtMost, Waits)) and assumption.event.name in gone
+    )
 
 
 def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[[Scenario], Scenario]]]:

@@ -113,6 +113,10 @@ def conditions_of(scenario: Scenario) -> Iterator[Tuple[Condition, Span]]:
             yield condition, safety.span
         for condition in getattr(safety, "conditions", ()):
             yield condition, safety.span
+    for assumption in scenario.assumptions:
+        condition = getattr(assumption, "condition", None)
+        if condition is not None:
+            yield condition, assumption.span
 
 
 def condition_text(condition: Condition) -> str:

@@ -25,7 +25,8 @@ FORMS: Dict[str, str] = {
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "BATTERY": "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
-    "assume: visitor leaves hall within 30 · assume: visitor never at store",
+    "assume: visitor leaves hall within 30 · assume: visitor never at store · "
+    "assume: not (visitor at a and guest at a)",
     "OBJECTIVE": "objective: if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20) · "
     "objective: avoid e (or a condition: avoid open is_true) · "
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "

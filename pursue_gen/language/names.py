@@ -164,7 +164,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
         yield from all_of("agent", [battery.agent])
         yield from all_of("POI", [battery.dock])
     for assumption in scenario.assumptions:
-        yield from all_of("agent", [assumption.agent])
+        yield from all_of("agent", [getattr(assumption, "agent", None)])
         yield from all_of("event", [getattr(assumption, "event", None)])
         yield from all_of("POI", [getattr(assumption, "place", None)])
     for objective in scenario.objectives:

@@ -22,7 +22,7 @@ from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
 
-_ASSUMPTIONS = (pml.AtMost, pml.Waits, pml.Leaves, pml.NeverAt)
+_ASSUMPTIONS = (pml.AtMost, pml.Waits, pml.Leaves, pml.NeverAt, pml.NeverHolds)
 
 _PATIENCE = 5
 """Seconds in which something has to come where the file is a pipe."""
@@ -272,6 +272,8 @@ class _Builder:
 
     def _assumption(self, tree: Any, span: Span) -> pml.Assumption:
         first, *rest = tree.children
+        if tree.data == "never_holds":
+            return pml.NeverHolds(condition_of(first, self._ref), span)
         agent = self._ref(first)
         if tree.data == "at_most":
             return pml.AtMost(agent, self._ref(rest[0]), self._count(rest[1]), span)

@@ -417,8 +417,22 @@ class NeverAt:
     span: Span
 
 
-Assumption = Union[AtMost, Waits, Leaves, NeverAt]
-"""What an agent that is not controlled is assumed to do, or not to do."""
+@dataclass(frozen=True)
+class NeverHolds:
+    """`assume: not (condition)`: nobody makes it hold, nor sets off where it could hold on arrival.
+
+    It is about agents that are not controlled alone.
+    """
+
+    condition: Condition
+    span: Span
+
+
+AboutOne = Union[AtMost, Waits, Leaves, NeverAt]
+"""An assumption about one agent."""
+
+Assumption = Union[AtMost, Waits, Leaves, NeverAt, NeverHolds]
+"""What agents that are not controlled are assumed to do, or not to do."""
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from pursue_gen.language.scenario import (
     Avoid,
     Battery,
     Leaves,
+    NeverHolds,
     NeverWith,
     Patrol,
     Reach,
@@ -201,6 +202,8 @@ def statement_text(objective: StatedObjective) -> str:
 
 def assumption_words(assumption: Assumption) -> str:
     """What is assumed, as a sentence without its full stop; the same words as in the scenario where they read well."""
+    if isinstance(assumption, NeverHolds):
+        return f"it never holds that {condition_words(assumption.condition)}"
     name = assumption.agent.shown
     if isinstance(assumption, AtMost):
         times = "once" if assumption.times == 1 else f"{assumption.times} times"

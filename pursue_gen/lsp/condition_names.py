@@ -13,6 +13,7 @@ SUBJECTS = ("agent", "state")
 
 _OPENS = {
     ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
+    ("ASSUME", "NOT"),
 }  # fmt: skip
 """The statements with a condition in them, and the word behind which it begins."""
 

@@ -140,6 +140,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
         Form("how long somebody waits in between", "assume: {agent} waits {=5} between {event}"),
         Form("how long somebody stays", "assume: {agent} leaves {POI} within {=30}"),
         Form("where somebody never goes", "assume: {agent} never at {POI}"),
+        Form("what never holds", "assume: not ({agent} at {POI} and {agent} at {POI})"),
     ),
     "OBJECTIVE": (
         Form("an answer in time", "objective: if {event} then {event} within {=20}"),

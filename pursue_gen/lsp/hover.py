@@ -16,10 +16,12 @@ from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
     Always,
+    Assumption,
     Avoid,
     Both,
     Choice,
     Event,
+    NeverHolds,
     NeverWith,
     Poi,
     Ref,
@@ -234,7 +236,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
-    assumed = (assumption_words(each) for each in scenario.assumptions if each.agent.name == agent.name)
+    assumed = (assumption_words(each) for each in scenario.assumptions if _is_about(each, agent.name))
     lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
         if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
@@ -302,6 +304,13 @@ def _battery(scenario: Scenario, part: Statement) -> str:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""
+
+
+def _is_about(assumption: Assumption, agent: str) -> bool:
+    """True if the assumption names the agent."""
+    if isinstance(assumption, NeverHolds):
+        return any(kind == "agent" and ref.name == agent for kind, ref in names_in(assumption.condition))
+    return assumption.agent.name == agent
 
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:

@@ -10,10 +10,11 @@ from typing import Dict, FrozenSet, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import At, Condition
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Ref, Safety, Scenario
-from pursue_gen.language.wording import objective_text
+from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Safety, Scenario
+from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
+from pursue_gen.tga import names
 from pursue_gen.tga.names import going, has_happened
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
@@ -66,6 +67,7 @@ class Promises:
         if self._exact:
             self._check(state)
             self._check_batteries(state, at)
+            self._check_assumed(state)
 
     def _check_batteries(self, state: SystemState, at: float) -> None:
         """Takes from each battery what its robot has used since the state before, or adds what it has recharged."""
@@ -112,6 +114,14 @@ class Promises:
         elif begun and not before:
             self._since.setdefault(number, latest)
         return missed
+
+    def _check_assumed(self, state: SystemState) -> None:
+        """What is assumed never to hold does not, until a mission has seen it broken."""
+        for number, assumption in enumerate(self._scenario.assumptions, start=1):
+            if not isinstance(assumption, NeverHolds) or not state.values.get(names.assumption(number), 0):
+                continue
+            if holds(assumption.condition, self._scenario, state.locations, state.values):
+                self.problems.append(f"state {state.seq}: not so that {assumption_words(assumption)}, but not broken")
 
     def _is(self, what: Union[Ref, Condition], event: str, state: SystemState) -> bool:
         """True if the event happens now, or the condition holds."""

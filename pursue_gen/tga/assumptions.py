@@ -9,17 +9,23 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Callable, List, Mapping, Optional, Tuple
 
+from pursue_gen.language.clauses import Clauses, Value, clauses_of
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, Scenario, Waits
+from pursue_gen.language.scenario import AboutOne, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
 from pursue_gen.tga import names
 from pursue_gen.tga.agents import PAUSE
+from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
+from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Location, Test
 
 
-def assumed(automaton: Automaton, scenario: Scenario) -> Automaton:
+def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) -> Automaton:
     """The automaton of an agent, kept to what the scenario assumes of it."""
     for number, assumption in enumerate(scenario.assumptions, start=1):
-        if assumption.agent.name == automaton.name:
+        if isinstance(assumption, NeverHolds):
+            if any(agent.name == automaton.name and not agent.controllable for agent in scenario.agents):
+                automaton = _never_holds(automaton, number, assumption, scenario, conditions)
+        elif assumption.agent.name == automaton.name:
             automaton = _kept(automaton, number, assumption)
     return automaton
 
@@ -56,7 +62,56 @@ def without_broken(automaton: Automaton, values: Mapping[str, int]) -> Automaton
     return replace(automaton, locations=tuple(free(location) for location in automaton.locations))
 
 
-def _kept(automaton: Automaton, number: int, assumption: Assumption) -> Automaton:
+def _never_holds(
+    automaton: Automaton, number: int, assumption: NeverHolds, scenario: Scenario, conditions: Conditions
+) -> Automaton:
+    """Nothing begins with which the condition could hold, now or when what is under way ends.
+
+    Nobody can be kept from arriving. So whoever is on a way counts as if it were there already, too, and who is busy as
+    if it were not any more: the clauses that say that the condition does not hold are about values that stay so.
+    """
+    domains, name = conditions.domains, automaton.name
+    safe: Clauses = tuple(
+        {who: frozenset(value for value in values if _ahead(value) in values) for who, values in clause.items()}
+        for clause in clauses_of(assumption.condition, domains, False)
+    )
+    ways = {names.going(a, b): setting_off(name, a, b) for way in scenario.connections for a, b in way.directions}
+    works = {
+        names.doing(value.what, value.where): beginning(name, value.what, value.where, scenario, domains)
+        for value in domains.of(name)
+        if value.kind == "doing"
+    }
+
+    def edges(edge: Edge) -> List[Edge]:
+        if edge.sync is None or not edge.sync.sends or (names.is_under_way(edge.source) and edge.target != edge.source):
+            return [edge]
+        change = Change(states_set(edge.sync.channel, scenario))
+        if edge.source != edge.target:
+            change = ways.get(edge.target) or works.get(edge.target) or change
+        changed = {who for who, _ in change.becomes}
+        touched = tuple(clause for clause in safe if changed.intersection(clause))
+        if not touched:
+            return [edge]
+        guard = change.guard([change.before(touched, domains)], domains)
+        kept = [] if guard is None else [_where(edge, conditions.tests(guard))]
+        return [*kept, _when_broken(edge, number)] if guard != () else [edge]
+
+    return _each(automaton, edges)
+
+
+def _ahead(value: Value) -> Value:
+    """What becomes of an agent's value without anything new: who is on the way arrives, who is busy ends."""
+    if value.kind == "way":
+        return Value("at", value.what)
+    return Value("at", value.where) if value.kind == "doing" else value
+
+
+def _where(edge: Edge, tests: Tuple[Clause, ...]) -> Edge:
+    """The edge with these tests."""
+    return replace(edge, guard=replace(edge.guard, integers=(*edge.guard.integers, *tests)))
+
+
+def _kept(automaton: Automaton, number: int, assumption: AboutOne) -> Automaton:
     if isinstance(assumption, AtMost):
         return _at_most(automaton, number, assumption)
     if isinstance(assumption, Waits):

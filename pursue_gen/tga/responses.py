@@ -7,55 +7,18 @@ before the move; it says what has to hold there so that the condition holds afte
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
-from pursue_gen.language.clauses import (
-    FALSE,
-    NEVER,
-    TRUE,
-    Clauses,
-    Domains,
-    Value,
-    clauses_of,
-    given,
-    holds_at_start,
-    simplified,
-)
+from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
 from pursue_gen.language.scenario import Ref, Respond, Scenario
 from pursue_gen.tga import names
+from pursue_gen.tga.changes import Change, arriving, happening, setting_off
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
-
-@dataclass(frozen=True)
-class _Move:
-    """What a channel stands for: what becomes of the values of variables, and whose value is known before it."""
-
-    becomes: Mapping[Tuple[str, Value], Value]
-    known: Optional[Tuple[str, Value]] = None
-
-    def before(self, clauses: Clauses, domains: Domains) -> Clauses:
-        """What has to hold before the move so that the clauses hold after it."""
-        return tuple(
-            {
-                name: frozenset(v for v in domains.of(name) if self.becomes.get((name, v), v) in values)
-                for name, values in clause.items()
-            }
-            for clause in clauses
-        )
-
-    def guard(self, parts: Iterable[Clauses], domains: Domains) -> Optional[Clauses]:
-        """What is left to be tested so that all parts hold before the move; None where they cannot."""
-        clauses = simplified([clause for part in parts for clause in part], domains)
-        if clauses == NEVER:
-            return None
-        return clauses if self.known is None else given(clauses, *self.known)
-
-
-_Moves = Dict[str, _Move]
+_Moves = Dict[str, Change]
 
 
 def awaited_by(respond: Respond, scenario: Scenario, domains: Domains) -> Iterator[Tuple[str, str]]:
@@ -94,7 +57,7 @@ def respond_automaton(respond: Respond, scenario: Scenario, conditions: Conditio
     return Automaton(names.safety_objective(number), locations, AT_RISK if waits else IDLE, tuple(edges))
 
 
-def _comes(what: Union[Ref, Condition], move: _Move, domains: Domains) -> Optional[Clauses]:
+def _comes(what: Union[Ref, Condition], move: Change, domains: Domains) -> Optional[Clauses]:
     """What has to hold before the move so that the event happens, or the condition holds, with it; None: it cannot."""
     return () if isinstance(what, Ref) else move.guard([move.before(clauses_of(what, domains), domains)], domains)
 
@@ -110,7 +73,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
     found: _Moves = {}
     if isinstance(what, Ref):
         channel = names.has_happened(events[what.name])
-        return {channel: _event(channel, scenario, domains)}
+        return {channel: happening(channel, scenario, domains)}
     for atom in atoms(what):
         if isinstance(atom, (At, OnWay)):
             for agent in (agent for agent in scenario.agents if agent.name in domains.among(atom.who)):
@@ -118,34 +81,17 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
         elif isinstance(atom, Holds):
             (state,) = (state for state in scenario.states if state.name == atom.state.name)
             for ref in (*state.true_if, *state.false_if):
-                found[ref.name] = _event(ref.name, scenario, domains)
+                found[ref.name] = happening(ref.name, scenario, domains)
         else:
             for channel in (atom.event.name, names.done(atom.event.name)):
-                found[channel] = _event(channel, scenario, domains)
+                found[channel] = happening(channel, scenario, domains)
     return found
 
 
-def _movements(atom: Union[At, OnWay], agent: str, ways: Iterable[Tuple[str, str]]) -> Iterator[Tuple[str, _Move]]:
+def _movements(atom: Union[At, OnWay], agent: str, ways: Iterable[Tuple[str, str]]) -> Iterator[Tuple[str, Change]]:
     """The agent's moves that can change whether it is there, or on its way."""
     for a, b in ways:
-        way, origin, target = Value("way", a, b), Value("at", a), Value("at", b)
         if isinstance(atom, OnWay) or atom.place.name == a:
-            yield names.movement(agent, a, b), _Move({(agent, origin): way}, (agent, origin))
+            yield names.movement(agent, a, b), setting_off(agent, a, b)
         if isinstance(atom, OnWay) or atom.place.name == b:
-            yield names.arrival(agent, a, b), _Move({(agent, way): target}, (agent, way))
-
-
-def _event(channel: str, scenario: Scenario, domains: Domains) -> _Move:
-    """What the beginning or the end of an event changes: states, and what agents are busy with."""
-    becomes: Dict[Tuple[str, Value], Value] = {}
-    for state in scenario.states:
-        for value, refs in ((TRUE, state.true_if), (FALSE, state.false_if)):
-            if any(ref.name == channel for ref in refs):
-                becomes.update(((state.name, old), value) for old in (TRUE, FALSE))
-    for agent in scenario.agents:
-        for work in domains.of(agent.name):
-            if work.kind == "doing" and channel == work.what:
-                becomes[agent.name, Value("at", work.where)] = work
-            elif work.kind == "doing" and channel == names.done(work.what):
-                becomes[agent.name, work] = Value("at", work.where)
-    return _Move(becomes)
+            yield names.arrival(agent, a, b), arriving(agent, a, b)

@@ -10,7 +10,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import AtMost, Leaves, NeverAt, Waits
 from pursue_gen.language.wording import assumption_words
-from tests.assumptions import AWAY, LEAVES, MUSEUM, PLAYROOM, SPACED, TWICE, scenario
+from tests.assumptions import APART, AWAY, LEAVES, MUSEUM, PLAYROOM, ROOMS, SPACED, TWICE, scenario
 
 
 def findings(text: str) -> List[Tuple[str, int, str]]:
@@ -58,6 +58,12 @@ def test_its_words_may_be_names_everywhere_else() -> None:
         (PLAYROOM.format("assume: child leaves room within 5"), "PML252", "cannot leave it"),
         (PLAYROOM.format(f"{TWICE}\nassume: child does spill at_most 3 times"), "PML253", "line 9 assumes this"),
         (PLAYROOM.format("assume: child does clean at_most 2 times"), "PML254", "cannot do clean anyway"),
+        (ROOMS.format("assume: not cleaner at west"), "PML250", "cleaner is controlled"),
+        (ROOMS.format("assume: not (any agent at west)"), "PML263", "any agent means controlled ones as well"),
+        (PLAYROOM.format("assume: not tidy is_true"), "PML263", "bot is controlled, and its clean sets tidy"),
+        (ROOMS.format("assume: not anna at west"), "PML252", "this holds at the start: anna is at west"),
+        (ROOMS.format(f"{APART}\n{APART}"), "PML253", "line 10 assumes this already"),
+        (ROOMS.format(f"assume: anna leaves east within 9\n{APART}"), "PML264", "anna is assumed to leave a place"),
     ],
 )
 def test_what_cannot_be_assumed_is_reported_once(text: str, code: str, words: str) -> None:

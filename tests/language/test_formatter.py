@@ -245,9 +245,10 @@ def texts(draw: st.DrawFn) -> str:
             moves = maybe("human") + maybe("controllable") + maybe("mobile", number)
             return ["agent", quoted, *moves, "location", name, "can_do", *refs(), "reacts_to", *refs()]
         if kind == 9:
-            return ["assume", ":", name, *draw(st.sampled_from((
-                ["does", other, "at_most", number, "times"], ["waits", number, "between", other],
-                ["leaves", other, "within", number], ["never", "at", other],
+            return ["assume", ":", *draw(st.sampled_from((
+                ["not", "(", name, "at", other, "and", name, "on_way", ")"],
+                [name, "does", other, "at_most", number, "times"], [name, "waits", number, "between", other],
+                [name, "leaves", other, "within", number], [name, "never", "at", other],
             )))]  # fmt: skip
         if kind == 7 and draw(st.booleans()):
             who = draw(st.sampled_from(([name], ["any", "robot"])))

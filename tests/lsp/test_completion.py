@@ -55,6 +55,8 @@ WHOLE = SMALL + "{}"
         ("travel bot from a to b takes |", []),
         ("objective: |", ["bot", "man"]),
         ("objective: bot never_with |", ["man"]),
+        ("assume: not |", ["bot", "man", "tired"]),
+        ("assume: not (bot at |", ["a", "b"]),
         ("objective: if |", ["work", "hand", "rest", "bot", "man", "tired"]),
         ("objective: if bot at |", ["a", "b"]),
         ("objective: if bot at a then |", ["work", "hand", "rest", "bot", "man", "tired"]),

@@ -6,10 +6,12 @@ import random
 from typing import List
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import NeverHolds
+from pursue_gen.simulation.meaning import holds
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.network import ClockBound, Network, Test
@@ -17,11 +19,13 @@ from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_runtime.model import Position
 from pursue_runtime.zones import EPSILON
 from tests.assumptions import (
+    APART,
     AWAY,
     GOODBYE,
     LEAVES,
     MUSEUM,
     PLAYROOM,
+    ROOMS,
     SPACED,
     TWICE,
     UNTOUCHED,
@@ -152,3 +156,47 @@ def test_whoever_leaves_in_time_always_can(seed: int) -> None:
             assert inside <= 9 + EPSILON
         if now == "gallery" and before.startswith("going_"):
             inside = 0.0
+
+
+def test_nobody_sets_off_to_where_a_condition_could_come_to_hold() -> None:
+    edges = [e for e in network(ROOMS.format(APART)).automaton("anna").edges if e.target == "going_west_to_east"]
+    kept, free = edges
+    assert {test.value for test in kept.guard.integers[-1]} == {1, -21}, "ben is at east, or on his way there"
+    assert {test.variable for test in kept.guard.integers[-1]} == {"Pben"}
+    assert free.guard.integers[-1] == (Test("assume1", 0),)
+    assert won(ROOMS.format(APART)) and not won(ROOMS.format(""))
+
+
+NEVER_HELD = [
+    APART,
+    "assume: not (anna at east and ben on_way)",
+    "assume: not (anna doing sing and ben at west)",
+    "assume: not (loud is_true and ben at west)",
+    "assume: not (ben at west or (anna at east and loud is_true))",
+    "assume: not (not anna at west and not ben at east)",
+]
+
+
+@pytest.mark.parametrize("said", NEVER_HELD)
+@given(seed=st.integers(0, 10**6))
+@settings(max_examples=15)
+def test_a_condition_that_is_assumed_never_to_hold_never_does_and_nobody_is_stuck(said: str, seed: int) -> None:
+    """Random plays of all agents, with times."""
+    story, model = scenario(ROOMS.format(said)), free_model(ROOMS.format(said))
+    (assumption,) = story.assumptions
+    assert isinstance(assumption, NeverHolds)
+    rng, here = random.Random(seed), model.initial()
+    for _ in range(40):
+        assert not holds(assumption.condition, story, here.locations, here.values), here
+        agents = [model.automaton(agent.name) for agent in story.agents]
+        most = min(
+            (b.bound - here.clocks[b.left] for a in agents for b in a.invariants[here.locations[a.name]]), default=5.0
+        )
+        here = here.aged(rng.choice((0.5, 1.0)) * most)
+        words = [word for word in model.possible(here) if not word.startswith("obj")]
+        if not words:
+            assert most > EPSILON, f"stuck at {here}"
+            continue
+        moves = model.joint_move(here, rng.choice(words))
+        assert moves
+        here = model.after(moves, here)

@@ -12,7 +12,21 @@ from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING, RUNNING, STOPPED, SystemState, rewinds
 from pursue_runtime.strategy import read_cover
-from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE, PLAYROOM, SPACED, TWICE, files, model
+from tests.assumptions import (
+    APART,
+    AWAY,
+    CAFE,
+    GOODBYE,
+    LEAVES,
+    MUSEUM,
+    ONCE,
+    PLAYROOM,
+    ROOMS,
+    SPACED,
+    TWICE,
+    files,
+    model,
+)
 
 
 class Story:
@@ -149,3 +163,17 @@ def test_data_without_assumptions_are_read() -> None:
     assert model(CAFE.format("")).assumptions == ()
     data = yaml.safe_load(files(CAFE.format(ONCE))["src/observer/config/model.yaml"])
     assert [each.says for each in Model(data).assumptions] == ["guest does call at most once"]
+
+
+def test_who_sets_off_to_where_nobody_is_assumed_to_be_breaks_it() -> None:
+    text = ROOMS.format(APART)
+    story = Story(text)
+    state = story.hear((0.0, "_start_"), (1.5, "ben_east2west"))
+    assert (state.status, state.values["assume1"]) == (RUNNING, 1)
+    state = story.hear((3.0, "anna_west2east"))
+    assert (state.status, state.event, state.values["assume1"]) == (HOLDING, "anna_west2east", 0)
+    assert state.reason.startswith(
+        "what was assumed is broken: it never holds that anna is at east and ben is at west; looking for another"
+    )
+    assert not story.planned(3.2)["won"]
+    assert story.mission.state(3.2).status == STOPPED
