@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Tuple
+from typing import Set, Tuple
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -30,13 +30,16 @@ from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation
 from tests.conftest import thesis_scenario
 from tests.synthesis.random_games import games
-from tests.synthesis.region_game import RegionGame
+from tests.synthesis.region_game import Position, RegionGame
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DEFAULT = Fraction(1, 10)
 RANDOM = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
 
 native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built here (no compiler)")
+BUILT = [NativeEngine(), NativeEngine(small_budget=0)] if NativeEngine().available() else []
+ALL: Tuple[Engine, ...] = (*BUILT, ReferenceEngine(), ReferenceEngine(directed=False))
+"""For properties that cost more than a solve: each game that is drawn is for all engines."""
 ENGINES = [
     pytest.param(NativeEngine(), marks=native, id="native"),
     pytest.param(NativeEngine(small_budget=0), marks=native, id="native, searches with few moves"),
@@ -50,10 +53,9 @@ def published(folder: Path, name: str, default: bool) -> Tuple[Network, Objectiv
     return (ends_reported(network, {}), objective, DEFAULT) if default else (network, objective, Fraction(0))
 
 
-def agrees_with_brute_force(game: Game, outcome: Outcome) -> None:
+def agrees(outcome: Outcome, regions: RegionGame, winning: Set[Position]) -> None:
     """The verdict is that of regions, what is called won is, and commands are usable where they are given."""
-    regions = RegionGame(game)
-    winning = regions.winning()
+    game = regions.game
     assert outcome.won == regions.won(winning)
     for locations, values, pieces in outcome.blocks:
         state = State(locations, values)
@@ -116,26 +118,26 @@ def _won(engine: Engine, objective: Objective, *automata: Automaton, reaction: F
     return engine.solve(compile_game(_network(*automata), objective, reaction)).won
 
 
+@RANDOM
+@given(game=games(EVERY_KIND, (0, 0, 1)))
+def test_engines_agree_with_brute_force_in_the_order_of_time_too(game: Game) -> None:
+    regions = RegionGame(game)
+    winning = regions.winning()
+    for engine in ALL:
+        agrees(engine.solve(game), regions, winning)
+        soonest = engine.solve(game, soonest=True)
+        agrees(soonest, regions, winning)
+        is_well_formed(game, soonest)
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 class TestEngine:
     """The contract, see `synthesis.engine`."""
 
     @RANDOM
-    @given(game=games(EVERY_KIND, (0, 0, 1)))
-    def test_it_agrees_with_brute_force(self, engine: Engine, game: Game) -> None:
-        agrees_with_brute_force(game, engine.solve(game))
-
-    @RANDOM
     @given(game=games(EVERY_KIND, (0, 1)))
     def test_an_outcome_is_well_formed(self, engine: Engine, game: Game) -> None:
         is_well_formed(game, engine.solve(game))
-
-    @RANDOM
-    @given(game=games(EVERY_KIND, (0, 0, 1)))
-    def test_in_the_order_of_time_it_agrees_as_well(self, engine: Engine, game: Game) -> None:
-        outcome = engine.solve(game, soonest=True)
-        agrees_with_brute_force(game, outcome)
-        is_well_formed(game, outcome)
 
     def test_in_the_order_of_time_it_takes_the_quick_way(self, engine: Engine) -> None:
         places = ("start", "first", "second", "goal")
