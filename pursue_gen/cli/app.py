@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 
 import typer
@@ -42,8 +43,13 @@ app = typer.Typer(
 )
 
 
+_OBJECTS = 300_000
+"""So many new objects are made between two searches for garbage: strategies are many small values without cycles."""
+
+
 def main() -> None:
     """The program `pursue-gen`."""
+    gc.set_threshold(_OBJECTS)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a letter gets its code
             stream.reconfigure(errors="backslashreplace")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -70,7 +72,22 @@ def span_of(token: Token, file: str) -> Span:
 def grammar() -> Lark:
     """The parser; made once, at the first text, so that to import the package costs nothing."""
     text = (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", lexer="basic", start=["statement", "wrong"], propagate_positions=True)
+    how: Dict[str, Any] = {"start": ["statement", "wrong"], "propagate_positions": True}
+    return Lark(text, parser="lalr", lexer="basic", cache=_kept_tables() or False, **how)
+
+
+def _kept_tables() -> Optional[str]:
+    """The file in which Lark keeps the parser's tables between runs, as making them takes longer than most texts do.
+
+    They are made anew where they are those of another grammar, or cannot be read or written. None: no such file.
+    """
+    cache = os.environ.get("XDG_CACHE_HOME", "")
+    folder = (Path(cache) if os.path.isabs(cache) else Path(os.path.expanduser("~")) / ".cache") / "pursue"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return str(folder / f"grammar_{sys.version_info[0]}.{sys.version_info[1]}")
 
 
 def read_statements(text: str, file: str) -> Tuple[List[Tree[Token]], List[Diagnostic]]:

@@ -202,10 +202,11 @@ class _Search:
             guards = frozenset(matter.intersection(self._robots))
         some = [name for name in self._robots if name in part.doers]
         sizes = [size for size in range(1, _MOST + 1) if size < len(some)]
-        for size in sizes or [len(some)]:
-            yield guards.union(some[:size])
-        if sizes and len(some) <= _MOST + 1:
-            yield guards.union(some)
+        sizes += [len(some)] if len(some) <= _MOST + 1 else []
+        # With all robots the game of the only stage is the one in one piece, for which there is more work.
+        is_only = not part.milestones and (part.goal is None or (part.goal,) == self._objective.goal)
+        teams = (guards.union(some[:size]) for size in sizes)
+        yield from (team for team in teams if not (is_only and team.issuperset(self._robots)))
 
     def _with_team(self, part: _Part, team: Collection[str], known: Known) -> Optional[List[Block]]:
         """The same with this team; None where it does not win."""

@@ -47,6 +47,9 @@ _DELAYED = tuple((Fraction(n, 20), late) for n, late in ((21, 2), (21, 1), (22, 
 _PRECISION = Fraction(21, 20)
 """The search for a deadline ends where the shortest that is won is so close to the longest that is not."""
 
+_UNDECIDED = 2
+"""So many deadlines in a row that are not decided end the search, as long as none is known to be kept."""
+
 _NOT_WITHIN = "SYN023"
 
 
@@ -69,8 +72,8 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
             found = replace(won, guarantee=known)
         if found is not None:
             return _bounded(found, options.since(start), scale) if first.easy else found
-    found = _in_less_time(won, known, scale, options.since(start))
-    return _bounded(found, options.since(start), scale) if first is None else found
+    found, decided = _in_less_time(won, known, scale, options.since(start))
+    return _bounded(found, options.since(start), scale) if first is None and decided else found
 
 
 def _budget(options: SolveOptions, work: int, states: int, scale: float) -> Budget:
@@ -97,16 +100,17 @@ def _bounded(won: Solution, options: SolveOptions, scale: float) -> Solution:
     return won
 
 
-def _in_less_time(won: Solution, known: Guarantee, scale: float, options: SolveOptions) -> Solution:
-    """The solution with a strategy for a deadline that is much shorter than what the one at hand takes, or with that.
+def _in_less_time(won: Solution, known: Guarantee, scale: float, options: SolveOptions) -> Tuple[Solution, bool]:
+    """The solution with a strategy for a deadline that is much shorter than what the one at hand takes, or with that,
+    and whether games with a deadline are decided with so much work.
 
     `scale`: the part of the work that games of so many clocks get.
     """
     start, budget = time.monotonic(), _budget(options, WORK, _DISCRETE_STATES, scale)
-    least, kept, moves = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale))
+    least, kept, moves, decided = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale))
     known = replace(known, least=max(known.least, least))
     if kept is None:
-        return replace(won, guarantee=known)
+        return replace(won, guarantee=known), decided
     some = with_counter(keeping_to(won.part, moves))
     for part, late in _DELAYED:
         deadline = kept * part
@@ -117,8 +121,8 @@ def _in_less_time(won: Solution, known: Guarantee, scale: float, options: SolveO
         faster, _ = tried(some, won.objective, won.reaction * late, deadline, budget, int(_DELAYED_GAME * scale))
         found = None if faster is None else better(won, known, faster, options.since(start))
         if found is not None:
-            return found
-    return replace(won, guarantee=known)
+            return found, decided
+    return replace(won, guarantee=known), decided
 
 
 def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution:
@@ -151,8 +155,11 @@ def _too_short(deadline: Fraction, known: Guarantee) -> Diagnostic:
     return error(_NOT_WITHIN, message, hint=hint)
 
 
-def _prompt(won: Solution, known: Guarantee, budget: Budget, work: int) -> Tuple[Fraction, Optional[Fraction], Moves]:
-    """A lower bound, a deadline that is kept where commands take effect at once, and the moves that this needs.
+def _prompt(
+    won: Solution, known: Guarantee, budget: Budget, work: int
+) -> Tuple[Fraction, Optional[Fraction], Moves, bool]:
+    """A lower bound, a deadline that is kept where commands take effect at once, the moves that this needs, and whether
+    the games were decided.
 
     The deadline is None where none was found that is much shorter than what the strategy at hand takes.
     """
@@ -160,18 +167,18 @@ def _prompt(won: Solution, known: Guarantee, budget: Budget, work: int) -> Tuple
     search = _Bisection(int(bounds(won.part, won.objective, now).least), known.worst)
     best: Optional[Faster] = None
     for deadline in search.deadlines():
-        if budget.used_up:
+        if budget.used_up or not search.is_easy:
             break
         faster, decided = tried(network, won.objective, now, Fraction(deadline), budget, work)
         best = faster or best
         search.answer(deadline, faster is not None, decided)
     if best is None:
-        return Fraction(search.least), None, frozenset()
+        return Fraction(search.least), None, frozenset(), search.is_easy
     report = verify(best.game, won.objective, best.strategy, now, STATES, ranks=best.ranks)
     if not report.ok:
-        return Fraction(search.least), None, frozenset()
+        return Fraction(search.least), None, frozenset(), search.is_easy
     strategy = unscaled(pruned(best.strategy, report), network, best.fine)
-    return Fraction(search.least), best.kept, moves_of(strategy)
+    return Fraction(search.least), best.kept, moves_of(strategy), search.is_easy
 
 
 @dataclass
@@ -183,6 +190,13 @@ class _Bisection:
 
     def __post_init__(self) -> None:
         self.floor = self.least
+        self._undecided = 0
+        self._any_won = False
+
+    @property
+    def is_easy(self) -> bool:
+        """False once deadlines are not decided though longer ones were tried: so it goes on as a rule."""
+        return self._any_won or self._undecided < _UNDECIDED
 
     def deadlines(self) -> Iterator[int]:
         """The next one to try, until `high` is close to `floor`."""
@@ -194,6 +208,8 @@ class _Bisection:
 
     def answer(self, deadline: int, won: bool, decided: bool) -> None:
         """Takes in what became of the deadline."""
+        self._any_won = self._any_won or won
+        self._undecided = 0 if decided else self._undecided + 1
         if won:
             self.high = Fraction(deadline)
             return

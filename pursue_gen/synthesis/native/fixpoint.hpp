@@ -104,7 +104,13 @@ class Fixpoint : public ZoneGraph<Z> {
                 else if (command != commanded.end()) enter(transition, command->second);
             }
         }
-        for (auto k = plans.begin(); k != plans.end();) k = k->second.empty() ? plans.erase(k) : std::next(k);
+        for (auto k = plans.begin(); k != plans.end();) {
+            const Z& here = met.at(k->first);
+            std::vector<Piece<Z>>& pieces = k->second;  // without those that no play comes to
+            const auto missed = [&](Piece<Z> piece) { return !intersect(piece.zone, here); };
+            pieces.erase(std::remove_if(pieces.begin(), pieces.end(), missed), pieces.end());
+            k = pieces.empty() ? plans.erase(k) : std::next(k);
+        }
         return plans;
     }
 

@@ -4,6 +4,7 @@
 // call `spend`, and so may throw what its hook throws.
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include "zones/native/dbm.hpp"
@@ -75,42 +76,67 @@ void insert(Federation<Z>& fed, const Z& zone) {
     fed.push_back(zone);
 }
 
-// Whether a and b together are exactly their hull.
-//
-// What the hull h has beyond them is the union, over each bound (i, j) that is tighter in a and (k, l) that is tighter in
-// b, of the points of h that break both. As h is canonical, such a part is empty iff the one cycle through both is negative.
+// A bound (i, j) of one zone and one (k, l) of another that keep them from joining; at first none.
+struct Apart {
+    int i = 0, j = 0, k = 0, l = 0;
+};
+
+// Whether the hull of a and b has points beyond them that break the bound (i, j) of a and (k, l) of b, which are tighter
+// there than the other's. As the hull is canonical, it has none iff the one cycle through both broken bounds is negative.
 template <class Z>
-bool joins(const Z& a, const Z& b) {
-    const auto gap = [&](int i, int j, int k, int l) {
-        const typename Z::raw_t p = complement(a.at(i, j)), q = complement(b.at(k, l));
-        const typename Z::raw_t r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
-        return (p >> 1) + (q >> 1) + (r >> 1) + (s >> 1) + (p & q & r & s & 1) > 0;
-    };
+inline bool apart(const Z& a, const Z& b, const Apart& by) {
+    const auto [i, j, k, l] = by;
+    if (a.at(i, j) >= b.at(i, j) || b.at(k, l) >= a.at(k, l)) return false;
+    const typename Z::raw_t p = complement(a.at(i, j)), q = complement(b.at(k, l));
+    const typename Z::raw_t r = std::max(a.at(i, l), b.at(i, l)), s = std::max(a.at(k, j), b.at(k, j));
+    return (p >> 1) + (q >> 1) + (r >> 1) + (s >> 1) + (p & q & r & s & 1) > 0;
+}
+
+// What keeps a and b from joining; none if they together are exactly their hull, as all that it has beyond them breaks a
+// bound that is tighter in a and one that is tighter in b.
+template <class Z>
+std::optional<Apart> what_parts(const Z& a, const Z& b) {
     std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];
     int count_a = 0, count_b = 0;
     for (int i = 0; i < Z::size; ++i)
         for (int j = 0; j < Z::size; ++j) {
             if (a.at(i, j) < b.at(i, j)) {
-                for (int k = 0; k < count_b; ++k)
-                    if (gap(i, j, tighter_b[k].first, tighter_b[k].second)) return false;
+                for (int n = 0; n < count_b; ++n) {
+                    const Apart by{i, j, tighter_b[n].first, tighter_b[n].second};
+                    if (apart(a, b, by)) return by;
+                }
                 tighter_a[count_a++] = {i, j};
             } else if (b.at(i, j) < a.at(i, j)) {
-                for (int k = 0; k < count_a; ++k)
-                    if (gap(tighter_a[k].first, tighter_a[k].second, i, j)) return false;
+                for (int n = 0; n < count_a; ++n) {
+                    const Apart by{tighter_a[n].first, tighter_a[n].second, i, j};
+                    if (apart(a, b, by)) return by;
+                }
                 tighter_b[count_b++] = {i, j};
             }
         }
-    return true;
+    return std::nullopt;
+}
+
+// Whether a and b together are exactly their hull.
+template <class Z>
+bool joins(const Z& a, const Z& b) {
+    return !what_parts(a, b);
 }
 
 // Adds a zone, merged with all that it forms a convex union with. Ensures: no two of fed form one, if that was so before.
 template <class Z>
 void absorb(Federation<Z>& fed, Z zone) {
+    Apart last, other;  // what kept two zones apart: in a row of zones it is often the same
     for (bool again = true; again;) {
         again = false;
         spend(fed.size());
         for (std::size_t k = 0; k < fed.size();) {
-            if (!joins(fed[k], zone)) {
+            if (apart(fed[k], zone, last) || apart(fed[k], zone, other)) {
+                ++k;
+                continue;
+            }
+            if (const std::optional<Apart> by = what_parts(fed[k], zone)) {
+                other = std::exchange(last, *by);
                 ++k;
                 continue;
             }
