@@ -13,6 +13,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.assumed_alone import check_assumed_alone
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.synthesis.limits import Listener
@@ -32,7 +33,7 @@ def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
     findings = check_reading(reading)
     if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
         return findings
-    return in_order((*findings, *translation_notes(reading.scenario)))
+    return in_order((*findings, *translation_notes(reading.scenario), *check_assumed_alone(reading.scenario)))
 
 
 def exit_status(findings: Iterable[Diagnostic]) -> int:

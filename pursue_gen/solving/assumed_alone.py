@@ -1,0 +1,64 @@
+"""Objectives that hold because of assumptions alone, whether or not the robots do anything."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Iterator, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, PursueError, warning
+from pursue_gen.language.scenario import Assumption, Patrol, Safety, Scenario
+from pursue_gen.language.wording import assumption_words, objective_text
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits, is_undecided
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Edge, Network
+
+_WORK = 3_000_000
+"""The work for all games together: half a second at most. What is not decided with it gives no warning."""
+
+
+def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
+    """A warning for each objective that holds with idle robots because of what is assumed, and not without that."""
+    if not scenario.assumptions:
+        return
+    budget = Budget(Limits(work=_WORK))
+    try:
+        for objective in scenario.safety:
+            if isinstance(objective, Patrol):  # places are visited by robots alone
+                continue
+            everything = scenario.assumptions
+            if not _holds(scenario, objective, everything, budget) or _holds(scenario, objective, (), budget):
+                continue
+            singles = ((each,) for each in everything)
+            enough = next((one for one in singles if _holds(scenario, objective, one, budget)), everything)
+            why = " and ".join(assumption_words(each) for each in enough)
+            message = f"{objective_text(objective)}: this holds without anything that robots do, as long as {why}"
+            hint = "assume less where the robots are to see to it; else delete the objective"
+            yield warning("PML265", message, objective.span, hint)
+    except PursueError as problem:
+        if not is_undecided(problem):
+            raise
+
+
+def _holds(scenario: Scenario, objective: Safety, assumptions: Tuple[Assumption, ...], budget: Budget) -> bool:
+    """True if the objective holds though no robot does anything. Raises PursueError (exit status 5) at the limit."""
+    alone = replace(scenario, safety=(objective,), reach=(), assumptions=assumptions)
+    rules = Rules()
+    return budget.verdict(_idle(played(translate(alone), rules)), scenario_objective(alone), rules.reaction).won
+
+
+def _idle(network: Network) -> Network:
+    """The network in which controlled agents begin nothing; they take part in what others begin."""
+
+    def stays(edge: Edge) -> bool:
+        return not edge.controllable or (edge.sync is not None and not edge.sync.sends)
+
+    return replace(
+        network,
+        automata=tuple(
+            replace(one, edges=tuple(edge for edge in one.edges if stays(edge))) if is_agent(one) else one
+            for one in network.automata
+        ),
+    )
