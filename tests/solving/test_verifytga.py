@@ -31,6 +31,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.scale import scaled
 from pursue_gen.tga.uppaal import read_network, read_query
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -122,6 +123,22 @@ def test_its_strategy_is_read_and_proven(game: Game, strategy: Strategy, tool: T
     assert verify(*game, verdict.strategy).ok
     assert (verdict.stats.engine, verdict.stats.zones) == ("verifytga", 42)
     assert verdict.stats.discrete_states == len(strategy.blocks)
+
+
+def test_decimals_are_multiplied_for_it_and_divided_in_its_strategy(tool: Tool, tmp_path: Path) -> None:
+    scenario = parse(CALLED.replace("distance 2", "distance 1.25").replace("within 4", "within 3.5"), "called.pur")
+    network, objective = translate(scenario), scenario_objective(scenario)
+    large = scaled(network, 4)
+    strategy = solve(large, objective).strategy
+    assert strategy is not None
+    program = tool(
+        f"open({str(tmp_path / 'given')!r}, 'w').write(open('TGA.xml').read())\n"
+        + replaying(winning((large, objective), strategy))
+    )
+    verdict = run_verifytga(network, objective, path=program)
+    assert verdict.strategy is not None
+    assert verify(network, objective, verdict.strategy).ok
+    assert "multiplied by 4" in (tmp_path / "given").read_text()
 
 
 def test_what_no_play_reaches_is_left_out(game: Game, strategy: Strategy, tool: Tool) -> None:

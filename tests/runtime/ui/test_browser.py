@@ -113,6 +113,23 @@ def refuses(page: Browser) -> bool:
     return any("Content Security Policy" in complaint for complaint in page.complaints)
 
 
+def test_labels_are_shown_as_text_and_names_are_sent(page: Browser, show: Callable[..., Node]) -> None:
+    labels = {"bot": HOSTILE, "boy": f"boy {HOSTILE}", "a": f"at {HOSTILE}", "screw": f"screw {HOSTILE}"}
+    node = show(*everybody(), labels=labels)
+    node.show(1, 1.0, event="bot_a2b", agent="bot", bot="going_a_to_b")
+    says(page, "#log", f"{HOSTILE} sets off from at {HOSTILE} to b")
+    says(page, "#agents", f"from at {HOSTILE} to b")
+    says(page, "#map", f"at {HOSTILE[:10]}")
+    says(page, "#buttons", f"boy {HOSTILE}")
+    says(page, "#buttons", f"screw {HOSTILE}")
+    assert page.value("document.querySelector('main img, main script')") is None
+    assert page.value("window.hacked") is None
+    buttons = "[...document.querySelectorAll('#buttons button')]"
+    words = page.value(f"{buttons}.map((button) => button.dataset.word).join(' ')")
+    assert HOSTILE not in words and "boy:screw" in words
+    assert page.complaints == []
+
+
 def test_names_and_words_are_text_whatever_is_in_them(page: Browser, show: Callable[..., Node]) -> None:
     robot = {**mover("bot", "robot", 9), "name": HOSTILE}
     thief = {**mover("thief", "agent", 9), "name": "__proto__"}
