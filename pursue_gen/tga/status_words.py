@@ -47,11 +47,11 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
             found.append(Status(names.state_value(state.name), state.name, {"0": "false", "1": "true"}))
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
-        found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.name}", texts))
+        found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         places = [place.name for place in network.automaton(name).locations]
-        in_turn = f": {objective.place.name}" if isinstance(objective, Patrol) and objective.order else ""
+        in_turn = f": {objective.place.shown}" if isinstance(objective, Patrol) and objective.order else ""
         texts = {place: _duty(objective, place) for place in places}
         found.append(Status(name, objective_text(objective) + in_turn, texts))
     return tuple(found)

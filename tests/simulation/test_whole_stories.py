@@ -5,11 +5,13 @@ Promises and courses are judged from the scenario alone, without the network tha
 
 from __future__ import annotations
 
+import re
 from typing import List, Optional, Tuple
 
 from hypothesis import given, settings
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.simulation.mission import GOAL, SAFE, Settings, SimulatedMission
 from pursue_gen.simulation.remaining import Remaining
@@ -22,6 +24,9 @@ from pursue_gen.workspace import Options
 from pursue_runtime.state import SystemState
 from tests.course import Course
 from tests.whole_stories import stories
+
+TIMES = re.compile(r"\b(?:distance|mobile|duration|takes|\d to|within|every|after|waits) [1-9]\d*")
+"""Numbers that may have decimals, with the words before them."""
 
 LOST = 4
 """The exit status of a game that is lost; other errors here are limits of work."""
@@ -61,7 +66,18 @@ def solved(scenario: Scenario, engine: str = "native", work: int = 100_000) -> T
 @given(stories(small=True))
 @settings(max_examples=8)
 def test_missions_of_won_scenarios_keep_what_the_scenario_says(drawn: Tuple[str, Scenario]) -> None:
-    text, scenario = drawn
+    keeps(*drawn)
+
+
+@given(stories(small=True))
+@settings(max_examples=6)
+def test_so_do_those_with_decimals(drawn: Tuple[str, Scenario]) -> None:
+    text = TIMES.sub(lambda found: f"{found.group()}.5", drawn[0])
+    keeps(text, parse(text, "story.pur", "story"))
+
+
+def keeps(text: str, scenario: Scenario) -> None:
+    """Fails where a mission of a won scenario breaks a promise, or does what is not permitted."""
     won, lost = solved(scenario)
     if lost:
         assert solved(scenario, "python", 5_000)[0] is None, ("one engine wins it, the other one loses it", text)
