@@ -66,9 +66,8 @@ def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]
         value = values.get(names.state_value(state.name), int(state.initially))
         yield f"  {state.name} is {'true' if value else 'false'}"
     for battery in setup.scenario.batteries:
-        name = battery.agent.name
-        level = values.get(names.level(name), battery.capacity)
-        yield f"  battery of {name}: {level} of {battery.capacity}"
+        level = values.get(names.level(battery.agent.name), battery.capacity)
+        yield f"  battery of {battery.agent.shown}: {level} of {battery.capacity}"
     for own in own_turns(setup.scenario):
         place = own.order.locations[values.get(own.variable, 0)].name
         yield f"  rule {own.name}: {words.network.place(own.name, place)}"
