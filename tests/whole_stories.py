@@ -125,10 +125,13 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
     kinds = {
         "avoid": "objective: avoid call",
         "respond": f"objective: if call then drop within {draw(st.integers(5, 30))}",
+        "comes": f"objective: if {draw(condition)} then sing within {draw(st.integers(5, 30))}",
+        "follows": f"objective: if call then {draw(condition)} within {draw(st.integers(5, 30))}",
         "condition": f"objective: avoid {draw(condition)}",
         "always": f"objective: always {draw(condition)}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
         "patrol": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
+        "round": f"objective: patrol a, b in order every {draw(st.integers(8, 40))} by bot1",
     }
     safety = draw(st.lists(st.sampled_from(list(kinds)), max_size=1 if small else 2, unique=True))
     event = draw(st.sampled_from(("load", "drop", "sing", "wave")))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
+from pursue_gen.language.wording import assumption_words
+from pursue_gen.replay.assumptions import newly_broken
 from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.game import Game
@@ -191,6 +193,7 @@ class _Checker:
             self._report(FAULT, "end", state, f"the mission went on after it was {before.status}")
         if state.stamp < before.stamp - EXACT:
             self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
+        before = self._with_broken(before, state)
         move = self._move(before, state)
         since, self._since = self._since, {}
         if move is not None:
@@ -208,6 +211,14 @@ class _Checker:
             self._resume(state)
         self._clocks(state)
         self._status(before, state)
+
+    def _with_broken(self, before: SystemState, state: SystemState) -> SystemState:
+        """The state before with the assumptions broken that are broken in the next one; each of them is reported."""
+        broken = newly_broken(before.values, state.values)
+        for name in broken:
+            assumption = self._game.scenario.assumptions[int(name[len("assume") :]) - 1]
+            self._report(WORLD, "assumption", state, f"an assumption is broken: {assumption_words(assumption)}")
+        return before._replace(values={**before.values, **dict.fromkeys(broken, 0)}) if broken else before
 
     def _move(self, before: SystemState, state: SystemState) -> Optional[Move]:
         """The joint move that leads from one to the other, the one that fits the clocks best."""

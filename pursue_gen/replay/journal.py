@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
+from pursue_gen.replay.assumptions import breach, overstayed, without
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_gen.tga.network import Objective
@@ -176,6 +177,8 @@ class _Walk:
                 self._event = self._agent = ""
             else:
                 move = self._next(entry.at, word)
+                if entry.call == "tick" and move is None:
+                    self._place = without(self._place, overstayed(self._moves, self._place, self._clocks(entry.at)))
                 if entry.call == "tick" or (word is not None and word.event == FAILED):
                     move = move or self._without_lost()
                 word = None if word and not word.event.startswith("_") else word
@@ -194,9 +197,12 @@ class _Walk:
         clocks = self._clocks(at)
         if word is not None and not word.event.startswith("_"):
             found = list(self._moves.of(self._place, word.event, word.agent))
+            if not found:
+                self._place, found = breach(self._moves, self._place, word.event, word.agent)
             if found:
                 return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
-        return next(self._moves.internal(self._place, self._objective), None)
+        internal = self._moves.internal(self._place, self._objective)
+        return next((move for move in internal if self._moves.is_due(move, self._place, clocks)), None)
 
     def _without_lost(self) -> Optional[Move]:
         """The end of what several did together, where the last who had not reported it is lost."""

@@ -5,11 +5,14 @@ from __future__ import annotations
 import itertools
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_gen.tga.names import is_doing, is_going
+from pursue_gen.tga.names import assumption, assumption_clock, is_assumption, is_doing, is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import SystemState
+
+EXACT = 1e-6
+"""Time units by which a moment may be missed by rounding."""
 
 Part = Tuple[str, Edge]
 """An automaton and its edge."""
@@ -54,6 +57,8 @@ class Moves:
             for edge in automaton.edges:
                 self._edges.setdefault((automaton.name, edge.source), []).append(edge)
         self._names = [automaton.name for automaton in network.automata]
+        numbers = [int(name[len("assume") :]) for name, _ in network.variables if is_assumption(name)]
+        self._assumed = {assumption(number): assumption_clock(number) for number in numbers}
 
     @staticmethod
     def word(automaton: str, edge: Edge) -> str:
@@ -128,7 +133,7 @@ class Moves:
     def untimely(self, move: Move, place: DiscreteState, clocks: Mapping[str, float]) -> Untimely:
         """How far the clocks are from the mover's guard and from the invariant of the place that it leaves."""
         name, edge = move[0]
-        bounds = (*edge.guard.clocks, *self._invariants[name, edge.source])
+        bounds = (*edge.guard.clocks, *self._bounds((name, edge.source), place))
         worst = Untimely(0.0, False)
         for bound in bounds:
             value = clocks.get(bound.clock, 0.0)
@@ -142,11 +147,28 @@ class Moves:
         """Who should have moved already, and the time units since then."""
         late: Dict[str, float] = {}
         for part in place.locations.items():
-            for bound in self._invariants.get(part, ()):
+            for bound in self._bounds(part, place):
                 over = clocks.get(bound.clock, 0.0) - bound.bound
                 if over > late.get(part[0], 0.0):
                     late[part[0]] = over
         return late
+
+    def exceeded(self, place: DiscreteState, clocks: Mapping[str, float]) -> Dict[str, float]:
+        """By how many time units each clock that bounds a stay there is past its bound; below 0: it is not."""
+        bounds = (bound for part in place.locations.items() for bound in self._bounds(part, place))
+        return {bound.clock: clocks.get(bound.clock, 0.0) - bound.bound for bound in bounds}
+
+    def is_due(self, move: Move, place: DiscreteState, clocks: Mapping[str, float]) -> bool:
+        """True unless the mover may stay where it is for some time: a deadline is missed at its end, not before."""
+        name, edge = move[0]
+        bounds = self._bounds((name, edge.source), place)
+        return all(clocks.get(bound.clock, 0.0) >= bound.bound - EXACT for bound in bounds)
+
+    def _bounds(self, part: Tuple[str, str], place: DiscreteState) -> Sequence[ClockBound]:
+        """The invariant of an automaton's location, without the bounds of assumptions that have been broken."""
+        bounds = self._invariants.get(part, ())
+        broken = {clock for variable, clock in self._assumed.items() if place.values.get(variable) == 0}
+        return [bound for bound in bounds if bound.clock not in broken] if broken else bounds
 
     def _enabled(self, name: str, place: DiscreteState) -> Iterator[Edge]:
         for edge in self._edges.get((name, place.locations.get(name, "")), ()):

@@ -1,0 +1,188 @@
+"""Recordings of simulated missions with conditions, own turns, limits and broken assumptions: no step of them is a
+fault, and the journal leads to the same states."""
+
+from __future__ import annotations
+
+import functools
+import json
+from typing import Any, Dict, List, Sequence, Tuple
+
+import pytest
+
+from pursue_gen.drawing.layout import poses
+from pursue_gen.language import parse
+from pursue_gen.replay.check import Findings, check
+from pursue_gen.replay.finding import FAULT, NOTE, WORLD
+from pursue_gen.replay.game import Game, Source, game_of
+from pursue_gen.replay.journal import Journal, read_journal, reconstruct
+from pursue_gen.replay.moves import Moves
+from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
+from pursue_gen.simulation.mission import START, Outcome, Settings, SimulatedMission
+from pursue_gen.simulation.stage import Stage, stage_of
+from pursue_gen.solving.rules import DEFAULT, Rules
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.workspace import Options
+from pursue_runtime.controller.scheduler import StartedActivity
+from pursue_runtime.state import SystemState
+from pursue_runtime.words import Word, format_word
+from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
+
+CARTS = """\
+poi "hall"
+poi "plane"
+connect hall and plane distance 2 only_if gate is_true
+event "open" at_most 1 times
+event "load" location hall duration 1 only_if no robot at plane
+event "unload" location plane
+state "gate": initially false, true_if open
+rule "bag" for each robot: load before unload
+agent "cart1" controllable mobile 1 location hall can_do load, unload
+agent "cart2" controllable mobile 1 location hall can_do load, unload, open
+objective: avoid cart1 on_way and cart2 on_way
+reach_objective: do unload
+"""
+"""Each cart unloads what it has loaded, and a gate has to be opened before one sets off."""
+
+
+@functools.lru_cache(maxsize=None)
+def made(text: str) -> Tuple[Stage, Game]:
+    """The stage of a scenario, and the game that its recordings are checked against."""
+    scenario = parse(text, "story.pur", "story")
+    stage = stage_of(scenario, solve_scenario(scenario, DEFAULT), Options())
+    return stage, game_of(Source("story", text, "story.pur", Rules()))
+
+
+class Recorded(SimulatedMission):
+    """A mission that keeps what a recorder would receive. `calls`: when others do what."""
+
+    def __init__(self, text: str, seed: int, calls: Sequence[Tuple[float, str]] = ()) -> None:
+        stage, self.game = made(text)
+        # Words that mean nothing are a fault as well: with it the judge lets assumptions be broken.
+        super().__init__(stage, Settings("still", ("junk",), until=120.0), seed, None)
+        self.states: List[SystemState] = []
+        self.words: List[RecordedWord] = []
+        self.orders: List[RobotOrder] = []
+        for at, word in calls:
+            self.events.schedule(START + at, lambda word=word: self._report_move(word))  # type: ignore[misc]
+
+    def run(self) -> Outcome:
+        self.words.append(read_word(START, "_start_", "UI"))
+        outcome = super().run()
+        end = self.events.now + 0.5
+        while (self.events.next_time() or end) < end:  # the last state is on its way to the controllers
+            self.events.step()
+        return outcome
+
+    def publish(self, state: SystemState) -> None:
+        self.states.append(state)
+        super().publish(state)
+
+    def publish_word(self, node: str, word: Word, latest: float) -> None:
+        self.words.append(read_word(self.events.now, format_word(word), node))
+        super().publish_word(node, word, latest)
+
+    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
+        pose = poses(self.game.scenario)[0].get(order.target.rpartition("_to_")[2])
+        goes = order.target.startswith("going_") and pose is not None
+        goal = (pose.x, pose.y, pose.z) if goes and pose is not None else None
+        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, "" if goes else order.trigger))
+        super().command_robot(node, order, seq, newest, again)
+
+    def _choose_move(self, state: SystemState) -> None:
+        """Others do what is in `calls`, and nothing else."""
+
+    def _report(self, agent: str, text: str) -> None:
+        self.words.append(read_word(self.events.now, text, "simulator"))
+        super()._report(agent, text)
+
+    def _report_move(self, text: str) -> None:
+        self.words.append(read_word(self.events.now, text, "UI"))
+        super()._report_move(text)
+
+    def found(self) -> Findings:
+        """What the replay says of it."""
+        plans = {} if self._plan is None else {self._plan["plan"]: self._plan}
+        return check(MissionRecord(tuple(self.states), tuple(self.words), tuple(self.orders), plans), self.game)
+
+    def journal(self) -> bytes:
+        """What the observer has written down."""
+        head = json.dumps({"format": 1, "scenario": "story", "unit": 1.0})
+        return "".join(f"{line}\n" for line in (head, *self._observer._entries)).encode()
+
+
+def kinds(findings: Findings, *levels: str) -> List[str]:
+    return [finding.kind for finding in findings.findings if finding.level in levels]
+
+
+def by_number(states: Sequence[SystemState]) -> Dict[int, Any]:
+    return {state.seq: (state.discrete(), state.event) for state in states if state.seq}
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_conditions_and_own_turns_are_steps_of_the_model(seed: int) -> None:
+    mission = Recorded(CARTS, seed)
+    assert mission.run().end == "goal"
+    found = mission.found()
+    assert kinds(found, FAULT, WORLD) == [] and found.won, found.findings
+    assert {"open", "load", "unload"} <= {step.state.event for step in found.steps}
+
+
+def test_who_unloads_without_having_loaded_is_a_fault() -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    loaded = next(state for state in mission.states if state.event == "loadDONE").agent
+    other = {"cart1": "cart2", "cart2": "cart1"}[loaded]
+    last = mission.states[-1]
+    mission.states[-1] = last._replace(agent=other)
+    assert "step" in kinds(mission.found(), FAULT)
+
+
+def test_what_is_done_while_its_condition_does_not_hold_is_a_fault() -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    opened = next(n for n, state in enumerate(mission.states) if state.event == "open")
+    closed = [state._replace(values={**state.values, "Sgate": 0}) for state in mission.states]
+    mission.states = [*mission.states[:opened], *closed[opened:]]
+    found = [finding for finding in mission.found().findings if finding.kind == "step"]
+    assert any("_hall2plane" in finding.text for finding in found), found
+
+
+@pytest.mark.parametrize(
+    ("text", "calls", "says"),
+    [
+        (CAFE.format(ONCE), [(1.5, "guest:call"), (3.0, "guest:call"), (9.0, "guest:call")], "call at most once"),
+        (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [], "visitor leaves gallery within 30 units"),
+        (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2store")], "never at store"),
+    ],
+)
+def test_a_broken_assumption_is_the_worlds_and_no_fault_of_a_node(
+    text: str, calls: Sequence[Tuple[float, str]], says: str
+) -> None:
+    mission = Recorded(text, 1, calls)
+    ended = mission.run()
+    assert not ended.problems, ended
+    found = mission.found()
+    assert kinds(found, FAULT) == [], found.findings
+    (finding,) = (finding for finding in found.findings if finding.kind == "assumption")
+    assert finding.level == WORLD and finding.text.startswith("an assumption is broken: ") and says in finding.text
+    assert set(kinds(found, WORLD)) <= {"assumption", "uncovered"} and NOTE in {f.level for f in found.findings}
+
+
+@pytest.mark.parametrize("calls", [[], [(1.5, "guest:call"), (3.0, "guest:call"), (9.0, "guest:call")]])
+def test_the_journal_leads_to_the_same_states(calls: Sequence[Tuple[float, str]]) -> None:
+    mission = Recorded(CAFE.format(ONCE), 1, calls)
+    mission.run()
+    journal = read_journal(mission.journal())
+    assert isinstance(journal, Journal) and not journal.problems
+    record = reconstruct(journal, Moves(mission.game.network), mission.game.objective)
+    assert by_number(record.states) == by_number(mission.states)
+    assert any(state.values["assume1"] == 0 for state in record.states) is bool(calls)
+
+
+def test_the_journal_knows_who_has_stayed_too_long() -> None:
+    mission = Recorded(MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), 1)
+    mission.run()
+    journal = read_journal(mission.journal())
+    assert isinstance(journal, Journal)
+    record = reconstruct(journal, Moves(mission.game.network), mission.game.objective)
+    assert by_number(record.states) == by_number(mission.states)
