@@ -57,7 +57,8 @@ def test_missions_with_random_opponents_end_well(source: str) -> None:
     """The judge takes each step for wrong that is not one of the network, and each command that is not held."""
     read = parse(source, "x.pur", "x")
     stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
-    outcomes = [simulate_mission(stage, Settings("random"), seed) for seed in range(30)]
+    settings = Settings("random", until=200.0)  # so long are missions that have no goal
+    outcomes = [simulate_mission(stage, settings, seed) for seed in range(30)]
     assert {outcome.end for outcome in outcomes} <= {GOAL, SAFE}, [outcome.reason for outcome in outcomes]
 
 
