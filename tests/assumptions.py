@@ -2,19 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-from typing import Dict
+from tests.stories import files, free_model, model, scenario, solved
 
-import yaml
-
-from pursue_gen.language import parse
-from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, solve_scenario
-from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.workspace import Options, generate
-from pursue_gen.workspace.model_file import render
-from pursue_runtime.model import Model
+__all__ = ["files", "free_model", "model", "scenario", "solved"]
 
 PLAYROOM = """\
 poi "room"
@@ -88,35 +78,3 @@ objective: cleaner never_with ben at west
 """A cleaner who keeps out of the way of two visitors; lost without an assumption."""
 
 APART = "assume: not (anna at east and ben at west)"
-
-
-def scenario(text: str) -> Scenario:
-    """The scenario of a text."""
-    return parse(text, "story.pur", "story")
-
-
-@functools.lru_cache(maxsize=None)
-def solved(text: str) -> Solution:
-    """Its strategy in the default game. Raises PursueError where it is lost."""
-    return solve_scenario(scenario(text), Rules())
-
-
-@functools.lru_cache(maxsize=None)
-def files(text: str) -> Dict[str, bytes]:
-    """Its workspace."""
-    won = solved(text)
-    return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
-
-
-def model(text: str) -> Model:
-    """Its model, as the nodes have it."""
-    return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))
-
-
-@functools.lru_cache(maxsize=None)
-def free_model(text: str) -> Model:
-    """Its model with ends that are reported, whether or not it can be won."""
-    story = scenario(text)
-    rules = Rules()
-    made = render(played(translate(story), rules), scenario_objective(story), story, rules.reaction, "test")
-    return Model(yaml.safe_load(made))

@@ -2,17 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-from typing import Dict
+from tests.stories import files, model, scenario, solved
 
-import yaml
-
-from pursue_gen.language import parse
-from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import Solution, solve_scenario
-from pursue_gen.workspace import Options, generate
-from pursue_runtime.model import Model
+__all__ = ["files", "model", "scenario", "solved"]
 
 HOTEL = """\
 poi "lobby"
@@ -53,25 +45,3 @@ reach_objective: do load
 """
 """An event without a place, with a robot and an uncontrollable agent as partners."""
 
-
-def scenario(text: str) -> Scenario:
-    """The scenario of a text."""
-    return parse(text, "hotel.pur", "hotel")
-
-
-@functools.lru_cache(maxsize=None)
-def solved(text: str) -> Solution:
-    """Its strategy in the default game."""
-    return solve_scenario(scenario(text), Rules())
-
-
-@functools.lru_cache(maxsize=None)
-def files(text: str) -> Dict[str, bytes]:
-    """Its workspace."""
-    won = solved(text)
-    return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
-
-
-def model(text: str) -> Model:
-    """Its model, as the nodes have it."""
-    return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))

@@ -12,28 +12,18 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.simulation.mission import GOAL, HELD, SAFE, Settings, simulate_mission
 from pursue_gen.simulation.stage import stage_of
-from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options
 from pursue_runtime.state import STOPPED
+from tests.solving.verdicts import is_won
 from tests.together import CARRY, HOTEL, TWO_PORTERS, scenario, solved
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 FILM = (SCENARIOS / "museum" / "film.pur").read_text(encoding="utf-8")
 RIDE = (SCENARIOS / "hotel" / "lift_ride.pur").read_text(encoding="utf-8")
 LONGER = RIDE.replace("within 8", "within 12")
-
-
-def is_won(text: str, engine: str) -> bool:
-    read = parse(text, "x.pur", "x")
-    try:
-        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
-    except PursueError as problem:
-        assert problem.exit_status == 4, problem
-        return False
-    return True
 
 
 @pytest.mark.parametrize("engine", ["native", "python"])

@@ -1,0 +1,49 @@
+"""What tests need of the text of a small scenario: strategy, workspace, model; each made once for each text."""
+
+from __future__ import annotations
+
+import functools
+from typing import Dict
+
+import yaml
+
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.solution import Solution, solve_scenario
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.workspace import Options, generate
+from pursue_gen.workspace.model_file import render
+from pursue_runtime.model import Model
+
+
+def scenario(text: str) -> Scenario:
+    """The scenario of a text."""
+    return parse(text, "story.pur", "story")
+
+
+@functools.lru_cache(maxsize=None)
+def solved(text: str) -> Solution:
+    """Its strategy in the default game. Raises PursueError where it is lost."""
+    return solve_scenario(scenario(text), Rules())
+
+
+@functools.lru_cache(maxsize=None)
+def files(text: str) -> Dict[str, bytes]:
+    """Its workspace."""
+    won = solved(text)
+    return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
+
+
+def model(text: str) -> Model:
+    """Its model, as the nodes have it."""
+    return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))
+
+
+@functools.lru_cache(maxsize=None)
+def free_model(text: str) -> Model:
+    """Its model with ends that are reported, whether or not it can be won."""
+    story = scenario(text)
+    rules = Rules()
+    made = render(played(translate(story), rules), scenario_objective(story), story, rules.reaction, "test")
+    return Model(yaml.safe_load(made))
