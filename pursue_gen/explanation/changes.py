@@ -25,6 +25,7 @@ from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
 from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
@@ -184,7 +185,7 @@ def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises PursueError (status 5: not decided)."""
     scenario, rules = variant
     network = played(translate(scenario), rules)
-    return budget.verdict(network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
+    return verdict_of(budget, network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
 
 
 # What can be changed --------------------------------------------------------------------------------------------------

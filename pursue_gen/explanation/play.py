@@ -15,6 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import (
     Game,
@@ -130,7 +131,7 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, budget: 
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)
-            if group and not budget.verdict(fewer, objective, reaction).won:
+            if group and not verdict_of(budget, fewer, objective, reaction).won:
                 network = fewer
     return network
 

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.numbers import Number
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import State
 from pursue_gen.synthesis.limits import NO_LIMITS
@@ -64,7 +65,7 @@ class PositionSolver:
                 clocks = (*clocks, elapsed)
             scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
-            self._known[key] = not self.budget.verdict(begun, self._objective, self._reaction * scale).won
+            self._known[key] = not verdict_of(self.budget, begun, self._objective, self._reaction * scale).won
         return self._known[key]
 
 

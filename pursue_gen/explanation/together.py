@@ -9,6 +9,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Reach, Scenario, StatedObjective
 from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.tga import scenario_objective, translate
 
@@ -66,7 +67,7 @@ def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, bu
     fewer = replace(scenario, safety=safety, reach=reach)
     try:
         network = played(translate(fewer), rules)
-        return budget.verdict(network, scenario_objective(fewer), rules.reaction, _SHARE).won
+        return verdict_of(budget, network, scenario_objective(fewer), rules.reaction, _SHARE).won
     except PursueError as problem:
         if problem.exit_status != _LIMIT_HIT:
             raise

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
@@ -16,15 +18,21 @@ from pursue_gen.replanning.start import network_from, passed_bounds, start_clock
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
+from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, careful_memory
-from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
+from pursue_gen.tga.pauses import pauses
 
 _AT_A_LIMIT = 5
 """The exit status of errors at a limit."""
+
+_LITTLE = 100_000_000
+"""The work of a search that is not for the game as it is alone: some five seconds."""
 
 
 def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
@@ -48,8 +56,12 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     if reason:
         return _lost(reason)
     start = time.monotonic()
+    options = SolveOptions(limits)
     try:
-        verdict = solve(network, objective, request.rules.reaction, limits=limits)
+        free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
+        if free is not None:
+            return _won(free.strategy, network, request)
+        verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
         if verdict.strategy is None:
             return _lost(_cannot_be_met(game, request))
         left = SolveOptions(limits.since(start))
@@ -62,6 +74,18 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
             return _lost(f"the plan that was found is not proven: {problem}")
         return _lost(f"no plan was found{_at_limit(limits.since(start)) or f': {problem.diagnostics[0].message}'}")
     return _won(strategy, network, request)
+
+
+def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:
+    """The verdict; where agents rest between calls, first with so much work in the ways that may be less."""
+    start = time.monotonic()
+    if pauses(network):
+        try:
+            return verdict_of(Budget(replace(limits, work=_LITTLE)), network, objective, reaction)
+        except PursueError as problem:
+            if problem.exit_status != _AT_A_LIMIT:
+                raise
+    return solve(network, objective, reaction, limits=limits.since(start))
 
 
 def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, Any]:

@@ -16,6 +16,7 @@ from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
 from pursue_gen.language.wording import patrol_text
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.tga import scenario_objective, translate
 
@@ -107,7 +108,8 @@ def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Option
     """Whether that period can be promised; None: not decided within the budget."""
     tried = with_period(scenario, every)
     try:
-        return budget.verdict(played(translate(tried), rules), scenario_objective(tried), rules.reaction, _SHARE).won
+        network = played(translate(tried), rules)
+        return verdict_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE).won
     except PursueError as problem:
         if problem.exit_status != _LIMIT_HIT:
             raise

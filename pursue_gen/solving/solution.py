@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
@@ -17,18 +17,23 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.without_pauses import verdict_with, won_without_pauses
+from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
-from pursue_gen.synthesis.solve import Stats, solve
+from pursue_gen.synthesis.solve import Stats, Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.pauses import pauses
 
 _CANNOT_BE_MET = "SYN021"
 
 _MANY = 100
 """A strategy with more blocks than this is compared with one in stages."""
+
+_EASY = 100_000
+"""With so little work a game is easy: then agents who rest between calls keep their pauses. Else strategies that know
+them take long to prove, too."""
 
 _MORE = 8
 """So many times as much work may be spent on an environment that takes no pauses, before the game in one piece."""
@@ -81,11 +86,12 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     verdict = None
     in_parts = not options.whole and not options.limits.work
     if in_parts:
-        work = little_work(game)
-        verdict = verdict_with(game, objective, rules.reaction, work, options)
-        some = None if verdict else _won_in_parts(game, objective, rules.reaction, work, options.since(start))
-        if some is not None:
-            return Solution(game, objective, some.strategy, rules.reaction, some.stats, rules=rules)
+        known = _with_little_work(game, objective, rules.reaction, options)
+        if isinstance(known, Found):
+            return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
+        verdict = known
+    if verdict is None and in_parts and lost_to_few_calls(game, objective, rules.reaction, options.since(start)):
+        raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     if verdict is None:
         how = options.engine, options.since(start).in_one_piece, options.progress
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
@@ -112,13 +118,21 @@ def _smaller(won: Solution, options: SolveOptions) -> Solution:
     return smaller if takes is not None and (took is None or takes <= _SLOWER * took) else won
 
 
-def _won_in_parts(
-    game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions
-) -> Optional[Found]:
-    """A proven strategy that leaves something out: clocks of the environment, or agents; None where none is found."""
-    start = time.monotonic()
-    found = won_without_pauses(game, objective, reaction, work, options)
-    found = found or won_by_some(game, objective, reaction, options.since(start))
+def _with_little_work(
+    game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Union[Verdict, Found, None]:
+    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment; None where
+    little work finds neither (see `crowds` and `without_pauses`)."""
+    start, work, rests = time.monotonic(), little_work(game), bool(pauses(game))
+    verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests else work, options)
+    if verdict is None and rests:
+        found = won_without_pauses(game, objective, reaction, work, options.since(start))
+        if found is not None:
+            return found
+        verdict = verdict_with(game, objective, reaction, work, options.since(start))
+    if verdict is not None:
+        return verdict
+    found = won_by_some(game, objective, reaction, options.since(start))
     return found or won_without_pauses(game, objective, reaction, _MORE * work, options.since(start))
 
 

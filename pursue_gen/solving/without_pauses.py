@@ -2,7 +2,8 @@
 
 Whoever may call again a time unit after his last call has a clock that only keeps him from calling (`tga.pauses`). A
 strategy may win without relying on it: it is solved and proven for agents that call as often as they like. A call that
-changes nothing then is no move, and makes no command stale. Where that does not win, nothing is known.
+changes nothing then is no move, and makes no command stale. Where that does not win, nothing is known. The other way
+round, what the environment wins with a single call of each agent is lost.
 """
 
 from __future__ import annotations
@@ -17,12 +18,19 @@ from pursue_gen.proof.checker import LIMIT
 from pursue_gen.solving.crowds import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.pauses import pauses
+from pursue_gen.tga.pauses import acting_at_most, pauses
 
 _NOT_PROVEN, _LIMIT_HIT = 4, 5
 """The exit statuses of strategies that do not win, and of errors at a limit."""
+
+_FEW = 40_000_000
+"""The work that is spent on whether few calls are enough for the environment, a second or two."""
+
+_FIRST, _PART = 0.02, 0.25
+"""The parts of a budget for the game as it is, before others are tried, and for each of these."""
 
 
 def verdict_with(
@@ -65,3 +73,30 @@ def won_without_pauses(
             raise
         return None
     return Found(proven, verdict.stats)
+
+
+def lost_to_few_calls(game: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> bool:
+    """True if the environment wins already where each agent that rests calls once at most; False: nothing is known."""
+    if not pauses(game):
+        return False
+    verdict = verdict_with(acting_at_most(game, 1), objective, reaction, _FEW, options)
+    return verdict is not None and not verdict.won
+
+
+def verdict_of(
+    budget: Budget, game: Network, objective: Objective, reaction: Fraction, share: float = 1.0
+) -> Verdict:
+    """The verdict of `budget.verdict`; where agents rest between calls, of a game without rests, or with few calls,
+    where that decides it sooner. Raises PursueError (exit status 5) where that share of what is left is too little."""
+    if pauses(game):
+        few = acting_at_most(game, 1)
+        for network, part, free in ((game, _FIRST, False), (game, _PART, True), (few, _PART, False)):
+            try:
+                verdict = budget.verdict(network, objective, reaction, share * part, without_pauses=free)
+            except PursueError as problem:
+                if problem.exit_status != _LIMIT_HIT:
+                    raise
+                continue
+            if (network is game and not free) or verdict.won is free:
+                return verdict
+    return budget.verdict(game, objective, reaction, share)

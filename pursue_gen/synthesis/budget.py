@@ -54,7 +54,13 @@ class Budget:
         return replace(self._limits, seconds=self._limits.since(self._start).left * share, spent=0.0, work=work)
 
     def verdict(
-        self, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0, soonest: bool = False
+        self,
+        network: Network,
+        objective: Objective,
+        reaction: Fraction,
+        share: float = 1.0,
+        soonest: bool = False,
+        without_pauses: bool = False,
     ) -> Verdict:
         """The verdict of `solve`. Raises PursueError (exit status 5) where that share of what is left is too little."""
         limits = self.part(share)
@@ -62,7 +68,7 @@ class Budget:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
         self._spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
         try:
-            how = self._engine, limits, self._progress, self._games_whole, soonest
+            how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses
             verdict = solve(network, objective, reaction, *how)
         except PursueError as problem:
             if problem.exit_status == _LIMIT_HIT:

@@ -9,9 +9,9 @@ clocks' values into slices, one for each call that may come before.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Collection, Tuple
+from typing import AbstractSet, Collection, List, Tuple
 
-from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.network import Automaton, Edge, Location, Network
 from pursue_gen.tga.part import start_of
 
 
@@ -57,3 +57,29 @@ def _without(edge: Edge, clocks: AbstractSet[str]) -> Edge:
     tests = tuple(bound for bound in edge.guard.clocks if bound.clock not in clocks)
     resets = tuple(clock for clock in edge.resets if clock not in clocks)
     return replace(edge, guard=replace(edge.guard, clocks=tests), resets=resets)
+
+
+def acting_at_most(network: Network, times: int) -> Network:
+    """The network in which each agent that rests (see `pauses`) does so little: at most so many of the moves for which
+    it has to rest. The environment has fewer moves, none of which it is ever obliged to make."""
+    clocks = frozenset(pauses(network))
+    return replace(network, automata=tuple(_counting(automaton, clocks, times) for automaton in network.automata))
+
+
+def _counting(automaton: Automaton, clocks: AbstractSet[str], times: int) -> Automaton:
+    """The automaton with a copy of each location for each number of such moves that were made."""
+    if all(bound.clock not in clocks for edge in automaton.edges for bound in edge.guard.clocks):
+        return automaton
+
+    def after(name: str, count: int) -> str:
+        return f"{name} {count}" if count else name
+
+    locations: List[Location] = []
+    edges: List[Edge] = []
+    for count in range(times + 1):
+        locations += [replace(location, name=after(location.name, count)) for location in automaton.locations]
+        for edge in automaton.edges:
+            more = count + any(bound.clock in clocks for bound in edge.guard.clocks)
+            if more <= times:
+                edges.append(replace(edge, source=after(edge.source, count), target=after(edge.target, more)))
+    return replace(automaton, locations=tuple(locations), edges=tuple(edges))

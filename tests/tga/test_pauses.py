@@ -20,7 +20,7 @@ from pursue_gen.tga.network import (
     Sync,
 )
 from pursue_gen.tga.part import clocks_of
-from pursue_gen.tga.pauses import pauses, without_clocks
+from pursue_gen.tga.pauses import acting_at_most, pauses, without_clocks
 
 STORY = """
 poi "desk"
@@ -100,3 +100,19 @@ def test_what_is_known_of_the_others_at_the_start_stays_known() -> None:
 def test_a_network_without_clocks_to_leave_out_is_itself() -> None:
     same = network()
     assert without_clocks(same, ()) is same
+
+
+def test_with_few_calls_every_location_knows_how_many_there_were() -> None:
+    going = Edge("here", "there", resets=("x",), controllable=False)
+    less = acting_at_most(network(going), 1).automata[0]
+    assert [(location.name, location.invariant) for location in less.locations] == [
+        ("here", ()), ("there", PLACES[1].invariant), ("here 1", ()), ("there 1", PLACES[1].invariant)
+    ]  # fmt: skip
+    assert [(edge.source, edge.target, edge.sync) for edge in less.edges] == [
+        ("here", "here 1", CALL.sync), ("here", "there", None), ("here 1", "there 1", None)
+    ]  # fmt: skip
+
+
+def test_who_needs_no_rest_acts_as_before() -> None:
+    busy = network(Edge("here", "here", Guard((ClockBound("y", ">", 1),)), controllable=True))
+    assert acting_at_most(busy, 1).automata == busy.automata

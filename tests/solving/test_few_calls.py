@@ -1,0 +1,48 @@
+"""What the environment wins with a single call of each agent is lost, and sooner seen to be."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.solving.options import DEFAULT
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_of
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.pauses import acting_at_most
+from tests.proof.test_checker_random import OBJECTIVES
+from tests.proof.test_left_out_clocks import networks
+from tests.solving.test_callers import HOTEL
+
+LITTLE = Limits(work=8_000_000)
+SOON = HOTEL.replace("callOne then serveOne within 20", "callOne then serveOne within 3")
+
+
+@pytest.mark.parametrize(("text", "won"), [(HOTEL, True), (SOON, False)])
+def test_both_verdicts_take_little_work(text: str, won: bool) -> None:
+    scenario = parse(text, "hotel.pur", "hotel")
+    game, objective, rules = played(translate(scenario), Rules()), scenario_objective(scenario), Rules()
+    with pytest.raises(PursueError):
+        solve(game, objective, rules.reaction, limits=Limits(work=4_000_000))
+    assert verdict_of(Budget(Limits(work=16_000_000)), game, objective, rules.reaction).won is won
+    assert lost_to_few_calls(game, objective, rules.reaction, DEFAULT) is not won
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(networks(), OBJECTIVES, st.sampled_from((Fraction(0), Fraction(1, 2))), st.integers(0, 2))
+def test_what_is_lost_to_few_calls_is_lost(
+    network: Network, objective: Objective, reaction: Fraction, times: int
+) -> None:
+    few = solve(acting_at_most(network, times), objective, reaction, limits=LITTLE)
+    exact = solve(network, objective, reaction, limits=LITTLE)
+    event("both" if few.won is exact.won else "few calls are not enough")
+    assert few.won or not exact.won
