@@ -35,9 +35,6 @@ _EASY = 100_000
 """With so little work a game is easy: then agents who rest between calls keep their pauses. Else strategies that know
 them take long to prove, too."""
 
-_MORE = 8
-"""So many times as much work may be spent on an environment that takes no pauses, before the game in one piece."""
-
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
 
@@ -132,8 +129,7 @@ def _with_little_work(
         verdict = verdict_with(game, objective, reaction, work, options.since(start))
     if verdict is not None:
         return verdict
-    found = won_by_some(game, objective, reaction, options.since(start))
-    return found or won_without_pauses(game, objective, reaction, _MORE * work, options.since(start))
+    return won_by_some(game, objective, reaction, options.since(start))
 
 
 def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:

@@ -26,8 +26,8 @@ from pursue_gen.tga.pauses import acting_at_most, pauses
 _NOT_PROVEN, _LIMIT_HIT = 4, 5
 """The exit statuses of strategies that do not win, and of errors at a limit."""
 
-_FEW = 40_000_000
-"""The work that is spent on whether few calls are enough for the environment, a second or two."""
+_FEW = 30_000_000
+"""The work that is spent on whether few calls are enough for the environment, about a second."""
 
 _FIRST, _PART = 0.02, 0.25
 """The parts of a budget for the game as it is, before others are tried, and for each of these."""

@@ -1,4 +1,4 @@
-"""A new plan where guests may call at any time: it leaves out the same clocks as the first one, and is found as soon."""
+"""A new plan where guests may call at any time: it leaves out the same clocks as the first one, and is found soon."""
 
 from __future__ import annotations
 
