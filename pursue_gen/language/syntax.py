@@ -79,13 +79,17 @@ def grammar() -> Lark:
 def _kept_tables() -> Optional[str]:
     """The file in which Lark keeps the parser's tables between runs, as making them takes longer than most texts do.
 
-    They are made anew where they are those of another grammar, or cannot be read or written. None: no such file.
+    They are made anew where they are those of another grammar, or cannot be read or written. None where there is no
+    folder that only this user writes to: Lark's file may make Python run anything.
     """
     cache = os.environ.get("XDG_CACHE_HOME", "")
     folder = (Path(cache) if os.path.isabs(cache) else Path(os.path.expanduser("~")) / ".cache") / "pursue"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        known = folder.stat()
     except OSError:
+        return None
+    if known.st_uid != os.getuid() or known.st_mode & 0o022:
         return None
     return str(folder / f"grammar_{sys.version_info[0]}.{sys.version_info[1]}")
 
