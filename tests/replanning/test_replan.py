@@ -225,3 +225,13 @@ def test_with_a_limit_on_states_neither_time_nor_memory_of_the_machine_counts(mo
     assert replan(request, states=12_000)["won"]
     assert replan(request, states=10)["why"] == "no plan was found within 10 states"
     assert not replan(request)["won"]
+
+
+@pytest.mark.parametrize(("since", "in_time"), [(2.2, True), (2.4, False)])
+def test_plans_know_the_decimals_of_a_scenario(since: float, in_time: bool) -> None:
+    """The porter is a time unit on its way, and the parcel is due 13.6 after the call."""
+    request = beginning("hotel/parcel", ahead=0.0)
+    request["locations"].update(porter="going_desk_to_door2", obj="atRisk", order="order1s", call_count="call_count_1")
+    request["values"].update(Porder=2, Pporter=-12, Pcall_count=1)
+    request["clocks"].update(Cporter=1.0, Cguest=since, Cobj=since)
+    assert replan(request)["won"] == in_time

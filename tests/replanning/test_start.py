@@ -16,6 +16,7 @@ from pursue_gen.synthesis.game import compile_game, start_zone
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, Location, Network, is_end
+from pursue_gen.tga.scale import common_denominator, scaled
 from tests.replanning.plays import asked, beginning, solved, walk
 from tests.synthesis.test_start import GOAL
 
@@ -63,6 +64,15 @@ def test_all_that_is_alike_is_in_the_zone(point, grid: int) -> None:
 def network_at(**changed) -> Network:
     _, won = solved("thesis/scenario_1")
     return network_from(won.network, read_request(beginning("thesis/scenario_1", **changed)))
+
+
+def test_the_grid_has_the_decimals_of_the_scenario() -> None:
+    _, won = solved("thesis/scenario_1")
+    request = read_request(beginning("thesis/scenario_1", clocks=dict.fromkeys(won.network.clocks, 0.26)))
+    for network, parts in ((won.network, 10), (scaled(won.network, Fraction(1, 4)), 20)):
+        found = network_from(network, request)
+        grid = common_denominator(bound.bound for bound in found.start)
+        assert grid == parts
 
 
 def place(network: Network, agent: str) -> Location:
