@@ -14,7 +14,10 @@ _SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENC
 
 @dataclass(frozen=True)
 class Symbol:
-    """A statement in the outline: text[start:end], of which text[name_start:name_end] names it."""
+    """A statement in the outline: text[start:end], of which text[name_start:name_end] names it.
+
+    `detail`: what it declares, and its label.
+    """
 
     name: str
     detail: str
@@ -45,6 +48,9 @@ def symbols(document: Document) -> Tuple[Symbol, ...]:
         if token is not None and len(token) > 2:
             start = (token.start_pos or 0) + 1
             name, detail = str(token)[1:-1], KEYWORDS[part.kind]
+            behind = part.tokens[2:4]
+            if [one.type for one in behind] == ["LABEL", "NAME"]:
+                detail += f" {behind[1]}"
             found.append(Symbol(name, detail, part.kind, part.start, part.end, start, start + len(token) - 2))
         else:
             name, end = words[:80], part.start + len(part.tokens[0])

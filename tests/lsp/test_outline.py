@@ -19,6 +19,11 @@ def test_every_statement_is_in_the_outline() -> None:
     assert len(found) == SMALL.count("\n")
 
 
+def test_a_label_is_in_the_outline() -> None:
+    found = symbols(Document.of('poi "door2" label "security door"\npoi "a" label\n', "x.pur"))
+    assert [(s.name, s.detail) for s in found] == [("door2", 'poi "security door"'), ("a", "poi")]
+
+
 @given(st.sampled_from(sorted(SCENARIOS)))
 def test_a_symbol_lies_in_its_statement(name: str) -> None:
     for symbol in symbols(Document.of(SCENARIOS[name], name)):
