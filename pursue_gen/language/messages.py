@@ -170,10 +170,13 @@ def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "STRAY":
         return _stray(chunk, index)
     if token.type == "WORD" and "NAME" in expected:
-        name = shown(name_meant(chunk, index)[0])
+        meant, last = name_meant(chunk, index)
+        name = shown(meant)
         if chunk[index - 1].type == "LABEL":
             return f'put the label in quotes: label "{name}"'
-        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{name}"'
+        words = [str(word) for word in chunk[index:] if word.end_pos is None or word.end_pos <= (last.end_pos or 0)]
+        label = f' label "{shown(" ".join(words))}"' if len(words) > 1 else ""
+        return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{name}"{label}'
     if token.type == "NAME" and "WORD" in expected:
         name = proposal(text.strip('"'), RESERVED)
         return f"quotes stand only where a name is declared: write {shown(name)} without them"

@@ -17,6 +17,7 @@ SLIPS = [
     ('poi "a" "b"', "PML010", 9, "expected `label` or the end of the statement", "the form is"),
     ('pois "a"', "PML011", 1, "expected a statement, found `pois`", "did you mean poi?"),
     ('Poi "a"', "PML011", 1, "expected a statement", "did you mean poi?"),
+    ("poi security door", "PML010", 5, "found `security`", 'poi "security_door" label "security door"'),
     ('poi "a" label', "PML010", 14, "expected a name in quotes after `label`", "the form is"),
     ('poi "a" label b', "PML010", 15, "expected a name in quotes after `label`, found `b`", 'label "b"'),
     ('connect a and b distance 3 label "c"', "PML010", 28, "found `label`", "the form is"),
