@@ -10,6 +10,7 @@ from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumption_checks import MOST_TIMES as MOST_ASSUMED
 from pursue_gen.language.assumption_checks import SHORTEST_STAY
 from pursue_gen.language.checks import MOST_TIMES
+from pursue_gen.language.numbers import exact, read_number
 from pursue_gen.language.scenario import Avoid
 from pursue_gen.lsp.document import Document, Edit
 from pursue_gen.lsp.edits import bare, cut, first, pair, written
@@ -24,11 +25,13 @@ def later_end(document: Document, finding: Diagnostic, part: Optional[Statement]
     """A window whose first number is the smaller one."""
     tokens = part.tokens if part is not None else ()
     for low, to, high in zip(tokens, tokens[1:], tokens[2:]):
-        if (low.type, to.type, high.type) == ("NUMBER", "TO", "NUMBER") and low.isdigit() and high.isdigit():
-            numbers = int(high), max(int(low), int(high) + 1)
-            edits = written(low, str(numbers[0])), written(high, str(numbers[1]))
-            yield f"Write {numbers[0]} to {numbers[1]}", edits
-            return
+        if (low.type, to.type, high.type) != ("NUMBER", "TO", "NUMBER"):
+            continue
+        earliest, latest = read_number(high), read_number(low)
+        if earliest is not None and latest is not None:
+            latest = exact(earliest + 1) if earliest == latest else latest
+            yield f"Write {earliest} to {latest}", (written(low, str(earliest)), written(high, str(latest)))
+        return
     takes = pair(part, "TAKES")
     if takes is not None:
         yield "Write takes 1", (written(takes[1], "1"),)
@@ -108,8 +111,9 @@ def done_or_avoided(document: Document, finding: Diagnostic, part: Optional[Stat
 def later_deadline(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
     """A deadline that ends after what is to be done begins to count."""
     after, within = pair(part, "AFTER"), pair(part, "WITHIN")
-    if after is not None and within is not None and after[1].isdigit():
-        number = int(after[1]) + 1
+    start = read_number(after[1]) if after is not None else None
+    if start is not None and within is not None:
+        number = exact(start + 1)
         yield f"Write within {number}", (written(within[1], str(number)),)
 
 

@@ -86,6 +86,8 @@ MISTAKES = {
     "PML159": changed('"work" location', '"work" together location'),
     "PML159 without a duration": changed('"hand" collaborative', '"hand" collaborative together'),
     "PML200": changed("duration 3", "duration 9 to 4"),
+    "PML200 decimals": changed("duration 3", "duration 4.5 to 2"),
+    "PML223 decimals": changed("do hand after 4", "do hand after 4.5 within 3"),
     "PML200 no width": changed("duration 3", "duration 4 to 4"),
     "PML200 a way": SMALL + "travel bot from a to b takes 7 to 5\n",
     "PML200 no time": SMALL + "travel bot from a to b takes 0\n",
