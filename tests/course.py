@@ -1,12 +1,13 @@
 """What the statements of a scenario permit, said without its network: for comparison with what the network permits.
 
-Kept here are where agents are, what they are busy with, states, the rest of each rule's round, and counts. Rules are
-expressions of which each symbol takes away the first part (a derivative), not automata.
+Kept here are where agents are, what they are busy with, states, the rest of each rule's round, counts, and levels of
+batteries. Rules are expressions of which each symbol takes away the first part (a derivative), not automata.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import ceil, floor
 from typing import Dict, List, Optional, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
@@ -78,6 +79,8 @@ class Course:
         self.agents = {agent.name: agent for agent in self.scenario.agents}
         self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
+        self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
+        self.levels = {name: battery.capacity for name, battery in self.batteries.items()}
 
     @property
     def locations(self) -> Dict[str, str]:
@@ -98,6 +101,8 @@ class Course:
         if any((each.agent.name, each.place.name) == (agent, b) for each in never):
             return False
         moves = self.agents[agent].mobile is not None
+        if moves and self.levels.get(agent, 0) < self._used_on_way(agent, a, b):
+            return False
         return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
 
     def may_begin(self, agent: str, name: str) -> bool:
@@ -108,6 +113,8 @@ class Course:
         if event.location is not None and event.location.name != stay.place:
             return False
         if event.collaborative and not self.partners(agent, event):
+            return False
+        if self.levels.get(agent, 0) < self._used_at_work(agent, event):
             return False
         if event.is_shared and self._goes_on(name):
             return False
@@ -130,6 +137,23 @@ class Course:
         if stay.to:
             return [name for name, other in others if (other.place, other.to) == (stay.to, stay.place)]
         return [name for name, other in others if other.is_idle and other.place == stay.place]
+
+    def _used_on_way(self, agent: str, a: str, b: str) -> int:
+        battery = self.batteries.get(agent)
+        ways = [{way.a, way.b} for way in self.scenario.connections]
+        if battery is None or {a, b} not in ways:
+            return 0
+        return ceil(battery.uses * self._window(self.agents[agent], Stay(a, 0.0, to=b))[1])
+
+    def _used_at_work(self, agent: str, event: Event) -> int:
+        battery = self.batteries.get(agent)
+        if battery is None or event.duration is None or self._is_docked(agent):
+            return 0
+        return ceil(battery.uses * (event.duration + 1 if event.latest is None else event.latest))
+
+    def _is_docked(self, agent: str) -> bool:
+        dock = self.batteries[agent].dock
+        return dock is not None and self.stays[agent].place == dock.name
 
     def _goes_on(self, event: str) -> bool:
         several = sum(any(ref.name == event for ref in agent.can_do) for agent in self.scenario.agents) > 1
@@ -159,6 +183,8 @@ class Course:
         for each in self.scenario.assumptions:
             if isinstance(each, Leaves) and (each.agent.name, each.place.name) == (agent, a):
                 assert self.now - stay.came <= each.time + 1e-9, "it is assumed to leave sooner"
+        if agent in self.levels:
+            self.levels[agent] -= self._used_on_way(agent, a, b)
         self.stays[agent] = Stay(a, self.now, to=b)
 
     def take(self, agent: str, word: str, target: str) -> None:
@@ -204,6 +230,8 @@ class Course:
         if event.duration is None:
             stay.rested = stay.rested if stay.to else self.now
             return
+        if agent in self.levels:
+            self.levels[agent] -= self._used_at_work(agent, event)
         for who in (agent, *(partners if event.is_shared else ())):
             here = self.stays[who]
             self.stays[who] = Stay(here.place, self.now, event=name, doer=who == agent, came=here.came)
@@ -216,6 +244,9 @@ class Course:
         high = low + 1 if event.latest is None else event.latest
         assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
         self._advance(agent, event.name, f"{event.name}DONE")
+        if agent in self.levels and self._is_docked(agent):
+            battery = self.batteries[agent]
+            self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
         beginning, _ = self.done[agent, event.name][-1]
         self.done[agent, event.name][-1] = (beginning, self.now)
         for who, other in list(self.stays.items()):

@@ -79,6 +79,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     lines += _travels(draw, names[:-1], places)
     lines += _assumptions(draw, place)
     lines += _objectives(draw, small, condition, place)
+    lines += _batteries(draw, place)
     text = "\n".join([*lines, ""])
     try:
         scenario = parse(text, "story.pur", "story")
@@ -118,6 +119,15 @@ def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
         "never": f"assume: guest never at {place()}",  # type: ignore[operator]
     }
     return [drawn[kind] for kind in draw(st.lists(st.sampled_from(list(drawn)), max_size=2, unique=True))]
+
+
+def _batteries(draw: st.DrawFn, place: object) -> List[str]:
+    """Of the first robot, which takes part in nothing that others begin, and can do something at every place."""
+    if draw(st.integers(0, 2)):
+        return []
+    capacity, rate = draw(st.sampled_from((8, 12, 20, 30))), draw(st.integers(0, 3))
+    recharges = f" recharges {rate} per unit at {place()}" if rate else ""  # type: ignore[operator]
+    return [f"battery bot1 capacity {capacity} uses {draw(st.integers(1, 2))} per unit{recharges}"]
 
 
 def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], place: object) -> List[str]:

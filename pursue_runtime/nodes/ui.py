@@ -139,7 +139,7 @@ class UI:
             elif state.status != WAITING:
                 if self.phase != RUNNING:
                     self.phase = RUNNING
-                    self.terminal.line(f"{self.mission.elapsed(rospy.get_time()):8.1f}  the mission runs", BOLD)
+                    self.terminal.line(self.mission.first_line(rospy.get_time()), BOLD)
                 self.act()
                 self.offer()
             self.show()

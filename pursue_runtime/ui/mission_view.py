@@ -13,7 +13,7 @@ from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.ui.phrases import phrase, sentence, where
+from pursue_runtime.ui.phrases import not_promised, phrase, sentence, where
 from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
@@ -215,6 +215,10 @@ class MissionView:
         if state.status == LOST:
             return 1, f"The mission is lost, {after}: {state.reason or 'the safety objective is broken'}."
         return 1, f"The mission was stopped, {after}: {state.reason or '_stop_ was published'}."
+
+    def first_line(self, now: float) -> str:
+        """Return what to say when the mission runs, with what it does not promise."""
+        return f"{self.elapsed(now):8.1f}  the mission runs{not_promised(self._model)}"
 
     def progress(self, now: float) -> str:
         """Return a line with the location of each agent."""

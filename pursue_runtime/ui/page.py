@@ -15,7 +15,7 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission_view import possible_words, tasks
-from pursue_runtime.ui.phrases import begin_of, phrase, sentence
+from pursue_runtime.ui.phrases import begin_of, not_promised, phrase, sentence
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.words import START
 
@@ -148,7 +148,7 @@ class Page:
         last, self._last = self._last, state
         fresh: List[Dict[str, Any]] = []
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
-            fresh.append(self.note(at, "the mission starts"))
+            fresh.append(self.note(at, f"the mission starts{not_promised(self._model)}"))
         if state.seq and state.event not in ("", START) and (last is None or last.seq != state.seq):
             fresh.append(self.note(at, sentence(self._model, state, last), self._kind(state.agent), state.event))
         for name in state.lost if last is None else sorted(set(state.lost) - set(last.lost)):

@@ -39,7 +39,7 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     """What has happened in a state; `last`: the state before it, if that is known."""
     automaton = next((automaton for automaton in model.automata if automaton.name == state.agent), None)
     if automaton is None:
-        return _starts(model) if state.event == START else state.event
+        return "the mission starts" if state.event == START else state.event
     here = state.locations.get(state.agent, "")
     if automaton.kind not in ACTING:
         goals = dict(model.goal)
@@ -53,9 +53,9 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     return f"{model.shown(state.agent)} {does}"
 
 
-def _starts(model: Model) -> str:
-    """The first sentence of a mission, with what it does not promise."""
-    return f"the mission starts{'; it does not promise: ' if model.given_up else ''}{', '.join(model.given_up)}"
+def not_promised(model: Model) -> str:
+    """What to say of optional objectives where a mission begins: those that it does not promise; "" for none."""
+    return f"; it does not promise: {', '.join(model.given_up)}" if model.given_up else ""
 
 
 def where(model: Model, automaton: Automaton, location: str) -> str:

@@ -57,6 +57,7 @@ def read_state(text: str) -> State:
     pairs = [line.split("=", 1) for line in discrete.splitlines()]
     state["reason"] = reason
     state["places"] = {name: value for name, value in pairs if not re.fullmatch(r"-?\d+", value)}
+    state["values"] = {name: int(value) for name, value in pairs if name not in state["places"]}
     state["clocks"] = {name: float(value) for name, value in (line.split("=", 1) for line in clocks.splitlines())}
     return state
 

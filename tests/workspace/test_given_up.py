@@ -21,7 +21,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.phrases import sentence
+from pursue_runtime.ui.page import FloorPlan, Page
 
 ERRANDS = Path(__file__).resolve().parents[2] / "scenarios/office/errands.pur"
 REST = "do water within 24"
@@ -53,8 +53,9 @@ def test_the_model_holds_what_is_promised_and_names_the_rest() -> None:
     model = Model(data("model"))
     assert model.goal == (("reachObj", "win"), ("reachObj2", "win"))
     assert model.given_up == (REST,)
-    start = SystemState(1, 0.0, {}, {}, {}, "_start_", "")
-    assert sentence(model, start, None) == f"the mission starts; it does not promise: {REST}"
+    start = SystemState(1, 0.0, dict(model.initial().locations), {}, {}, "_start_", "", "running")
+    (note,) = Page(model, FloorPlan({}, ())).on_state(start, 0.0)
+    assert note["text"] == f"the mission starts; it does not promise: {REST}"
 
 
 def test_the_readme_says_what_is_given_up() -> None:

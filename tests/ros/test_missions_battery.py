@@ -1,0 +1,50 @@
+"""A robot with a battery on ROS: each state has its level; what was given up is said and does not end the mission."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from launched_mission import PLAYED, launched
+from ros_world import Ros, lay_over
+
+from pursue_gen.language import parse
+from pursue_gen.solving.optional import promised_of
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.workspace import Options, write_workspace
+
+pytestmark = pytest.mark.ros
+
+ROUND = """\
+poi "gate"
+poi "hall"
+connect gate and hall distance 2
+event "wipe" location hall duration 1
+event "charge" location gate duration 4
+rule "order": wipe before charge
+agent "bot" controllable mobile 1 location gate can_do wipe, charge
+battery "bot" capacity 8 uses 1 per unit recharges 2 per unit at gate
+reach_objective: do charge
+optional 1 reach_objective: do wipe within 4
+"""
+
+
+def test_the_battery_is_used_and_recharged(ros: Ros, tmp_path: Path) -> None:
+    """The test plays the robot."""
+    found = promised_of(parse(ROUND, "round.pur", "round"), SolveRequest())
+    won = found.solution
+    options = Options(reaction=won.reaction)
+    folder = write_workspace(found.scenario, won.network, won.objective, won.strategy, options, tmp_path / "ws")
+    calm = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
+    with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), **PLAYED, **calm, use_sim_time=True, speed=2) as run:
+        assert run.until_step("bot_gate2hall")["values"]["Lbot"] == 5
+        run.publish("bot_going_gate_to_hall2hall")
+        assert run.until_step("wipe")["values"]["Lbot"] == 3
+        run.publish("wipeDONE")
+        assert run.until_step("bot_hall2gate")["values"]["Lbot"] == 0
+        run.publish("bot_going_hall_to_gate2gate")
+        assert run.until_step("charge")["values"]["Lbot"] == 0
+        run.publish("chargeDONE")
+        assert run.until_over() == "won", run.output()
+        assert run.now()["values"]["Lbot"] == 8
+        assert "it does not promise: do wipe within 4" in run.output()
