@@ -27,6 +27,8 @@ from pursue_gen.simulation.faults import read_faults
 from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import Settings, simulate_mission
 from pursue_gen.simulation.runs import Case, MissionRunner
+from pursue_gen.solving.optional import promised
+from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
@@ -65,10 +67,10 @@ def case_for(name: str, faults: str = "all") -> Optional[Case]:
     """The case of a scenario with these faults; None where the objective cannot be met."""
     scenario = least_period(load(SCENARIOS / f"{name}.pur"), Rules())
     try:
-        won = solve_scenario(scenario, Rules())
+        found = promised(scenario, DEFAULT, lambda some, how: solve_scenario(some, Rules(), how))
     except PursueError:
         return None
-    return make_case(scenario, won, SolveRequest(), "mixed", read_faults(faults), None)[0]
+    return make_case(found.scenario, found.solution, SolveRequest(), "mixed", read_faults(faults), None)[0]
 
 
 def cells(job: Tuple[str, Sequence[Tuple[str, int]], float]) -> List[Row]:

@@ -406,6 +406,29 @@ def test_solve_in_json(tmp_path: Path) -> None:
     assert verdict["states"] > 0 and verdict["commands"] > 0 and verdict["seconds"] >= 0
 
 
+def test_what_is_optional_is_promised_or_given_up(tmp_path: Path) -> None:
+    errands, plan = ROOT / "scenarios/office/errands.pur", tmp_path / "plan.txt"
+    promised = "optional 1 is promised: do fetch within 24.\n"
+    given_up = "optional 2 is given up, it cannot be promised together with the rest: do water within 24.\n"
+    solved = pursue("solve", errands, "--json", "-o", plan)
+    verdict = json.loads(solved.out)
+    assert verdict["won"] is True
+    assert verdict["optional"] == {"promised": [1], "given_up": [2], "undecided": []}
+    proven = pursue("verify", errands, plan)
+    assert proven.out == "ends reported, reaction 0.1: the plan wins\n"
+    missions = pursue("sim", errands, "--runs", "1", "--plan", plan)
+    written = pursue("ws", errands, "-o", tmp_path / "ws")
+    for outcome in (solved, proven, missions, written):
+        assert outcome.status == 0 and promised + given_up in outcome.err
+
+
+def test_nothing_optional_helps_where_the_rest_is_lost() -> None:
+    lost = pursue("solve", ROOT / "scenarios/office/two_errands.pur", "--json")
+    assert lost.status == 4 and "optional" not in lost.err
+    conflict = ["reach_objective: do mail within 9", "reach_objective: do water within 9"]
+    assert json.loads(lost.out)["explanation"]["conflict"] == conflict
+
+
 def _texts(value: object) -> Iterator[str]:
     """Every text in a JSON value."""
     if isinstance(value, dict):
