@@ -47,6 +47,15 @@ def test_movements_and_actions_use_what_they_take_at_most_but_at_the_dock() -> N
     assert levels(scenario, battery) == (24, 20, 16, 12, 8, 4, 0)
 
 
+def test_levels_are_whole_where_numbers_are_not() -> None:
+    scenario = parse(HOUSE.format(BATTERY.format(24, 0.5, 1.9)), "x.pur", "x")
+    (battery,) = scenario.batteries
+    assert movements_use(scenario, battery) == {("dock", "hall"): 4, ("hall", "dock"): 2}
+    assert actions_use(scenario, battery) == {("wipe", "hall"): 2, ("sing", "hall"): 3}
+    assert recharges(scenario, battery) == {("charge", "dock"): 15, ("sing", "dock"): 9}
+    assert "PML014" in codes("battery bot capacity 2.5 uses 1 per unit")
+
+
 def test_the_name_may_stand_in_quotes_and_the_rest_be_left_out() -> None:
     scenario = parse(HOUSE.format('battery "bot" capacity 8 uses 1 per unit'), "x.pur", "x")
     assert scenario.batteries[0].dock is None and levels(scenario, scenario.batteries[0]) == (8, 4, 2, 0)

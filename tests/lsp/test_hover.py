@@ -68,6 +68,17 @@ def test_who_has_its_own_turn_in_a_rule() -> None:
     assert "own turn" in told("for ea", each) and "controllable and not human" in told("each ro", each)
 
 
+def test_a_battery_says_how_many_levels_it_has() -> None:
+    more = SMALL + "battery bot capacity 9 uses 1 per unit\n"
+    assert "levels; the game has up to" in told("battery bot capacity 9", more)
+    assert "What the battery holds" in told("battery bot capa", more) and "a robot" in told("battery b", more)
+    assert "battery of 9, uses 1 per unit" in told("battery b", more)
+
+
+def test_a_number_behind_optional_says_what_is_given_up_first() -> None:
+    assert "the one with the greatest number" in told("optional 1", SMALL + "optional 1 objective: avoid hand\n")
+
+
 def test_windows_and_travel_times() -> None:
     more = SMALL.replace("duration 3", "duration 3 to 5") + "travel bot from a to b takes 5 to 8\n"
     assert "takes 3 to 5 units of time" in told('event "wo', more)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.explain import explain
+from pursue_gen.explanation.lesser import without_each
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.play.games import session_of
@@ -138,6 +139,11 @@ def test_the_judge_finds_a_battery_that_is_empty() -> None:
 def test_a_lost_scenario_says_which_battery_would_do() -> None:
     explanation = explain(house(5), Rules(), Limits(work=20_000_000))
     assert "a battery of bot with capacity 6 instead of 5" in [change.sentence for change in explanation.changes]
+
+
+def test_what_makes_a_game_large_may_be_its_battery() -> None:
+    parts = {part.name: lesser for part, lesser in without_each(house(10))}
+    assert parts["the battery of bot"].batteries == ()
 
 
 def test_levels_are_said_in_words() -> None:
