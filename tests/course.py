@@ -7,6 +7,7 @@ batteries. Rules are expressions of which each symbol takes away the first part 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import product
 from math import ceil, floor
 from typing import Dict, List, Optional, Tuple, Union
 
@@ -19,6 +20,7 @@ from pursue_gen.language.scenario import (
     Event,
     Leaves,
     NeverAt,
+    NeverHolds,
     Ref,
     RuleBody,
     Scenario,
@@ -100,10 +102,26 @@ class Course:
         never = (each for each in self.scenario.assumptions if isinstance(each, NeverAt))
         if any((each.agent.name, each.place.name) == (agent, b) for each in never):
             return False
+        if not self._keeps(agent, Stay(a, self.now, to=b)):
+            return False
         moves = self.agents[agent].mobile is not None
         if moves and self.levels.get(agent, 0) < self._used_on_way(agent, a, b):
             return False
         return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
+
+    def _keeps(self, agent: str, stay: Stay) -> bool:
+        """Whether conditions that are assumed never to hold cannot hold with the agent there, nor when it has come."""
+        never = [each.condition for each in self.scenario.assumptions if isinstance(each, NeverHolds)]
+        if self.agents[agent].controllable or not never:
+            return True
+        under_way = {**self.stays, agent: stay}
+        ahead = [(each.location, each.to or each.place) for each in under_way.values()]
+        values = {f"S{name}": int(value) for name, value in self.states.items()}
+        for chosen in product(*ahead):
+            places = dict(zip(under_way, chosen))
+            if any(holds(condition, self.scenario, places, values) for condition in never):
+                return False
+        return True
 
     def may_begin(self, agent: str, name: str) -> bool:
         """Whether it may do the event, or begin it, whatever the time."""

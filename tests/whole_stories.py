@@ -117,6 +117,7 @@ def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
         "waits": f"assume: guest waits {draw(st.integers(1, 9))} between call",
         "leaves": f"assume: guest leaves {place()} within {draw(st.integers(4, 20))}",  # type: ignore[operator]
         "never": f"assume: guest never at {place()}",  # type: ignore[operator]
+        "not": f"assume: not guest {draw(st.sampled_from(('on_way', f'at {place()}')))}",  # type: ignore[operator]
     }
     return [drawn[kind] for kind in draw(st.lists(st.sampled_from(list(drawn)), max_size=2, unique=True))]
 
@@ -140,6 +141,8 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
         "condition": f"objective: avoid {draw(condition)}",
         "always": f"objective: always {draw(condition)}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
+        "answer": f"objective: if {draw(condition)} then {draw(condition)} within {draw(st.integers(5, 30))}",
+        "rounds": f"objective: patrol b, a in order every {draw(st.integers(12, 40))} by bot1",
         "patrol": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
         "round": f"objective: patrol a, b in order every {draw(st.integers(8, 40))} by bot1",
     }

@@ -43,7 +43,19 @@ def check(
     if errors:
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(exit_status(findings))
+    for file in files:
+        for sentence in _periods(file):
+            info(f"{file}: {sentence}")
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
+
+
+def _periods(file: Path) -> List[str]:
+    """What is quickly found out about the periods of patrols that name none."""
+    from pursue_gen.language import load
+    from pursue_gen.solving.periods import quickly_found, without_period
+
+    scenario = load(file)
+    return quickly_found(scenario) if without_period(scenario) else []
 
 
 def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:

@@ -13,15 +13,19 @@ from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
-from pursue_gen.language.wording import patrol_text
+from pursue_gen.language.wording import patrol_text, periods_found
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 
 WORK = 200_000_000
 """The work of the search where no limit is set: some half a minute. Then the shortest period that is won counts."""
+
+_LITTLE = 5_000_000
+"""The work of a search for `check`: a second at most."""
 
 _SHARE = 0.4
 """The part of what is left of the budget that one game may take."""
@@ -88,6 +92,14 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
             low = low if won is None else floor
         probe = (floor + high) // 2 if known else min(2 * probe, high)
     return with_period(scenario, high, low)
+
+
+def quickly_found(scenario: Scenario) -> List[str]:
+    """What little work finds out about the least period in the default game, in sentences; nothing if that is open."""
+    found = least_period(scenario, Rules(), SolveOptions(limits=Limits(work=_LITTLE)))
+    patrols = [each for each in found.safety if isinstance(each, Patrol) and each.least is not None]
+    decided = [each for each in patrols if each.least is not None and each.least >= each.period]
+    return periods_found(found, won=decided[0].least == decided[0].period) if decided else []
 
 
 def longest(scenario: Scenario) -> int:

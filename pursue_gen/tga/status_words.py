@@ -50,6 +50,9 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
+        if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:
+            following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
+            found.append(Status(names.rule_turn(name), objective_text(objective), following))
         places = [place.name for place in network.automaton(name).locations]
         in_turn = f": {objective.place.shown}" if isinstance(objective, Patrol) and objective.order else ""
         texts = {place: _duty(objective, place) for place in places}

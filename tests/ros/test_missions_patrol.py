@@ -1,4 +1,4 @@
-"""A patrol on ROS: the observer sees who arrives and who leaves, and a visit that comes too late loses the mission."""
+"""A patrol in order on ROS, and answers to where the robot is: the observer sees who arrives and who leaves."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ poi "gate"
 poi "hall"
 connect gate and hall distance 2
 agent "bot" controllable mobile 1 location gate
-objective: patrol gate, hall every 20 by bot
+objective: patrol gate, hall in order every 20 by bot
+objective: if bot at hall then no robot on_way within 5
+objective: if bot on_way then bot at gate within 20
 """
 
 
@@ -34,10 +36,11 @@ def test_each_visit_counts_and_one_that_is_missed_loses_the_mission(ros: Ros, tm
     with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), **PLAYED, **calm, use_sim_time=True, speed=2) as run:
         assert run.until_step("bot_gate2hall")["places"]["obj"] == "atRisk"
         run.publish("bot_going_gate_to_hall2hall")
-        assert run.until_step("bot_going_gate_to_hall2hall")["places"]["obj2"] == "idle"
+        at_hall = run.until_step("bot_going_gate_to_hall2hall")
+        assert [at_hall["places"][name] for name in ("obj2", "obj3", "obj4")] == ["idle", "idle", "atRisk"]
         assert run.until_step("bot_hall2gate")["places"]["obj2"] == "atRisk"
         run.publish("bot_going_hall_to_gate2gate")
         there = run.until_step("bot_going_hall_to_gate2gate")
-        assert (there.status, there["places"]["obj"]) == ("running", "idle")
+        assert (there.status, there["places"]["obj"], there["places"]["obj4"]) == ("running", "idle", "idle")
         assert run.until_over() == "lost", run.output()
-        assert "patrol hall every 20 by bot" in run.now()["reason"]
+        assert "patrol gate, hall in order every 20 by bot" in run.now()["reason"]

@@ -78,3 +78,13 @@ def test_an_objective_is_kept_due_reached_or_broken() -> None:
     assert reach == {
         "not counting yet", "seal and unload to be done", "seal done", "unload done", "reached", "too late"
     }  # fmt: skip
+
+
+def test_a_patrol_in_order_says_whose_turn_it_is() -> None:
+    text = '''poi "a" label "gate A" poi "b" connect a and b distance 1 agent "bot" controllable mobile 1 location a
+objective: patrol a, b in order every 9 by bot'''
+    story = parse(text, "x.pur", "x")
+    words = {each.label: dict(each.texts) for each in statuses(story, translate(story))}
+    patrol = "patrol a, b in order every 9 by bot"
+    assert words[patrol] == {"0": "next: gate A", "1": "next: b"}
+    assert words[f"{patrol}: b"]["atRisk"] == "a visit is due"
