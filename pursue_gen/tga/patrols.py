@@ -20,8 +20,10 @@ def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     patrols = (each for each in scenario.safety if isinstance(each, Patrol))
     found = {(agent.name, each.place.name) for each in patrols for agent in scenario.on_patrol(each)}
     duties = [each for each in scenario.safety if isinstance(each, Respond) and each.conditions]
-    domains = Domains(scenario)
-    return frozenset(found.union(*(awaited_by(each, scenario, domains) for each in duties)))
+    if duties:
+        domains = Domains(scenario)
+        found.update(pair for each in duties for pair in awaited_by(each, scenario, domains))
+    return frozenset(found)
 
 
 def arrivals(scenario: Scenario) -> Iterator[str]:
