@@ -1,8 +1,9 @@
 """All patterns and stories once on ROS, each a mission in its generated workspace: `python -m benchmarks.missions`.
 
 `--out docs` writes how they ended to docs/benchmarks/missions.json, which `python -m docs.patterns.make` shows. What is
-named (`patterns/visit`) is played alone, and replaces what is there of it. Missions run one after the other, in simulated
-time. Each is recorded, and judged from the bag and the workspace's strategy alone, by what `pursue-gen replay` does.
+named (`patterns/visit`) is played alone, and replaces what is there of it. Missions run one after the other, in
+simulated time. Each is recorded, and judged from the bag and the workspace's strategy alone, as `pursue-gen replay`
+does.
 """
 
 from __future__ import annotations
