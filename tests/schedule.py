@@ -13,22 +13,27 @@ from xdist.scheduler import LoadScopeScheduling
 
 LONGEST = (
     "ros/test_robots", "ros/test_missions", "ros/test_links", "ros/test_missions_among_others", "ros/test_faults",
-    "ros/test_witness", "ros/test_install_space", "ros/test_fleet", "ros/test_newcomer", "ros/test_nodes",
-    "ros/test_missions_with_blocked_ways", "ros/test_run_mission", "ros/test_benchmarks", "ros/test_web",
-    "ros/test_ui_node", "ros/test_disturbed_missions", "ros/test_real_robots_launch", "ros/test_recording",
-    "ros/test_received_missions", "ros/test_missions_with_spots",
-    "scenarios/test_scenarios", "explanation/test_explain", "test_tutorial", "synthesis/test_cone",
-    "synthesis/test_engines", "proof/test_checker", "lsp/test_hostile", "authoring/test_new", "lsp/test_server",
-    "synthesis/test_verdicts", "language/test_formatter", "proof/test_invariant", "cli/test_progress",
-    "partition/test_split", "language/test_hostile", "proof/test_simplify", "replanning/test_request",
-    "explanation/test_position", "synthesis/test_start", "solving/test_verifytga", "proof/test_twins",
-    "solving/test_least_time", "transport/test_bundles", "partition/test_strategy_file", "replay/test_game",
-    "proof/test_stages", "workspace/test_writer_kills", "simulation/test_simulated_command",
-    "runtime/test_hostile_texts", "benchmarks/test_stories", "solving/test_quick",
-    "simulation/test_simulated_missions", "runtime/manager/test_hostile_requests", "workspace/test_generate",
-    "report/test_report_command", "cli/test_commands", "play/test_session", "zones/test_dbm", "lsp/test_packaging",
+    "ros/test_witness", "ros/test_nodes", "ros/test_run_mission", "ros/test_fleet",
+    "ros/test_missions_with_blocked_ways", "ros/test_install_space", "ros/test_benchmarks",
+    "ros/test_received_missions", "ros/test_web", "ros/test_disturbed_missions", "ros/test_real_robots_launch",
+    "ros/test_missions_objectives", "ros/test_recording", "ros/test_ui_node", "ros/test_missions_with_spots",
+    "ros/test_missions_assumptions", "ros/test_parameters", "ros/test_controller_without_states", "ros/test_newcomer",
+    "ros/test_missions_patrol", "scenarios/test_scenarios", "proof/test_checker", "cli/test_progress",
+    "solving/test_ways", "synthesis/test_verdicts", "proof/test_invariant", "synthesis/test_cone",
+    "synthesis/test_engines", "test_tutorial", "runtime/manager/test_hostile_requests", "lsp/test_packaging",
+    "language/test_hostile", "simulation/test_simulated_missions", "runtime/test_hostile_texts",
+    "solving/test_shared_games", "solving/test_quick", "simulation/test_simulated_command", "proof/test_stages",
+    "solving/test_least_time", "explanation/test_explain", "synthesis/test_start", "synthesis/test_overtaking",
+    "synthesis/test_plan", "report/test_report_page", "zones/test_dbm", "cli/test_commands", "workspace/test_generate",
+    "proof/test_checker_random", "synthesis/test_limits", "lsp/test_hostile", "runtime/observer/test_journal",
+    "solving/test_objectives", "lsp/test_server", "runtime/ui/test_browser", "authoring/test_new",
+    "report/test_report_command", "solving/test_verifytga", "benchmarks/test_synthesis", "replanning/test_request",
+    "solving/test_crowds_random", "transport/test_sender", "solving/test_crowds", "proof/test_twins",
+    "tga/test_conditions", "proof/test_simplify", "language/test_formatter", "transport/test_bundles",
+    "workspace/test_writer_kills", "zones/test_federation", "benchmarks/test_random_games", "runtime/test_fleet_life",
+    "tga/test_uppaal_write", "report/test_commands",
 )
-"""Files that take more than some ten seconds, the longest first; all others are short, in any order."""
+"""Files that take more than some seconds, the longest first; all others are short, in any order."""
 
 ROS_WORKERS = ("gw0", "gw1", "gw2")
 """Workers that prefer tests on ROS: a mission takes less than half a processor, so three of them and one worker for all
