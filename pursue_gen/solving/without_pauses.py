@@ -79,7 +79,7 @@ def lost_to_few_calls(game: Network, objective: Objective, reaction: Fraction, o
     """True if the environment wins already where each agent that rests calls once at most; False: nothing is known."""
     if not pauses(game):
         return False
-    verdict = verdict_with(acting_at_most(game, 1), objective, reaction, _FEW, options)
+    verdict = verdict_with(acting_at_most(game, objective, 1), objective, reaction, _FEW, options)
     return verdict is not None and not verdict.won
 
 
@@ -89,7 +89,7 @@ def verdict_of(
     """The verdict of `budget.verdict`; where agents rest between calls, of a game without rests, or with few calls,
     where that decides it sooner. Raises PursueError (exit status 5) where that share of what is left is too little."""
     if pauses(game):
-        few = acting_at_most(game, 1)
+        few = acting_at_most(game, objective, 1)
         for network, part, free in ((game, _FIRST, False), (game, _PART, True), (few, _PART, False)):
             try:
                 verdict = budget.verdict(network, objective, reaction, share * part, without_pauses=free)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, Collection, List, Tuple
 
-from pursue_gen.tga.network import Automaton, Edge, Location, Network
+from pursue_gen.tga.network import Automaton, Edge, Location, Network, Objective
 from pursue_gen.tga.part import start_of
 
 
@@ -59,11 +59,16 @@ def _without(edge: Edge, clocks: AbstractSet[str]) -> Edge:
     return replace(edge, guard=replace(edge.guard, clocks=tests), resets=resets)
 
 
-def acting_at_most(network: Network, times: int) -> Network:
+def acting_at_most(network: Network, objective: Objective, times: int) -> Network:
     """The network in which each agent that rests (see `pauses`) does so little: at most so many of the moves for which
-    it has to rest. The environment has fewer moves, none of which it is ever obliged to make."""
+    it has to rest. The environment has fewer moves, none of which it is ever obliged to make.
+
+    Locations get copies, so automata that the objective names stay as they are.
+    """
     clocks = frozenset(pauses(network))
-    return replace(network, automata=tuple(_counting(automaton, clocks, times) for automaton in network.automata))
+    named = {name for name, _ in (*objective.goal, *objective.bad)}
+    automata = (a if a.name in named else _counting(a, clocks, times) for a in network.automata)
+    return replace(network, automata=tuple(automata))
 
 
 def _counting(automaton: Automaton, clocks: AbstractSet[str], times: int) -> Automaton:

@@ -15,8 +15,10 @@ from pursue_gen.tga.network import (
     Constraint,
     Edge,
     Guard,
+    Kind,
     Location,
     Network,
+    Objective,
     Sync,
 )
 from pursue_gen.tga.part import clocks_of
@@ -35,6 +37,7 @@ objective: if call then serve within 20
 """
 
 CALL = Edge("here", "here", Guard((ClockBound("y", ">", 1),)), Sync("call", sends=True), (), ("y",), False)
+NOTHING = Objective(Kind.SAFETY)
 PLACES = (Location("here"), Location("there", (ClockBound("x", "<=", 2),)))
 
 
@@ -104,7 +107,7 @@ def test_a_network_without_clocks_to_leave_out_is_itself() -> None:
 
 def test_with_few_calls_every_location_knows_how_many_there_were() -> None:
     going = Edge("here", "there", resets=("x",), controllable=False)
-    less = acting_at_most(network(going), 1).automata[0]
+    less = acting_at_most(network(going), NOTHING, 1).automata[0]
     assert [(location.name, location.invariant) for location in less.locations] == [
         ("here", ()), ("there", PLACES[1].invariant), ("here 1", ()), ("there 1", PLACES[1].invariant)
     ]  # fmt: skip
@@ -115,4 +118,9 @@ def test_with_few_calls_every_location_knows_how_many_there_were() -> None:
 
 def test_who_needs_no_rest_acts_as_before() -> None:
     busy = network(Edge("here", "here", Guard((ClockBound("y", ">", 1),)), controllable=True))
-    assert acting_at_most(busy, 1).automata == busy.automata
+    assert acting_at_most(busy, NOTHING, 1).automata == busy.automata
+
+
+def test_places_that_the_objective_names_stay_what_they_are() -> None:
+    met = Objective(Kind.REACH, goal=(("guest", "there"),))
+    assert acting_at_most(network(), met, 1) == network()
