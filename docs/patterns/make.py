@@ -20,6 +20,7 @@ from pursue_gen.files import write_texts
 
 PAGES = scenarios.DOCS / "patterns"
 INDEX = PAGES / "README.md"
+STORIES = sorted((scenarios.SCENARIOS / "industry").glob("*.pur"))
 ON_ROS = scenarios.DOCS / "benchmarks" / "missions.json"
 
 GROUPS: Mapping[str, List[str]] = {
@@ -66,10 +67,21 @@ def formula(name: str) -> str:
 
 def row(name: str, won: bool) -> str:
     """A pattern's line in the table."""
-    page, ros = written(name), json.loads(ON_ROS.read_text(encoding="utf-8")) if ON_ROS.is_file() else {"missions": {}}
-    outcome = ros["missions"].get(f"patterns/{name}", {}).get("outcome", "-")
+    page = written(name)
     cells = [f"[{title(name)}]({name}.md)", *(line(page, head) for head in (SAID, CATALOGUE, HERE))]
-    return "| " + " | ".join([*cells, "can be done" if won else "**cannot**", outcome]) + " |"
+    return "| " + " | ".join([*cells, "can be done" if won else "**cannot**", on_ros(f"patterns/{name}")]) + " |"
+
+
+def on_ros(name: str) -> str:
+    """How the mission of a scenario (folder/name) ended on ROS, "-" where it was not played."""
+    found = json.loads(ON_ROS.read_text(encoding="utf-8"))["missions"] if ON_ROS.is_file() else {}
+    return str(found.get(name, {}).get("outcome", "-"))
+
+
+def story(path: Path) -> str:
+    """The line of a story of industry."""
+    name = f"{path.parent.name}/{path.stem}"
+    return f"| [{title(path.stem)}](../scenarios/{path.stem}.md) | `{name}` | {on_ros(name)} |"
 
 
 def title(name: str) -> str:
@@ -81,8 +93,10 @@ def index(text: str, rows: Mapping[str, str]) -> str:
     """The list with these lines in place of those that it has, by name."""
     known = {name: each for each in text.split("\n") for name in re.findall(r"^\| \[[\w ]+\]\((\w+)\.md\)", each)}
     known.update(rows)
-    for group, names in GROUPS.items():
-        table = "\n".join([HEAD, *(known[name] for name in names if name in known)])
+    tables = {group: [HEAD, *(known[name] for name in names if name in known)] for group, names in GROUPS.items()}
+    tables["Stories"] = ["| story | scenario | on ROS |\n| --- | --- | --- |", *map(story, STORIES)]
+    for group, lines in tables.items():
+        table = "\n".join(lines)
         begin = f"<!-- made: {group} -->\n"
         before, _, rest = text.partition(begin)
         _, end, after = rest.partition("<!-- end -->")
