@@ -22,6 +22,9 @@ from benchmarks.tables import markdown, number, seconds, verdict
 MEMORY_GOAL = 2048
 """MiB: what each of these commands should need at most."""
 
+_QUICK_COMMAND = 5.0
+"""Seconds of the processor: what takes less is measured twice, and the better figure counts."""
+
 _STORIES = "stories/"
 
 _LOST, _LIMIT_HIT = 4, 5
@@ -112,7 +115,11 @@ def commands_measured(goals: Iterable[Goal], published: Path, bounds: Bounds) ->
         for goal in goals:
             files = files_of(goal, published, Path(folder))
             if files:
-                yield command_measured(goal, files, Path(folder), bounds)
+                row = command_measured(goal, files, Path(folder), bounds)
+                if row["cpu"] < _QUICK_COMMAND:
+                    again = command_measured(goal, files, Path(folder), bounds)
+                    row = min(row, again, key=lambda one: float(one["cpu"]))
+                yield row
 
 
 def command_measured(goal: Goal, files: List[Path], folder: Path, bounds: Bounds) -> Row:
