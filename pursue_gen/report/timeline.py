@@ -1,4 +1,4 @@
-"""A mission as a timeline: a lane for each agent, and lanes for states, turns, conditions, deadlines and plans."""
+"""A mission as a timeline: a lane for each agent, and for states, turns, batteries, conditions, deadlines and plans."""
 
 from __future__ import annotations
 
@@ -186,6 +186,11 @@ def _lanes(
         name = names.count(event.name)
         counts = tuple(_line(scale, stay, words.place(name, stay.what)) for stay in stays(recording, name))
         lanes.append(Lane(name, counts))
+    for battery in recording.scenario.batteries:
+        level = names.level(battery.agent.name)
+        changes = ((step.at, str(step.values.get(level, battery.capacity))) for step in recording.steps)
+        charge = tuple(_line(scale, stay, stay.what) for stay in lasting(recording, changes))
+        lanes.append(Lane(f"battery of {battery.agent.shown}", charge))
     for words_of_it, condition in conditions(recording.scenario).items():
         parts = [_box(scale, stay, "holds", f"{words_of_it} holds") for stay in holding(recording, condition)]
         lanes.append(Lane(words_of_it, tuple(parts)))

@@ -98,3 +98,12 @@ def test_visits_of_a_patrol_stand_between_their_deadlines() -> None:
     there = [stay for stay in stays(made, "obj2") if stay.what == "idle"]
     assert len(there) > 2 and len(tooltips(found["visits: hall"], "turn")) == len(there)
     assert tooltips(found["visits: hall"], "box")[0].startswith("a visit of hall due by 24, 0 to ")
+
+
+def test_a_battery_shows_its_levels() -> None:
+    made = mission("museum/battery_watch", until=60.0)
+    levels = [step.values["Lwatchman"] for step in made.steps]
+    changed = [level for before, level in zip([-1, *levels], levels) if level != before]
+    charge = tooltips(lanes(draw(made))["battery of watchman"], "turn")
+    assert [text.split(",")[0] for text in charge] == [str(level) for level in changed]
+    assert changed[0] == 14 and len(set(changed)) > 2
