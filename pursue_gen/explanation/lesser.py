@@ -159,9 +159,10 @@ def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
 
 
 def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:
-    """The scenario without the objective and what has no meaning without it; None where it has no other one."""
+    """The scenario without the objective and what has no meaning without it; None where it has no other one that has
+    to be met."""
     kept = [other for statement in scenario.statements if objective not in statement for other in statement]
-    if not kept:
+    if all(other.optional for other in kept):
         return None
     safety = tuple(other for other in scenario.safety if other in kept)
     return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other in kept))

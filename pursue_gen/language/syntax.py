@@ -223,20 +223,20 @@ def chunks(tokens: List[Token]) -> List[List[Token]]:
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
+        ended = index == 0 or tokens[index - 1].type in _ENDS
         if token.type in _SECOND:  # an event may be called so
             second = index + 2 < len(tokens) and tokens[index + 2].type == _SECOND[token.type]
-            ended = index == 0 or tokens[index - 1].type in _ENDS
             begins = goes_on or second or (opens_line and (ended or following == "WORD"))
         elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
             begins = False  # a rule is for each robot, or agent
         elif token.type == "OPTIONAL":  # a name may be called so; none is before a number
-            begins = following == "NUMBER" or (opens_line and following in ("OBJECTIVE", "REACH_OBJECTIVE"))
+            begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False
         elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
         elif token.type in ("WORD", "ROBOT") and opens_line and index:
-            begins = goes_on or (tokens[index - 1].type in _ENDS and looks_like_statement(token))
+            begins = goes_on or (ended and looks_like_statement(token))
         else:
             begins = opens_line and goes_on and token.type in _OPENS
         if begins or not found:
