@@ -30,7 +30,7 @@ def test_parts_of_examples_are_well_formed() -> None:
 def test_the_table_lists_every_code_with_its_severity() -> None:
     listed = {code: bool(warns) for code, warns in re.findall(r"^\| (PML\d{3})( \(W\))? \|", PAGE, re.M)}
     used = {}
-    for file in (ROOT / "pursue_gen" / "language").glob("*.py"):
+    for file in (ROOT / "pursue_gen").rglob("*.py"):
         for call, code in re.findall(r"\b(error|warning)\(\s*\"(PML\d{3})\"", file.read_text(encoding="utf-8")):
             used[code] = call == "warning"
     assert listed == used
