@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple, Union
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
 from pursue_gen.language.assumption_checks import check_assumptions
@@ -65,7 +65,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += part(scenario)
     codes = {f.code for f in findings}
     if not whole:
-        return _presentable(in_order(f for f in findings if f.code not in _OF_THE_WHOLE))
+        return _presentable(in_order(_of_what_was_read(reading, (f for f in findings if f.code not in _OF_THE_WHOLE))))
     if not codes & {"PML103", "PML104"}:  # the rest stands on names that mean one thing
         doubtful = _doubtful(scenario) if "PML110" in codes else frozenset()
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
@@ -77,7 +77,14 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_batteries(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
-    return _presentable(in_order(dict.fromkeys(findings)))  # a statement may be several objectives
+    findings = list(dict.fromkeys(findings))  # a statement may be several objectives
+    return _presentable(in_order(_of_what_was_read(reading, findings)))
+
+
+def _of_what_was_read(reading: Reading, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Without what checks find in the line of a number that could not be read: they saw another one in its place."""
+    unread = {f.span.line for f in reading.diagnostics if f.code == "PML014" and f.span is not None}
+    return (f for f in findings if f in reading.diagnostics or f.span is None or f.span.line not in unread)
 
 
 def _presentable(findings: Tuple[Diagnostic, ...]) -> Tuple[Diagnostic, ...]:

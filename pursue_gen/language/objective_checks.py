@@ -25,6 +25,8 @@ def check_objectives(scenario: Scenario) -> Iterator[Diagnostic]:
         text = objective_text(objective)
         if text in lines:
             message = f"the same objective stands in line {lines[text]} already"
+            if isinstance(objective, Patrol) and lines[text] == objective.span.line:
+                message = f"{objective.place.name} stands twice in this patrol"
             yield error("PML220", message, objective.span, "delete one of the two")
         lines.setdefault(text, objective.span.line)
     avoided = {safety.event.name: safety for safety in scenario.safety if isinstance(safety, Avoid)}
