@@ -1,4 +1,4 @@
-"""All patterns and stories once on ROS, each a mission in its generated workspace: `python -m benchmarks.missions`.
+"""Patterns, stories and statements once on ROS, a mission in each generated workspace: `python -m benchmarks.missions`.
 
 `--out docs` writes how they ended to docs/benchmarks/missions.json, which `python -m docs.patterns.make` shows. What is
 named (`patterns/visit`) is played alone, and replaces what is there of it. Missions run one after the other, in
@@ -16,7 +16,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from fractions import Fraction
 from pathlib import Path
 from typing import Iterator, List, NamedTuple, Sequence, Tuple
 
@@ -28,13 +27,26 @@ from pursue_gen.language import load
 from pursue_gen.replay import check, game_of, read_recording
 from pursue_gen.replay.game import from_workspace
 from pursue_gen.replay.journal import Journal
-from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.solving.inputs import settled
+from pursue_gen.solving.optional import promised_of
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.workspace import Options, write_workspace
 from pursue_gen.workspace.packages import SHARED
 
 FOLDERS = ("patterns", "industry")
-RULES = Rules(reaction=Fraction(1, 10))
+STATEMENTS = {
+    "assume: not (…)": "museum/shy_robot",
+    "battery": "museum/battery_watch",
+    "collaborative together, if … then": "airport/two_carts",
+    "label, decimals": "hotel/parcel",
+    "optional": "office/errands",
+    "patrol without every": "museum/best_watch",
+    "rule … for each robot": "hotel/laundry",
+    "together only_if, travel … takes": "hotel/late_supper",
+}
+"""One scenario for each statement that neither patterns nor stories play, which is won because of it."""
+
+REQUEST = SolveRequest(reaction="0.1")
 FILE = "missions.json"
 
 UNIT, SPEED = 2.0, 4
@@ -61,7 +73,7 @@ class Mission(NamedTuple):
 def names() -> List[str]:
     """All that are played, in order."""
     files = (path for folder in FOLDERS for path in sorted((ROOT / "scenarios" / folder).glob("*.pur")))
-    return [f"{path.parent.name}/{path.stem}" for path in files]
+    return [*(f"{path.parent.name}/{path.stem}" for path in files), *sorted(STATEMENTS.values())]
 
 
 def build(workspace: Path, common: Path) -> None:
@@ -112,9 +124,9 @@ def measure(chosen: Sequence[str]) -> Iterator[Tuple[str, Mission]]:
     """Plays and judges these, one after the other."""
     with tempfile.TemporaryDirectory(prefix="missions_ws_") as home:
         for name in chosen:
-            scenario = load(ROOT / "scenarios" / f"{name}.pur")
-            won = solve_scenario(scenario, RULES)
-            folder, options = Path(home) / scenario.name, Options(reaction=RULES.reaction)
+            promise = promised_of(settled(load(ROOT / "scenarios" / f"{name}.pur"), REQUEST), REQUEST)
+            scenario, won = promise.scenario, promise.solution
+            folder, options = Path(home) / scenario.name, Options(reaction=won.rules.reaction)
             workspace = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
             build(workspace, Path(home) / "common")
             with tempfile.TemporaryDirectory(prefix="missions_") as place, world(Path(place)) as there:

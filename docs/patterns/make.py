@@ -11,9 +11,11 @@ from __future__ import annotations
 import json
 import re
 import sys
+from itertools import starmap
 from pathlib import Path
 from typing import Dict, List, Mapping
 
+from benchmarks.missions import STATEMENTS
 from docs.scenarios import make as scenarios
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.files import write_texts
@@ -84,6 +86,11 @@ def story(path: Path) -> str:
     return f"| [{title(path.stem)}](../scenarios/{path.stem}.md) | `{name}` | {on_ros(name)} |"
 
 
+def statement(words: str, name: str) -> str:
+    """The line of a statement that a scenario (folder/name) is won because of."""
+    return f"| `{words}` | [{name}](../scenarios/{Path(name).name}.md) | {on_ros(name)} |"
+
+
 def title(name: str) -> str:
     """A pattern's name as a heading."""
     return name.replace("_", " ").capitalize()
@@ -95,6 +102,8 @@ def index(text: str, rows: Mapping[str, str]) -> str:
     known.update(rows)
     tables = {group: [HEAD, *(known[name] for name in names if name in known)] for group, names in GROUPS.items()}
     tables["Stories"] = ["| story | scenario | on ROS |\n| --- | --- | --- |", *map(story, STORIES)]
+    said = starmap(statement, STATEMENTS.items())
+    tables["Statements"] = ["| statement | scenario | on ROS |\n| --- | --- | --- |", *said]
     for group, lines in tables.items():
         table = "\n".join(lines)
         begin = f"<!-- made: {group} -->\n"

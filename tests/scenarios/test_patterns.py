@@ -6,6 +6,7 @@ import functools
 import itertools
 import re
 from dataclasses import replace
+from itertools import starmap
 from typing import Iterator, Mapping, Tuple
 
 import pytest
@@ -63,7 +64,8 @@ def test_all_patterns_of_the_catalogue_have_a_scenario_a_page_and_a_line_in_the_
     assert {path.stem for path in make.PAGES.glob("*.md")} == {"README", *FILES}
     listed = re.findall(r"^\| \[[\w ]+\]\((\w+)\.md\)", make.INDEX.read_text(encoding="utf-8"), re.MULTILINE)
     assert listed == list(FILES)
-    assert {make.story(path) for path in make.STORIES} <= set(make.INDEX.read_text(encoding="utf-8").split("\n")), AGAIN
+    lines = {*map(make.story, make.STORIES), *starmap(make.statement, make.STATEMENTS.items())}
+    assert lines <= set(make.INDEX.read_text(encoding="utf-8").split("\n")), AGAIN
     shown = {picture for name in FILES for picture in re.findall(r"\((\w+\.svg)\)", make.written(name))}
     assert {path.name for path in make.PAGES.glob("*.svg")} == shown
 
