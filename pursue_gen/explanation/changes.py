@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import (
     SLOWER,
@@ -49,9 +50,9 @@ class Change:
     """A change that wins.
 
     `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or earliest (an end of an
-    event's window), times, travel, distance, direction, rule, dependency or control; `name` whose; `before` and `after`
-    its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is now, that does not win: the
-    next smaller one, where the change is known to be the `least`.
+    event's window), times, travel, distance, direction, rule, dependency, assumption or control; `name` whose; `before`
+    and `after` its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is now, that does
+    not win: the next smaller one, where the change is known to be the `least`.
     """
 
     what: str
@@ -206,6 +207,7 @@ def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
     for battery in scenario.batteries:
         yield from _number_knobs(rules, battery_changes(scenario, battery))
     yield from _order_knobs(scenario, rules)
+    yield from _number_knobs(rules, assumption_changes(scenario, 2 * _all_time(scenario)))
     for agent in scenario.agents:
         yield from _control_knobs(scenario, rules, agent)
 

@@ -123,6 +123,32 @@ WINDOWS = CALLED.format(deadline=12).replace("mobile 1", "mobile 2").replace(
 SLOW = CALLED.replace("mobile 1", "mobile 3").format(deadline=6)
 
 
+BAR = """poi "bar"
+poi "room"
+connect bar and room distance 4
+event "call" location room
+event "serve" location room duration 2
+event "stock" location bar duration 1
+rule "orders": stock before serve
+agent "bot" controllable mobile 1 location bar can_do serve, stock
+agent "guest" location room can_do call
+objective: if call then serve within 15
+"""
+
+ASSUMED_TWICE = CALLS.replace("call\" at_most 2 times", "call\"") + "assume: guest does call at_most 2 times\n"
+
+LINGERING = """poi "hall"
+poi "gate"
+connect hall and gate distance 2
+event "greet" collaborative location gate
+agent "bot" controllable mobile 1 location gate can_do greet
+agent "guest" mobile 1 location hall reacts_to greet
+assume: guest leaves hall within 30
+assume: guest never at hall
+reach_objective: do greet within 25
+"""
+
+
 def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Rules]:
     """The scenario's text and the rules with the change made to that value, as a person would make it."""
     if change.what == "ends":
@@ -133,10 +159,13 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
         return text, replace(rules, slack={**rules.slack, change.name: int(value)})
     if change.what == "game":
         return text, IDEAL
+    if change.what == "assumption" and change.before == "0":
+        return text.rstrip() + "\n" + re.sub(r"\d+", value, change.sentence) + "\n", rules
     assert change.span is not None
     lines = text.splitlines()
     at = change.span.line - 1
-    words = {"deadline": "within", "after": "after", "agent": "mobile", "duration": "duration", "distance": "distance"}
+    words = {"deadline": "within", "agent": "mobile"}
+    words.update((word, word) for word in ("within", "after", "duration", "distance"))
     if change.what == "duration" and change.before == "0":
         lines[at] += f" duration {value}" if value != "0" else ""
     elif change.what in ("latest", "earliest"):
@@ -155,6 +184,8 @@ def edited(text: str, rules: Rules, change: Change, value: str) -> Tuple[str, Ru
     elif change.what == "times":
         assert f"at_most {change.before} times" in lines[at]
         lines[at] = lines[at].replace(f"at_most {change.before} times", f"at_most {value} times")
+    elif change.what == "assumption":
+        lines[at] = re.sub(rf"\b{change.before}\b", value, lines[at])
     elif change.what == "direction":
         lines[at] = lines[at].replace(" one_way", "")
     elif change.what == "control":
@@ -190,6 +221,10 @@ SMALL = {
     "one way": (ROUND, DEFAULT),
     "windows": (WINDOWS, DEFAULT),
     "two calls": (CALLS, DEFAULT),
+    "calls without a pause": (BAR, DEFAULT),
+    "calls with a short pause": (BAR + "assume: guest waits 6 between call\n", DEFAULT),
+    "calls assumed too often": (ASSUMED_TWICE, DEFAULT),
+    "a guest who may stay": (LINGERING, DEFAULT),
     "slow": (SLOW, DEFAULT),
     "shy": (SHY, DEFAULT),
     "shy, ideal": (SHY, IDEAL),
@@ -208,6 +243,21 @@ def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name
     assert explanation.changes and explanation.play and not explanation.undecided
     check_claims(text, rules, explanation)
     assert json.loads(json.dumps(as_json(explanation)))["changes"][0]["sentence"] == explanation.changes[0].sentence
+
+
+@pytest.mark.parametrize(
+    "name, claim",
+    [
+        ("calls without a pause", "assume: guest waits 20 between call"),
+        ("calls with a short pause", "assume: guest waits 20 between call instead of 6"),
+        ("calls assumed too often", "assume: guest does call at_most 1 times instead of 2"),
+        ("a guest who may stay", "assume: guest leaves hall within 21 instead of 30"),
+    ],
+)
+def test_what_more_has_to_be_assumed_of_others_is_a_statement(name: str, claim: str) -> None:
+    text, rules = SMALL[name]
+    changes = explain(parse(text, "x.pur"), rules, Limits(PLENTY)).changes
+    assert [change.sentence for change in changes if change.what == "assumption"] == [claim]
 
 
 @pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
