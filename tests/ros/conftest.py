@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from ros_world import NEEDED, Ros, generated, make, make_whole
+from ros_world import NEEDED, Ros, generated, lay_over, make, make_whole
 
 Build = Callable[..., Path]
 
@@ -30,16 +30,20 @@ def ros(tmp_path_factory: pytest.TempPathFactory) -> Ros:
     return found
 
 
+BUILDS = {("thesis/scenario_1", "distributed"): make_whole, ("thesis/scenario_1", "centralized"): make}
+
+
 @pytest.fixture(scope="session")
 def built(ros: Ros) -> Build:
     """`built(name, controllers)`: the workspace of scenarios/<name>.pur, generated and built; each once in a session.
+    Scenario 1 is built whole, or over the packages that all have in common; nodes of the others run from their sources.
 
     Other tests use it at the same time: who changes anything in it makes one of their own.
     """
 
     def build(name: str, controllers: str = "distributed") -> Path:
         def workspace(folder: Path) -> None:
-            builds = make_whole if (name, controllers) == ("thesis/scenario_1", "distributed") else make
+            builds = BUILDS.get((name, controllers), lay_over)
             builds(ros, generated(name, folder, controllers))
 
         return ros.once(f"{Path(name).name}_{controllers}", workspace)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from ros_world import Ros, judged, make, missions
+from ros_world import Ros, judged, lay_over, missions
 
 from pursue_gen.language import parse
 from pursue_gen.synthesis.plan import read_plan
@@ -45,4 +45,4 @@ def test_a_plan_of_uppaal_tiga_is_played(ros: Ros, reference_dir: Path, tmp_path
     plan = read_plan((reference_dir / "CT1" / "UPPAAL_plan.txt").read_text(errors="replace"), network, "plan")
     options = Options(reaction=Fraction(0))
     folder = write_workspace(scenario, network, scenario_objective(scenario), plan, options, tmp_path / "ct1")
-    assert missions(judged(ros, make(ros, folder))) == 4
+    assert missions(judged(ros, lay_over(ros, folder))) == 4

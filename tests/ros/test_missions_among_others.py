@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from ros_world import Ros, judged, make, missions
+from ros_world import Ros, judged, lay_over, missions
 
 from benchmarks.families import pass_bystanders
 from pursue_gen.language import parse
@@ -33,4 +33,4 @@ def test_passers_by_are_seen_and_change_nothing(ros: Ros, tmp_path: Path) -> Non
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, Options(), tmp_path / "crowd")
     assert "person1" not in (folder / "src" / "controller_bot1" / "config" / "strategy.yaml").read_text()
     assert "person1" in (folder / "src" / "observer" / "config" / "model.yaml").read_text()
-    assert missions(judged(ros, make(ros, folder))) == 4
+    assert missions(judged(ros, lay_over(ros, folder))) == 4
