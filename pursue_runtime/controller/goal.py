@@ -123,7 +123,8 @@ class GoalTracker:
             self._ours.append(self._id)
         if in_progress and real >= self._sent_real + FIRST_WAIT:
             self._sends = 1  # whatever was sent before it has been answered
-        taken = own or any(a.status in ACTIVE and a.goal not in self._before for a in entries)
+        is_unknown = self._settings.goals == "simple" and not self._id  # a clock may be off by more than `clock_skew`
+        taken = own or (is_unknown and any(a.status in ACTIVE and a.goal not in self._before for a in entries))
         if taken:
             self._missing, self.is_lost = None, False
         elif self._missing is None:

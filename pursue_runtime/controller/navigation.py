@@ -5,12 +5,22 @@ Times are seconds of ROS time, `real` of the monotonic clock; distances are metr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.controller.goal import ABORTED, CANCELLED, FAILURES, SUCCEEDED, Answer, Goal, GoalTracker, Movement
+from pursue_runtime.controller.goal import (
+    ABORTED,
+    CANCELLED,
+    FAILURES,
+    OVER,
+    SUCCEEDED,
+    Answer,
+    Goal,
+    GoalTracker,
+    Movement,
+)
 from pursue_runtime.controller.reports import Report
 from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
 from pursue_runtime.locations import is_action
 from pursue_runtime.words import (
@@ -61,25 +71,6 @@ class Due(NamedTuple):
     word: Optional[str] = None
 
 
-@dataclass
-class Trip:
-    """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took."""
-
-    movement: Movement
-    since: float
-    is_return: bool = False
-    goal_at: Optional[float] = None
-    attempts: int = 0
-    has_arrived: bool = False
-    has_failed: bool = False
-    is_cancelled: bool = False  # by another node: it waits for a person
-
-    @property
-    def is_over(self) -> bool:
-        """Return True if no further goal is due."""
-        return self.has_arrived or self.has_failed
-
-
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
 
@@ -89,8 +80,8 @@ class Navigation:
 
     The robot gets goals for the movement that the state shows, and gets an action only where it is known to be at the
     action's place. If it is not, that is reported; while the state lists it as `returning` it gets a goal for its
-    place. A goal that another node has cancelled is sent again when the state has listed the robot as `held`, and
-    does so no more.
+    place. A goal that a goal of another node has replaced is sent again, `~retries` times. One that another node has
+    cancelled, or replaced once more, is sent again when the state has listed the robot as `held`, and does so no more.
     """
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
@@ -107,6 +98,7 @@ class Navigation:
         """The seconds that the strategy allows a command: reports are sent again by it; 0: not known."""
         self._report: Optional[Report] = None
         self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
+        self._was_sent_away = False  # by another node, from where the state has it
 
     @property
     def goal(self) -> str:
@@ -137,8 +129,10 @@ class Navigation:
         if self._report is not None and self._is_shown(self._report.word, view):
             self._report.confirmed = True
         trip = self._trip
-        if trip is not None and trip.is_cancelled and before.held and not view.held:
-            trip.is_cancelled, trip.goal_at = False, now
+        if trip is not None and trip.waits and before.held and not view.held:
+            trip.resume(now)
+        if self.settings.believes_words and view.displaced != before.displaced:  # also by the controller before this
+            self._was_sent_away = view.displaced
         if view.returning and view.post is not None and trip is None:
             self._trip = Trip(Movement(view.location, view.post), now, is_return=True, goal_at=now)
         elif trip is not None and trip.is_return and not view.returning:
@@ -161,7 +155,7 @@ class Navigation:
         if answer.status == SUCCEEDED:
             self._on_success(trip)
         elif answer.status in CANCELLED:
-            self._on_cancelled(trip, CANCELLED[answer.status], answer.text)
+            self._on_cancelled(trip, answer, now)
         else:
             self._on_failure(trip, FAILURES[answer.status], answer.text, now)
 
@@ -169,8 +163,15 @@ class Navigation:
         """Take move_base's status: the goals that it has, and those that are over since a few seconds."""
         for answer in self._goal.on_status(answers, real):
             self.on_result(answer, now)
-        if self._trip is None and self._goal.others(answers):
+        trip, has_others = self._trip, self._goal.others(answers)
+        if trip is None and has_others:
             self._at.on_departure()
+            self._was_sent_away = self._view.post is not None and not self._is_acting
+        elif trip is not None and trip.cancelled is not None:
+            if has_others:
+                self._on_replaced(trip, trip.cancelled, now)
+            elif any(answer.goal == trip.cancelled.goal and answer.status in OVER for answer in answers):
+                self._hold(trip, trip.cancelled)
 
     def on_position(self, position: Optional[Position], now: float) -> None:
         """Take a position on the map; None: it is not published any more."""
@@ -186,6 +187,8 @@ class Navigation:
         if trip is not None:
             if not trip.is_return and now >= self._arrives_at(trip):
                 self._arrive(trip)
+            if trip.cancelled is not None and now >= trip.decided_at:
+                self._hold(trip, trip.cancelled)
             goal = self._due_goal(trip, now, real)
         if self._action is not None and self._may_act(self._action, now):
             action, self._action = self._action, None
@@ -199,6 +202,7 @@ class Navigation:
         if trip is not None:
             moments += [self._goal_due_at(trip)] if trip.goal_at is not None and self._may_go(trip) else []
             moments += [] if trip.is_return else [self._arrives_at(trip)]
+            moments += [trip.decided_at] if trip.cancelled is not None else []
         if post is not None and self._doubt is not None:
             moments += [self._at.stands_at()] if self._at.is_near(post) and not self._goal.is_active else []
             moments += [] if self._reports(DISPLACED) or self._view.displaced else [self._doubt + self._grace]
@@ -210,19 +214,18 @@ class Navigation:
     def _is_known(self, now: float) -> bool:
         """Return True if the robot is known to be at the place where the state has it."""
         post = self._view.post
-        if post is None or self.settings.believes_words:
+        if post is None or self._believes_words:
             return True
         return not self._goal.is_active and self._at.is_known_at(post, now)
 
     def _check_post(self, now: float) -> None:
         """Report that the robot is not known to be where the state has it, or that it is there again."""
         post = self._view.post
-        is_acting = is_action(self._view.location) and self._action is None  # it may move, as its action demands
-        if post is None or is_acting or self.settings.believes_words:
+        if post is None or self._is_acting or (self._believes_words and not self._view.displaced):
             self._doubt = None
             return
         if self._is_known(now):
-            self._doubt = None
+            self._doubt, self._was_sent_away = None, False
             if (self._view.displaced or self._reports(DISPLACED)) and not self._reports(BACK):
                 self.trouble = ""
                 self._log("info", f"{self.name} is at {post.poi}")
@@ -234,9 +237,21 @@ class Navigation:
         if not is_elsewhere and now < self._doubt + self._grace:
             return
         self.trouble = self._at.describe(post)
+        if self._was_sent_away and self._at.position is None:
+            self.trouble = f"was sent away from {post.poi} by another node"
         if not self._view.displaced and not self._reports(DISPLACED):
             self._log("warn", f"{self.name} {self.trouble}, where the state has it")
             self._report = Report(self._word(DISPLACED, self.trouble), self.reaction)
+
+    @property
+    def _is_acting(self) -> bool:
+        """Return True while the robot does an action: it may move, as that demands."""
+        return is_action(self._view.location) and self._action is None
+
+    @property
+    def _believes_words(self) -> bool:
+        """Return True if the words on pursue/events show where the robot is, and nothing else speaks against them."""
+        return self.settings.believes_words and not self._was_sent_away
 
     @property
     def _grace(self) -> float:
@@ -256,6 +271,7 @@ class Navigation:
         """Begin with another location: whatever belonged to the one before is over."""
         self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
         self._action = self._report = self._doubt = None
+        self._was_sent_away = False
         self._as_of = view.seq
         self.trouble = ""
         self._goal.drop()
@@ -265,12 +281,13 @@ class Navigation:
     def _may_go(self, trip: Trip) -> bool:
         """Return True if the robot may get a goal for this trip."""
         wanted = self._view.returning if trip.is_return else self._view.running
-        return wanted and not (self._view.held or trip.is_cancelled or trip.is_over)
+        return wanted and not (self._view.held or trip.waits or trip.is_over)
 
     def _goal_due_at(self, trip: Trip) -> float:
         """Return when the goal is due: a robot that is being moved is sent back when it stands."""
         moment = trip.goal_at if trip.goal_at is not None else float("inf")
-        return max(moment, self._at.stands_at()) if trip.is_return and self._at.position is not None else moment
+        is_carried = trip.is_return and self._at.position is not None and not trip.replaced
+        return max(moment, self._at.stands_at()) if is_carried else moment
 
     def _due_goal(self, trip: Trip, now: float, real: float) -> Optional[Goal]:
         if not self._may_go(trip):
@@ -303,12 +320,12 @@ class Navigation:
         """Report the end of the movement until the state shows it; no further goal is due."""
         poi = trip.movement.place.poi
         self._at.on_arrival(poi)
-        trip.has_arrived, trip.goal_at, self.trouble = True, None, ""
+        trip.has_arrived, trip.goal_at, trip.cancelled, self.trouble = True, None, None, ""
         word = Word("", f"{self.name}_{trip.movement.location}2{poi}", as_of=self._as_of)
         self._report = Report(format_word(word), self.reaction)
 
     def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
-        what = self._what(trip, how, text)
+        what = trip.describe(how, text)
         if trip.attempts <= self.settings.retries:
             self.trouble = f"{what}; trying again"
             self._log("warn", f"{self.name} {self.trouble}")
@@ -320,16 +337,28 @@ class Navigation:
             is_blocked = how == FAILURES[ABORTED] and not trip.is_return
             self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble), self.reaction)
 
-    def _on_cancelled(self, trip: Trip, how: str, text: str) -> None:
-        self.trouble = self._what(trip, f"{how} by another node", text)
-        self._log("warn", f"{self.name} {self.trouble}; it is held until {self.name}:{RESUME} is published")
-        trip.is_cancelled, trip.attempts = True, 0
-        self._report = Report(self._word(HELD, self.trouble), self.reaction)
+    def _on_cancelled(self, trip: Trip, answer: Answer, now: float) -> None:
+        """Wait for the status that shows whether a goal of another node has taken the place of ours."""
+        self.trouble = trip.describe(f"{CANCELLED[answer.status]} by another node", answer.text)
+        trip.cancel(answer, now)
 
-    @staticmethod
-    def _what(trip: Trip, how: str, text: str) -> str:
-        way = "on its way back to" if trip.is_return else "on its way to"
-        return f"{way} {trip.movement.place.poi}: {how}" + (f": {text}" if text else "")
+    def _on_replaced(self, trip: Trip, answer: Answer, now: float) -> None:
+        """Take the robot back, unless it was sent elsewhere too often: then it is held."""
+        trip.replaced += 1
+        if trip.replaced > self.settings.retries:
+            self._hold(trip, answer)
+            return
+        self.trouble = f"{trip.describe('sent elsewhere by another node')}; its goal is sent again"
+        self._log("warn", f"{self.name} {self.trouble}")
+        trip.cancelled, trip.goal_at = None, now
+
+    def _hold(self, trip: Trip, answer: Answer) -> None:
+        """Wait for a person: the goal was cancelled, or another node insists on goals of its own."""
+        often = f" {trip.replaced} times" if trip.replaced > 1 else ""
+        self.trouble = trip.describe(f"{CANCELLED[answer.status]} by another node{often}", answer.text)
+        self._log("warn", f"{self.name} {self.trouble}; it is held until {self.name}:{RESUME} is published")
+        trip.cancelled, trip.is_held = None, True
+        self._report = Report(self._word(HELD, self.trouble), self.reaction)
 
     # Reports ----------------------------------------------------------------------------------------------------------
 

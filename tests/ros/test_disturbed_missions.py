@@ -59,12 +59,11 @@ class Person:
         self.resume(robot)
 
     def sends_elsewhere(self, robot: str) -> None:
-        """The robot is sent elsewhere on the way, and goes on later."""
+        """The robot is sent elsewhere on the way, and taken back."""
         self.after(robot, f"goal {TARGETS[robot]}")
         place = "{x: -8.0, y: 8.0}"
         pose = f"{{header: {{frame_id: map}}, pose: {{position: {place}, orientation: {{w: 1.0}}}}}}"
         self.robots.publish(f"{robot}/move_base_simple/goal", "geometry_msgs/PoseStamped", pose)
-        self.resume(robot)
 
     def carries(self, robot: str) -> None:
         """The robot is carried away, on the way or when it has arrived."""

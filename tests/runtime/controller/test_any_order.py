@@ -20,6 +20,7 @@ from tests.runtime.controller.robot_world import (
     DISPLACED,
     FAILED,
     HELD,
+    PREEMPTED,
     WAY,
     B,
     World,
@@ -52,8 +53,8 @@ STEPS = st.one_of(
 class Anything:
     """A world in which steps happen, and what may be sent there."""
 
-    def __init__(self, goals: str, ends: str) -> None:
-        self.world = World(goals=goals, ends=ends)
+    def __init__(self, goals: str, ends: str, **settings: object) -> None:
+        self.world = World(goals=goals, ends=ends, **settings)
         self.way: Optional[Movement] = None
         self.doing: Optional[str] = None
         self.lists = {"running": True, "held": False, "displaced": False, "returning": False}
@@ -170,7 +171,7 @@ def test_a_goal_that_another_node_cancelled_is_not_sent_before_a_person_lets_the
     any_world.do(Step("way", WAY))
     world.result(status)
     for step in steps:
-        if step.kind in ("way", "stay", "over", "lists"):
+        if step.kind in ("way", "stay", "over", "lists", "other"):
             continue
         any_world.do(step)
     assert len(world.goals) == 1
@@ -178,3 +179,25 @@ def test_a_goal_that_another_node_cancelled_is_not_sent_before_a_person_lets_the
         any_world.lists = {"running": True, "held": False, "displaced": False, "returning": False, **lists}
         any_world.show()
     assert len(world.goals) == (1 if world.words and "bot1_going_c_to_b2b" in world.words else 2)
+
+
+@given(st.sampled_from(GOALS), st.sampled_from(ENDS), st.lists(STEPS, max_size=12), st.integers(0, 3))
+def test_another_node_that_insists_is_given_way_to(goals: str, ends: str, steps: List[Step], retries: int) -> None:
+    any_world = Anything(goals, ends, retries=retries)
+    world = any_world.world
+    for step in steps:
+        any_world.do(step)
+    any_world.lists = {"running": True, "held": False, "displaced": False, "returning": False}
+    any_world.way = any_world.doing = None
+    any_world.show()
+    any_world.do(Step("at", (9.0, 9.0, 0.0)))
+    sent = len(world.goals)
+    any_world.do(Step("way", WAY))
+    for count in range(9):
+        ours = world.goals[-1].name if goals == "action" else f"/move_base-{count}"
+        world.wait(0.3)
+        world.status(Answer(ours, world.now, ACTIVE))
+        world.wait(3.0)
+        world.status(Answer(ours, world.now, PREEMPTED), Answer(f"rviz-{count}-{world.now}", world.now, ACTIVE))
+    assert len(world.goals) == sent + 1 + retries, "its goal, and as many again as the settings say"
+    assert world.words[-1] == HELD

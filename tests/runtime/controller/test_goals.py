@@ -192,6 +192,105 @@ def test_who_brings_a_held_robot_to_its_place_ends_the_movement() -> None:
     assert robot.words[-1] == END and len(robot.goals) == 1
 
 
+# Sent elsewhere by somebody else --------------------------------------------------------------------------------------
+
+
+def sent_elsewhere(robot: World, name: str, result_first: bool = True) -> None:
+    """Another node sends the robot a goal of this id, as move_base shows that: a result, and a status with both."""
+    ours = Answer(its_id(robot), robot.now, PREEMPTED, TAKEN_BY_OTHER)
+    if result_first:
+        robot.result(PREEMPTED, ours.goal, text=TAKEN_BY_OTHER)
+    robot.status(ours, Answer(name, robot.now, PENDING))
+    if not result_first:
+        robot.result(PREEMPTED, ours.goal, text=TAKEN_BY_OTHER)
+
+
+@pytest.mark.parametrize("result_first", [True, False])
+def test_a_robot_that_is_sent_elsewhere_is_taken_back_at_once_and_the_operator_is_told(
+    robot: World, result_first: bool
+) -> None:
+    robot.wait(0.3)
+    robot.status(listed(robot))
+    robot.wait(3.0)
+    sent_elsewhere(robot, "rviz-1", result_first)
+    assert [goal.movement for goal in robot.goals] == [WAY, WAY] and robot.words == []
+    assert robot.robot.trouble == "on its way to b: sent elsewhere by another node; its goal is sent again"
+    assert ("warn", f"bot1 {robot.robot.trouble}") in robot.said
+    robot.wait(0.3)
+    statuses(robot, 5.0, listed(robot), Answer("rviz-1", robot.now - 0.3, PREEMPTED))
+    assert len(robot.goals) == 2 and robot.words == []
+    robot.result(SUCCEEDED, its_id(robot))
+    assert robot.words == [END] and robot.robot.trouble == ""
+
+
+def test_a_person_who_insists_holds_the_robot_and_the_reason_says_how_often(robot: World) -> None:
+    for count in range(3):
+        robot.wait(0.3)
+        robot.status(listed(robot))
+        robot.wait(3.0)
+        sent_elsewhere(robot, f"rviz-{count}")
+    assert len(robot.goals) == 3 and set(robot.words) == {HELD}
+    assert f"{HELD}#0 on its way to b: preempted by another node 3 times: {TAKEN_BY_OTHER}" in robot.texts
+    robot.state(held=True, running=False)
+    robot.status(Answer("rviz-3", robot.now, ACTIVE))
+    robot.wait(30.0)
+    assert len(robot.goals) == 3, "never two who send it to and fro"
+    robot.state()
+    robot.wait(0.3)
+    robot.status(listed(robot))
+    assert len(robot.goals) == 4
+    robot.wait(3.0)
+    sent_elsewhere(robot, "rviz-4")
+    assert len(robot.goals) == 5, "a person has let it resume: the count begins anew"
+
+
+def test_without_retries_a_robot_that_is_sent_elsewhere_is_held_at_once() -> None:
+    robot = World(goals="action", ends="result", retries=0)
+    robot.go()
+    sent_elsewhere(robot, "rviz-1")
+    assert len(robot.goals) == 1 and "preempted by another node: " in robot.texts[0] and set(robot.words) == {HELD}
+
+
+def test_a_robot_that_is_sent_elsewhere_while_the_mission_holds_is_taken_back_when_it_goes_on(robot: World) -> None:
+    robot.status(listed(robot))
+    robot.state(running=False)
+    robot.wait(3.0)
+    sent_elsewhere(robot, "rviz-1")
+    robot.wait(30.0)
+    assert len(robot.goals) == 1
+    robot.state()
+    assert len(robot.goals) == 2 and HELD not in robot.words
+
+
+def test_a_robot_that_is_sent_elsewhere_after_its_movement_is_not_sent_on_the_old_way(robot: World) -> None:
+    robot.status(listed(robot))
+    robot.wait(3.0)
+    robot.result(PREEMPTED, its_id(robot), text=TAKEN_BY_OTHER)
+    robot.stay()
+    robot.status(Answer("rviz-1", robot.now, ACTIVE))
+    robot.wait(30.0)
+    assert len(robot.goals) == 1
+
+
+@pytest.mark.parametrize("result_first", [True, False])
+def test_a_status_that_shows_the_cancellation_alone_decides_at_once(robot: World, result_first: bool) -> None:
+    robot.status(listed(robot))
+    robot.wait(3.0)
+    if result_first:
+        robot.result(PREEMPTED, its_id(robot))
+        assert robot.words == []
+    robot.status(Answer(its_id(robot), robot.now, PREEMPTED))
+    assert robot.words == [HELD] and len(robot.goals) == 1
+
+
+def test_a_goal_of_ours_that_was_lost_is_sent_again_though_another_node_has_one_in_progress(robot: World) -> None:
+    robot.wait(0.3)
+    robot.status(listed(robot))
+    robot.wait(3.0)
+    statuses(robot, 1.4, Answer("rviz-1", robot.now, ACTIVE))  # move_base was started again, and has lost ours
+    assert len(robot.goals) == 2
+
+
 def test_a_goal_that_waits_for_its_second_attempt_is_lost_with_the_movement(robot: World) -> None:
     robot.result(ABORTED, its_id(robot))
     robot.status(Answer("rviz-1", robot.now, PENDING))

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from pursue_runtime.controller.goal import Answer
+from pursue_runtime.controller.trip import STATUS_WAIT
 from pursue_runtime.controller.whereabouts import place_of, turned
 from tests.runtime.controller.robot_world import (
     ABORTED,
@@ -114,6 +115,7 @@ def test_the_end_of_a_goal_of_somebody_else_is_not_ours() -> None:
     simple.now += 3.0
     simple.result(PREEMPTED, "ours", simple.now - 2.9)
     simple.result(SUCCEEDED, "rviz-1")
+    simple.wait(STATUS_WAIT)
     assert (action.words, simple.words) == ([], [HELD])
 
 

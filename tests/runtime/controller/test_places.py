@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pursue_runtime.controller.goal import Answer, Movement
+from pursue_runtime.controller.trip import STATUS_WAIT
 from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
@@ -158,6 +159,7 @@ def test_the_way_back_is_held_and_fails_as_other_ways_do(robot: World) -> None:
     robot.stay(displaced=True, returning=True, running=False)
     robot.wait(1.0)
     robot.result(PREEMPTED)
+    robot.wait(STATUS_WAIT)
     assert robot.words[-1] == HELD
     robot.stay(displaced=True, returning=True, held=True, running=False)
     robot.wait(30.0)
@@ -170,6 +172,18 @@ def test_the_way_back_is_held_and_fails_as_other_ways_do(robot: World) -> None:
     robot.stay(lost=True, running=False)
     robot.wait(30.0)
     assert len(robot.goals) == 5
+
+
+def test_a_robot_that_is_sent_elsewhere_on_its_way_back_is_taken_back_though_it_moves(robot: World) -> None:
+    robot.at(8.0, 4.0)
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.wait(1.0)
+    own = robot.goals[-1].name
+    for step in range(5):
+        robot.at(8.0 - 0.2 * step, 4.0)
+        robot.wait(0.1)
+    robot.status(Answer(own, robot.now, PREEMPTED), Answer("rviz-1", robot.now, ACTIVE))
+    assert [goal.movement for goal in robot.goals[1:]] == [Movement("b", B)] * 2 and HELD not in robot.words
 
 
 def test_the_way_back_ends_with_the_need_for_it(robot: World) -> None:
@@ -192,6 +206,64 @@ def test_what_is_known_by_results_alone_ends_with_a_goal_of_another_node() -> No
     assert robot.robot.is_placed(robot.now) and robot.words == [END]
     robot.status(own, Answer("rviz-1", robot.now, ACTIVE))
     assert robot.words[-1] == DISPLACED and not robot.robot.is_placed(robot.now)
+    assert robot.texts[-1].endswith("was sent away from b by another node")
+
+
+@pytest.mark.parametrize("goals", ["simple", "action"])
+def test_words_are_believed_until_another_node_sends_the_robot_away(goals: str) -> None:
+    robot = World(goals=goals)
+    robot.go()
+    ours = robot.goals[-1].name if goals == "action" else "/move_base-1"
+    robot.status(Answer(ours, robot.now, ACTIVE))
+    robot.stay()  # its own word has ended the movement
+    robot.status(Answer(ours, robot.now, SUCCEEDED))
+    assert robot.robot.is_placed(robot.now) and robot.words == []
+    robot.wait(5.0)
+    robot.status(Answer("rviz-1", robot.now, ACTIVE))
+    assert robot.words == [DISPLACED] and not robot.robot.is_placed(robot.now)
+    robot.stay(displaced=True)
+    robot.status(Answer("rviz-1", robot.now, SUCCEEDED))
+    assert robot.wait(30.0) == [] and len(robot.goals) == 1, "it stays there while nothing waits for it"
+    robot.stay(displaced=True, returning=True, running=False)
+    assert [goal.movement for goal in robot.goals[1:]] == [Movement("b", B)]
+    back = robot.goals[-1].name if goals == "action" else "/move_base-2"
+    robot.wait(0.3)
+    robot.status(Answer(back, robot.now, ACTIVE))
+    assert robot.words == [DISPLACED]
+    robot.status(Answer(back, robot.now, SUCCEEDED))
+    assert robot.words == [DISPLACED, BACK_AGAIN]
+    robot.stay()
+    assert robot.robot.is_placed(robot.now) and robot.wait(30.0) == [] and robot.robot.trouble == ""
+
+
+def test_a_controller_that_is_started_again_knows_that_a_robot_with_words_was_sent_away() -> None:
+    robot = World(goals="action")
+    robot.stay(displaced=True)
+    assert robot.wait(30.0) == []
+    robot.stay(displaced=True, returning=True, running=False)
+    robot.result(SUCCEEDED)
+    assert robot.words[-1] == BACK_AGAIN and len(robot.goals) == 1
+
+
+def test_a_person_may_say_that_a_robot_with_words_is_back() -> None:
+    robot = World(goals="action")
+    robot.stay()
+    robot.status(Answer("rviz-1", robot.now, ACTIVE))
+    robot.stay(displaced=True)
+    robot.status()
+    robot.stay()
+    assert robot.robot.is_placed(robot.now) and robot.wait(30.0) == []
+
+
+def test_a_robot_with_words_may_have_goals_of_its_own_in_its_action() -> None:
+    robot = World(goals="action")
+    robot.stay(doing="clean")
+    robot.robot.act("clean", "doing_clean_in_b")
+    robot.act()
+    robot.status(Answer("own-1", robot.now, ACTIVE))
+    robot.status(Answer("own-1", robot.now, SUCCEEDED))
+    robot.stay()
+    assert robot.robot.is_placed(robot.now) and robot.words == []
 
 
 def test_where_nothing_is_known_the_robot_is_sent_to_its_place_first() -> None:

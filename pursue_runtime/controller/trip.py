@@ -1,0 +1,55 @@
+"""What a robot is on its way to, and what has become of its goals. Times are seconds of ROS time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+from pursue_runtime.controller.goal import Answer, Movement
+
+STATUS_WAIT = 2.0
+"""Seconds after a goal was cancelled for the status that shows whether a goal of another node has replaced it."""
+
+
+@dataclass
+class Trip:
+    """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took.
+
+    Its goal may be cancelled by another node. `cancelled` is that answer until it is known whether a goal of the other
+    node has replaced ours (`replaced` counts how often), which is at `decided_at` at the latest.
+    """
+
+    movement: Movement
+    since: float
+    is_return: bool = False
+    goal_at: Optional[float] = None
+    attempts: int = 0
+    has_arrived: bool = False
+    has_failed: bool = False
+    is_held: bool = False  # it waits for a person
+    cancelled: Optional[Answer] = None
+    decided_at: float = 0.0
+    replaced: int = 0
+
+    @property
+    def is_over(self) -> bool:
+        """Return True if no further goal is due."""
+        return self.has_arrived or self.has_failed
+
+    @property
+    def waits(self) -> bool:
+        """Return True if its goal was cancelled: it waits for a person, or for the status that shows why."""
+        return self.is_held or self.cancelled is not None
+
+    def cancel(self, answer: Answer, now: float) -> None:
+        """Note that another node has cancelled the goal."""
+        self.cancelled, self.decided_at, self.attempts = answer, now + STATUS_WAIT, 0
+
+    def resume(self, now: float) -> None:
+        """Note that a person lets the robot resume: a goal is due."""
+        self.is_held, self.cancelled, self.replaced, self.goal_at = False, None, 0, now
+
+    def describe(self, how: str, text: str = "") -> str:
+        """Return what has become of it, in words; `text` is move_base's own."""
+        way = "on its way back to" if self.is_return else "on its way to"
+        return f"{way} {self.movement.place.poi}: {how}" + (f": {text}" if text else "")
