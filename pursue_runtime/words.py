@@ -8,6 +8,7 @@ from typing import NamedTuple, Optional
 EVENTS = "pursue/events"
 STATE, SYSTEM_STATE = "pursue/state", "pursue/system_state"
 PLAN = "pursue/plan"
+MARKERS = "pursue/markers"
 SEEN = "pursue/seen"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"

@@ -13,7 +13,7 @@ A template that uses anything else is an error (jinja2's StrictUndefined). Every
 - `time_unit`: the default length of a time unit in seconds;
 - `machines`, for each node of the mission its name and {host, user, env_loader} of the machine that runs it;
 - `docker`, `systemd`: whether the workspace has files for containers, for services;
-- `plays`: the arguments of each launch test.
+- `plays`: the arguments of each launch test; `view`: the centre and the scale of rviz's view.
 
 The manifests and CMakeLists.txt also have `exec_depends`, `test_depends`, `nodes` (files of `scripts/`),
 `python_packages` (in `src/`) and the `folders` that are installed as they are.

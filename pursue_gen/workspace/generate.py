@@ -40,12 +40,15 @@ from pursue_gen.workspace.packages import (
     templates_dir,
 )
 from pursue_gen.workspace.poses_text import poses_text
-from pursue_gen.workspace.spots import placing
+from pursue_gen.workspace.spots import Placing, placing
 from pursue_runtime.manifest import MISSION, Manifest, make_manifest, mission_file
 
 _UI = "UI"
 _PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
 _PEOPLE = "people"
+_VIEW = (520, 300)
+"""Pixels of rviz's window that the places take, at most."""
+
 _MISSION_DATA = re.compile(r"src/(\w+)/config/(\w+\.yaml)", re.ASCII)
 
 
@@ -67,13 +70,14 @@ def generate(
     plan = write_plan(strategy, network, objective)
     values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
+    values["view"] = _view([(pose.x, pose.y) for pose in where.places.values()])
     data = {
         "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
-        "ui": _ui_settings(values, scenario, network),
+        "ui": _ui_settings(values, scenario, network, where),
         "controllers": _controllers(values),
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
@@ -190,6 +194,14 @@ def _plays(scenario: Scenario, trace: Optional[str]) -> List[str]:
     return ["mode:=still", *(random if free else []), *(["mode:=trace"] if trace else [])]
 
 
+def _view(places: Sequence[Tuple[float, float]]) -> Dict[str, float]:
+    """The view of rviz from above: its centre (`x`, `y`, in metres) and its `scale`, in pixels per metre."""
+    low, high = ([pick(numbers) for numbers in zip(*places)] for pick in (min, max))
+    metres = max(high[0] - low[0], (high[1] - low[1]) * _VIEW[0] / _VIEW[1], 1.0)
+    x, y = ((a + b) / 2 for a, b in zip(low, high))
+    return {"x": round(x, 3) + 0.0, "y": round(y, 3) + 0.0, "scale": round(_VIEW[0] / metres, 1)}
+
+
 def _expected(
     network: Network, objective: Objective, scenario: Scenario, controllers: Sequence[SubStrategy]
 ) -> bytes:
@@ -203,14 +215,20 @@ def _expected(
     return expected.expected(network, objective, owner, commands, nodes)
 
 
-def _ui_settings(values: Mapping[str, Any], scenario: Scenario, network: Network) -> bytes:
+def _ui_settings(values: Mapping[str, Any], scenario: Scenario, network: Network, where: Placing) -> bytes:
     """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends the simulator reports, the
-    connections of the map with their lengths, and what rules, states and objectives are at, in words."""
+    connections of the map with their lengths, the robots' spots that are not the pose of their place, and what rules,
+    states and objectives are at, in words."""
+    spots = {
+        robot: {name: inline([pose.x, pose.y]) for name, pose in table.items() if pose != where.places[name]}
+        for robot, table in where.spots.items()
+    }
     data = {
         "format": 1,
         "nodes": inline(("observer", *values["controllers"], "simulator")),
         "reports": inline(values["reported"]),
         "connections": inline([_connection(way) for way in scenario.connections]),
+        "spots": {robot: table for robot, table in spots.items() if table},
         "statuses": [
             inline({"of": each.of, "label": each.label, "texts": dict(each.texts)})
             for each in statuses(scenario, network)

@@ -67,6 +67,7 @@ NODES: Mapping[str, Mapping[str, Node]] = {
         "simulator": Node("nodes.simulator", "The simulated robots, people and other agents."),
         "sim_clock": Node("nodes.sim_clock", "Simulated time, for missions that run faster than life."),
         "recorder": Node("nodes.recorder", "Records a mission in a bag."),
+        "markers": Node("nodes.markers", "Shows the mission in rviz."),
     },
     "bringup": {"run_mission": Node("ui.run_mission", "Launches the mission, and exits with the verdict.")},
     "communication_manager": {"": Node("nodes.communication_manager", "")},

@@ -96,8 +96,21 @@ def test_a_machine_may_run_some_of_the_nodes(launch: Any) -> None:
     extra = ("use_sim_time:=true", "record:=true")
     assert launch("mission.launch", *extra).names == sorted([*MISSION, "sim_clock", "recorder"])
     assert launch("mission.launch", "nodes:=UI", *extra).names == ["UI"]
+    assert launch("mission.launch", "nodes:=UI", "markers:=true").names == ["UI", "markers"]
+    assert launch("mission.launch", "nodes:=observer", "markers:=true").names == ["observer"]
+    assert launch("mission.launch", "nodes:=UI", "rviz:=true").names == ["UI", "markers", "rviz"]
+    assert launch("mission.launch", "nodes:=UI", "rviz:=true", "markers:=false").names == ["UI", "rviz"]
     assert launch("mission.launch", "nodes:=sim_clock recorder", *extra).names == ["recorder", "sim_clock"]
     assert launch("mission.launch", "nodes:=simulator", "simulate:=false").names == []
+
+
+def test_the_monitor_groups_the_diagnostics_of_every_node(launch: Any) -> None:
+    found = launch("monitor.launch")
+    assert found.names == ["diagnostic_aggregator"]
+    group = "/diagnostic_aggregator/analyzers/mission/analyzers"
+    prefixes = [name for key in ("observer", "controllers", "ui") for name in found.params[f"{group}/{key}/startswith"]]
+    assert {f"{node}:" for node in MISSION} <= set(prefixes)
+    assert found.params[f"{group}/controllers/num_items"] == sum(name.startswith("controller") for name in MISSION)
 
 
 REAL = {"goals": "action", "ends": "result", "on_stop": "cancel"}

@@ -30,6 +30,7 @@ from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
 from pursue_runtime import bundle
 from pursue_runtime.poses import read_poses
+from pursue_runtime.words import MARKERS
 
 SHAPES = [
     ("thesis/scenario_1", "distributed", "dedicated"),
@@ -202,6 +203,19 @@ def test_data_and_launch_files_can_be_read(generated: Dict[str, bytes]) -> None:
             json.loads(text)
 
 
+def test_rviz_shows_the_places_and_none_of_its_tools_sends_a_robot_anywhere() -> None:
+    generated = files("thesis/catch_the_thief")
+    rviz = yaml.safe_load(generated["src/catch_the_thief_bringup/rviz/mission.rviz"])["Visualization Manager"]
+    tools = {tool["Class"]: tool.get("Topic") for tool in rviz["Tools"]}
+    assert "rviz/MoveCamera" in tools and set(tools.values()) == {None, "/clicked_point"}
+    assert not {"rviz/SetGoal", "rviz/SetInitialPose"} & set(tools)
+    shown = [each["Marker Topic"] for each in rviz["Displays"] if each["Class"] == "rviz/MarkerArray"]
+    assert shown == [f"/{MARKERS}"]
+    view = rviz["Views"]["Current"]
+    for x, y, *_ in yaml.safe_load(generated["src/UI/config/poses.yaml"])["poses"].values():
+        assert abs(x - view["X"]) * view["Scale"] <= 261 and abs(y - view["Y"]) * view["Scale"] <= 151, "pixels"
+
+
 def test_every_launch_argument_has_a_default_and_says_what_it_is(generated: Dict[str, bytes]) -> None:
     arguments = []
     for path, text in generated.items():
@@ -281,11 +295,19 @@ def test_the_format_of_poses_says_whether_robots_differ() -> None:
         assert (b"0.8 m apart (--spot-distance)" in content) == (package != "UI")
 
 
+def test_the_map_of_the_ui_has_the_spots_that_differ_from_their_places() -> None:
+    made = files("thesis/catch_the_thief", "centralized")
+    spots = yaml.safe_load(made["src/UI/config/ui.yaml"])["spots"]
+    own = yaml.safe_load(made["src/controller/config/poses.yaml"])["robots"]
+    assert spots == {robot: {place: pose[:2] for place, pose in table.items()} for robot, table in own.items()} != {}
+
+
 def test_the_spot_distance_changes_poses_and_nothing_of_the_game() -> None:
     near, far = (generate(*world("thesis/scenario_1"), Options(spot_distance=metres)) for metres in (0.0, 3.0))
     for path in near:
         same = near[path] == far[path] or path.endswith("config/mission.yaml")
-        assert same == (path not in ("src/controller_bot1/config/poses.yaml", "src/controller_bot2/config/poses.yaml"))
+        poses = [f"src/controller_{bot}/config/poses.yaml" for bot in ("bot1", "bot2")]
+        assert same == (path not in (*poses, "src/UI/config/ui.yaml"))
     assert sent(near, "controller_bot2")["bot2"] == sent(near, "controller_bot1")["bot1"]
 
 

@@ -1,0 +1,136 @@
+"""Shows the mission in rviz: visualization_msgs/MarkerArray on pursue/markers, latched.
+
+Parameters: ~map_frame (default: map), ~config, ~received, ~again (see membership).
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Dict, List, Optional
+
+import rospy
+from geometry_msgs.msg import Point
+
+from pursue_runtime.data import Package
+from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    Report,
+    lower_priority,
+    restart_process,
+    run_node,
+    subscribe,
+)
+from pursue_runtime.nodes.robot_link import needed
+from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.parameters import text
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.markers import ARROW, BALL, DISC, LINES, TEXT, Mark, Picture, read_spots
+from pursue_runtime.ui.page import read_floor_plan
+from pursue_runtime.words import MARKERS
+
+HEIGHTS = {LINES: 0.0, DISC: 0.01, ARROW: 0.04, BALL: 0.1, TEXT: 0.2}
+"""Metres above the map: what lies above the rest is seen from above."""
+
+
+class MarkersNode:
+    """Publishes the markers of each state that shows something else than the one before."""
+
+    def __init__(self, package: Package) -> None:
+        """Raises DataError."""
+        self.messages = needed("visualization_msgs", "visualization_msgs.msg", "rosrun UI markers")
+        self.ending = Ending()
+        self.membership = Membership(package, self.ending)
+        source, model = self.membership.source, self.membership.model
+        settings = source.read("ui.yaml")
+        plan = read_floor_plan(source.read("poses.yaml"), settings)
+        self.frame = text(rospy.get_param("~", {}), "map_frame", "map")
+        self.picture = Picture(model, plan, read_spots(settings, plan))
+        self.lock = threading.Lock()
+        self.shown: List[Mark] = []
+        self.state: Optional[SystemState] = None
+        self.publisher = rospy.Publisher(MARKERS, self.messages.MarkerArray, queue_size=1, latch=True)
+        self.show(None)
+        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
+        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
+        Diagnostics(self.report, self.ending, Links(states, pulses, ending=self.ending, lost=self.master_lost))
+
+    def on_state(self, state: SystemState, publisher: str) -> None:
+        """Show a state of the mission."""
+        if self.membership.takes(state):
+            with self.lock:
+                self.show(state)
+
+    def show(self, state: Optional[SystemState]) -> None:
+        """Publish what there is to show, if it is something new."""
+        self.state = state
+        marks = self.picture.marks(state)
+        if marks != self.shown:
+            self.shown = marks
+            self.publisher.publish(self.array(marks))
+
+    def array(self, marks: List[Mark]) -> Any:
+        """Return the message: it removes what was shown before."""
+        kind = self.messages.Marker
+        array = self.messages.MarkerArray(markers=[kind(action=kind.DELETEALL)])
+        array.markers[0].header.frame_id = self.frame
+        counts: Dict[str, int] = {}
+        for mark in marks:
+            number = counts[mark.group] = counts.get(mark.group, -1) + 1
+            array.markers.append(self.marker(mark, number))
+        return array
+
+    def marker(self, mark: Mark, number: int) -> Any:
+        """Return the marker of a mark, with its number in its namespace."""
+        kind = self.messages.Marker
+        kinds = {DISC: kind.CYLINDER, BALL: kind.SPHERE, LINES: kind.LINE_LIST, ARROW: kind.ARROW}
+        marker = kind(ns=mark.group, id=number, type=kinds.get(mark.kind, kind.TEXT_VIEW_FACING), text=mark.text)
+        marker.header.frame_id = self.frame  # its stamp is 0: the newest transform counts
+        marker.color.r, marker.color.g, marker.color.b = mark.colour
+        marker.color.a = marker.pose.orientation.w = 1.0
+        height = HEIGHTS[mark.kind]
+        if mark.kind in (LINES, ARROW):
+            marker.points = [Point(x, y, height) for x, y in mark.points]
+            marker.scale.x = mark.size
+            marker.scale.y, marker.scale.z = (2.5 * mark.size, 3 * mark.size) if mark.kind == ARROW else (0.0, 0.0)
+        else:
+            (marker.pose.position.x, marker.pose.position.y), marker.pose.position.z = mark.points[0], height
+            marker.scale.x = marker.scale.y = 0.0 if mark.kind == TEXT else mark.size
+            marker.scale.z = 0.01 if mark.kind == DISC else mark.size
+        return marker
+
+    def master_lost(self, why: str) -> None:
+        """End the node: without a master no node can join."""
+        rospy.logerr("ends here: %s", why)
+        self.ending.end(1)
+
+    def report(self) -> Report:
+        """Return the report for /diagnostics."""
+        with self.lock:
+            values: Dict[str, object] = {"mission": self.membership.source.mission, "markers": len(self.shown)}
+            state = self.state
+        refused, trouble = self.membership.refused, self.membership.trouble
+        values.update(self.membership.counts)
+        if refused:
+            return Report(False, ERROR, f"refused {refused}", values)
+        if trouble or state is None:
+            return Report(False, WARN, trouble or "no state from the observer yet", values)
+        return Report(True, OK, state.status, values)
+
+    def run(self) -> int:
+        """Run until the node is ended, also after the mission: its end is shown, and the next mission; return 0."""
+        status = self.ending.wait()
+        if self.ending.renewed:
+            restart_process()
+        return status
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    lower_priority()
+    return run_node("markers", lambda: MarkersNode(package).run())
