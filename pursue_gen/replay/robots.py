@@ -7,7 +7,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay.finding import FAULT, Finding
+from pursue_gen.replay.finding import FAULT, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import MissionRecord, RobotOrder
@@ -32,7 +32,11 @@ Activity = Tuple[SystemState, float, str, str]
 def check_robots(
     record: MissionRecord, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]
 ) -> List[Finding]:
-    """Orders without a state that begins them, orders that were never sent, goals that lead elsewhere."""
+    """Orders without a state that begins them, orders that were never sent, goals that lead elsewhere.
+
+    A goal of a node that is no controller is of the world: a person has sent the robot elsewhere (rviz), and it is
+    taken back.
+    """
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots)
     where = {robot: _places(game.scenario, robot) for robot in robots}
@@ -40,8 +44,13 @@ def check_robots(
     diary = _ActivityIndex(activities)
     found: List[Finding] = []
     ordered: Set[int] = set()
+    controllers = {node for plan in orders.values() for nodes in plan.owners.values() for node in nodes}
     places: Dict[str, Dict[str, Point]] = {robot: {} for robot in robots}
     for order in record.orders:
+        if order.is_goal and order.node and controllers and order.node not in controllers:
+            text = f"{order.node} sent {order.robot} elsewhere"
+            found.append(Finding(WORLD, "sent", _number_at(record, order.at), text))
+            continue
         place = diary.activity(order)
         if place is None and (_returns(record, order) if order.is_goal else _joins(record, game.scenario, order)):
             continue

@@ -254,6 +254,18 @@ def test_a_goal_that_leads_elsewhere_is_a_fault() -> None:
     assert kinds(found(made)) == [("goal", 4)]
 
 
+@pytest.mark.parametrize("begun", [True, False])
+def test_a_goal_of_a_node_that_is_no_controller_is_of_the_world_and_no_order(begun: bool) -> None:
+    made = mission()
+    made.order(made.states[4].stamp + (0.5 if begun else -0.5), "bot2", "b", "rviz_7")
+    findings = found(made)
+    assert kinds(findings) == [("sent", 4 if begun else 2)] and not findings.kept and findings.won
+    (text,) = [finding.text for finding in findings.findings if finding.kind == "sent"]
+    assert text == "rviz_7 sent bot2 elsewhere"
+    made.heard = [m for m in made.heard if (m[1], m[2]) != ("/bot2/move_base_simple/goal", "controller_bot2")]
+    assert set(kinds(found(made))) == {("sent", 4 if begun else 2), ("untold", 4)}
+
+
 def test_two_robots_may_be_sent_to_different_spots_of_one_place_but_each_always_to_its_own() -> None:
     both_to_a = [(1.5, "bot1_c2a@", "controller_bot1"), (1.6, "bot2_c2a@", "controller_bot2")]
     made = mission(tuple(both_to_a))
