@@ -8,41 +8,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
+from typing import Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.assumption_changes import assumption_changes
-from pursue_gen.explanation.lesser import without_conditions
-from pursue_gen.explanation.number_changes import (
-    SLOWER,
-    NumberChange,
-    battery_changes,
-    count_changes,
-    event_changes,
-    travel_changes,
-)
-from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
-from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
-from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
-from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules, played
+from pursue_gen.explanation.knobs import Knob, Variant, knobs
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.counts import counted
 
 _SHARE = 0.5
 """The part of what is left that one attempt may take."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before it looks at the end of a long list: large numbers take longer."""
-
-_FINEST = 1000
-"""The largest denominator of a reaction that the command line takes."""
-
-Variant = Tuple[Scenario, Rules]
 
 
 @dataclass(frozen=True)
@@ -80,35 +62,19 @@ class Findings:
     helpful: Tuple[Strategy, ...] = ()
 
 
-@dataclass(frozen=True)
-class _Knob:
-    """Something that can be changed, by the steps `values`: texts from the smallest change to the largest."""
-
-    what: str
-    name: str
-    label: str
-    before: str
-    values: Sequence[str]
-    make: Callable[[str], Variant]
-    say: Callable[[str], str]
-    span: Optional[Span] = None
-    helps: int = 0
-    """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
-
-
 def findings(
     scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
 ) -> Findings:
     """Tries all that is small, for a scenario that is lost under these rules, within the limits."""
     budget = Budget(limits, progress, phase=EXPLAINING)
-    knobs = list(_knobs(scenario, rules))
+    tried = list(knobs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
     # Long lists last: they make numbers larger, and larger games.
-    for k in sorted(range(len(knobs)), key=lambda k: (len(knobs[k].values) > _PROBES[0], k)):
-        knob = knobs[k]
-        if knob.what == "game" and any(knobs[n].what in ("ends", "reaction") for n in won):
+    for k in sorted(range(len(tried)), key=lambda k: (len(tried[k].values) > _PROBES[0], k)):
+        knob = tried[k]
+        if knob.what == "game" and any(tried[n].what in ("ends", "reaction") for n in won):
             continue
         try:
             win = _least(knob, budget)
@@ -120,8 +86,8 @@ def findings(
             lost[k] = knob.say(knob.values[-1])
         else:
             won[k] = win
-    helpful = sorted((k for k in won if knobs[k].helps), key=lambda k: (-knobs[k].helps, k))
-    changes = [_change(knobs[k], win) for k, win in sorted(won.items())]
+    helpful = sorted((k for k in won if tried[k].helps), key=lambda k: (-tried[k].helps, k))
+    changes = [_change(tried[k], win) for k, win in sorted(won.items())]
     return Findings(
         tuple(sorted(changes, key=_price)),
         tuple(text for _, text in sorted(lost.items())),
@@ -139,7 +105,7 @@ class _Win:
     strategy: Strategy
 
 
-def _least(knob: _Knob, budget: Budget) -> Optional[_Win]:
+def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
     """The smallest change that wins, between two that have been tried; None: the largest does not.
 
     At the limits, the smallest that is known. Raises PursueError (exit status 5) when none is.
@@ -165,7 +131,7 @@ def _least(knob: _Knob, budget: Budget) -> Optional[_Win]:
     return win
 
 
-def _change(knob: _Knob, win: _Win) -> Change:
+def _change(knob: Knob, win: _Win) -> Change:
     value, next_lost = knob.values[win.high], knob.values[win.low] if win.low >= 0 else knob.before
     least = win.high - win.low == 1
     return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
@@ -187,296 +153,3 @@ def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
     scenario, rules = variant
     network = played(translate(scenario), rules)
     return verdict_of(budget, network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
-
-
-# What can be changed --------------------------------------------------------------------------------------------------
-
-
-def _knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
-    """In the order in which they are worth knowing (and the quick ones first)."""
-    yield from _rules_knobs(scenario, rules)
-    yield from _objective_knobs(scenario, rules)
-    for agent in scenario.agents:
-        yield from _agent_knobs(scenario, rules, agent)
-    for event in scenario.events:
-        yield from _duration_knobs(scenario, rules, event)
-    for connection in scenario.connections:
-        yield from _distance_knobs(scenario, rules, connection)
-    for travel in scenario.travels:
-        yield from _number_knobs(rules, travel_changes(scenario, travel))
-    for battery in scenario.batteries:
-        yield from _number_knobs(rules, battery_changes(scenario, battery))
-    yield from _order_knobs(scenario, rules)
-    yield from _number_knobs(rules, assumption_changes(scenario, 2 * _all_time(scenario)))
-    for agent in scenario.agents:
-        yield from _control_knobs(scenario, rules, agent)
-
-
-def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
-    ideal = rules.ends == CONTROLLABLE
-    if rules.ends == REPORTED:
-        yield _Knob(
-            "ends", "", "ends chosen by the plan", REPORTED, (CONTROLLABLE,),
-            lambda value: (scenario, replace(rules, ends=CONTROLLABLE, slack={})),
-            lambda value: "ends chosen by the plan instead of reported by the robots (--ends controllable)",
-            helps=4,
-        )
-    if rules.reaction > 0:
-        yield _Knob(
-            "reaction", "", "a shorter reaction", _decimal(rules.reaction), _reactions(rules.reaction),
-            lambda value: (scenario, replace(rules, reaction=Fraction(value))),
-            lambda value: f"a reaction of {_decimal(Fraction(value))} instead of {_decimal(rules.reaction)} time units",
-            helps=5,
-        )
-    for agent, late in rules.slack.items():
-        yield _slack_knob(scenario, rules, agent, late)
-    if rules.reaction > 0 and not ideal:
-        yield _Knob(
-            "game", "", "ends chosen by the plan and no reaction", "", ("ideal",), lambda value: (scenario, IDEAL),
-            lambda value: "ends chosen by the plan and no reaction at all, as no real robot plays "
-            "(--ends controllable --reaction 0)",
-            helps=3,
-        )
-
-
-def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> _Knob:
-    def make(k: int) -> Variant:
-        return scenario, replace(rules, slack={**rules.slack, agent: k})
-
-    def say(k: int) -> str:
-        return f"{scenario.shown(agent)} late by at most {k} instead of {late}"
-
-    label = f"{scenario.shown(agent)} less late"
-    return _number("slack", agent, label, late, range(late - 1, -1, -1), make, say, None, 5)
-
-
-def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
-    for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            yield _deadline_knob(scenario, rules, safety)
-        elif isinstance(safety, Patrol) and safety is _of_one_statement(scenario, safety)[0]:
-            yield _patrol_knob(scenario, rules, safety)
-    for reach in scenario.reach:
-        if reach.after > 0:
-            yield _after_knob(scenario, rules, reach)
-        if reach.within is not None:
-            yield _within_knob(scenario, rules, reach, reach.within)
-
-
-def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> _Knob:
-    deadline, answer = safety.deadline, answer_words(safety)
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
-
-    def say(k: int) -> str:
-        return f"a deadline of {k} instead of {deadline} for {answer}"
-
-    furthest = deadline + max(deadline, 2 * _all_time(scenario))
-    later = whole_above(deadline, furthest)
-    return _number("deadline", answer_text(safety), "a later deadline", deadline, later, make, say, safety.span, 1)
-
-
-def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
-    """The patrols of all places that the statement names."""
-    return [each for each in scenario.safety if isinstance(each, Patrol) and each.span == patrol.span]
-
-
-def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> _Knob:
-    every, together = patrol.period, _of_one_statement(scenario, patrol)
-    in_order = " in order" if patrol.order else ""
-    place = listed(each.place.shown for each in together) + in_order
-    name = listed(each.place.name for each in together) + in_order
-
-    def make(k: int) -> Variant:
-        rarer: Dict[Safety, Safety] = {each: replace(each, every=k) for each in together}
-        changed = tuple(rarer.get(each, each) for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
-
-    def say(k: int) -> str:
-        return f"a patrol of {place} every {k} instead of {every}"
-
-    rarer = whole_above(every, every + max(every, 2 * _all_time(scenario)))
-    return _number("deadline", name, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
-
-
-def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:
-    return replace(scenario, reach=tuple(new if each is old else each for each in scenario.reach))
-
-
-def _names(reach: Reach) -> str:
-    return listed(ref.name for ref in reach.events)
-
-
-def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> _Knob:
-    goal = events_words(reach)
-
-    def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, after=k)), rules
-
-    def say(k: int) -> str:
-        return f"{goal} after {k} instead of {reach.after}"
-
-    earlier = whole_below(reach.after, 0)
-    return _number("after", _names(reach), f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
-
-
-def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number) -> _Knob:
-    goal = events_words(reach)
-
-    def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, within=k)), rules
-
-    def say(k: int) -> str:
-        return f"{goal} within {k} instead of {within}"
-
-    later = whole_above(within, within + max(within, 2 * _all_time(scenario)))
-    return _number("within", _names(reach), f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
-
-
-def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
-    pace = agent.mobile
-    if pace is None or not scenario.connections:
-        return
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(a, mobile=k) if a.name == agent.name else a for a in scenario.agents)
-        return replace(scenario, agents=changed), rules
-
-    def say(k: int) -> str:
-        return f"a {word} {agent.shown}, mobile {k} instead of {pace}"
-
-    word = "faster" if agent.controllable else "slower"
-    values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
-    if values:
-        yield _number("agent", agent.name, f"a {word} {agent.shown}", pace, values, make, say, agent.span, 2)
-
-
-def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[_Knob]:
-    duration = event.duration or 0
-    if event.latest is not None:
-        yield from _number_knobs(rules, event_changes(scenario, event))
-        return
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
-        return replace(scenario, events=changed), rules
-
-    def say(k: int) -> str:
-        return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
-
-    if event.duration is None:
-        if scenario.reach and _may_be_endless(scenario, event):
-            yield _number("duration", event.name, f"a longer {event.shown}", 0, (1,), make, say, event.span, 0)
-        return
-    if duration > 1:
-        values = whole_below(duration, 1)
-        yield _number("duration", event.name, f"a shorter {event.shown}", duration, values, make, say, event.span, 2)
-    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
-    if doers and not any(agent.controllable for agent in doers):
-        longer = whole_above(duration, max(duration * 2, 2 * _all_time(scenario)))
-        yield _number("duration", event.name, f"a longer {event.shown}", duration, longer, make, say, event.span, 2)
-
-
-def _number_knobs(rules: Rules, changes: Iterable[NumberChange]) -> Iterator[_Knob]:
-    for one in changes:
-
-        def make(k: int, one: NumberChange = one) -> Variant:
-            return one.make(k), rules
-
-        yield _number(one.what, one.name, one.label, one.before, one.values, make, one.say, one.span, 2)
-
-
-def _may_be_endless(scenario: Scenario, event: Event) -> bool:
-    """True if the environment alone can do the event, on its ways as often as it likes without time passing."""
-    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
-    moving = any(agent.mobile is not None for agent in doers) and bool(scenario.connections)
-    return moving and event.location is None and not any(agent.controllable for agent in doers)
-
-
-def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[_Knob]:
-    ends = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}"
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(c, distance=k) if c == connection else c for c in scenario.connections)
-        return replace(scenario, connections=changed), rules
-
-    def say(k: int) -> str:
-        return f"{ends} at distance {k} instead of {connection.distance}"
-
-    if connection.distance > 1:
-        values = whole_below(connection.distance, 1)
-        label = f"a shorter way between {ends}"
-        yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
-    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
-        both = tuple(replace(c, one_way=False) if c == connection else c for c in scenario.connections)
-        label = f"a way between {ends} in both directions"
-        freer = replace(scenario, connections=both)
-        yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
-
-
-def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[_Knob]:
-    for rule in scenario.rules:
-        fewer = replace(scenario, rules=tuple(r for r in scenario.rules if r != rule))
-        yield _switch("rule", rule.name, f"without rule {rule.name}", rule.name, (fewer, rules), rule.span)
-    for event, most in counted(scenario):
-        yield from _number_knobs(rules, count_changes(scenario, event, most))
-    for need in scenario.dependencies:
-        freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
-        text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
-        label = f"without stateDependency {text}"
-        yield _switch("dependency", need.event.name, label, text, (freer, rules), need.span, 1)
-    spans = [span for _, span in conditions_of(scenario)]
-    for (what, text, left_out), span in zip(without_conditions(scenario), spans):
-        label = f"{what} without only_if {text}"
-        yield _switch("condition", what, label, text, (left_out(scenario), rules), span, 1)
-
-
-def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[_Knob]:
-    if not agent.controllable and (agent.can_do or agent.mobile is not None):
-        ally = replace(agent, human=True, controllable=True)
-        changed = replace(scenario, agents=tuple(ally if a.name == agent.name else a for a in scenario.agents))
-        label = f"{agent.shown} following instructions (human controllable)"
-        yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
-
-
-def _switch(
-    what: str, name: str, label: str, before: str, variant: Variant, span: Optional[Span], helps: int = 0
-) -> _Knob:
-    return _Knob(what, name, label, before, ("",), lambda _: variant, lambda _: label, span, helps)
-
-
-def _number(
-    what: str,
-    name: str,
-    label: str,
-    before: Number,
-    values: Sequence[int],
-    make: Callable[[int], Variant],
-    say: Callable[[int], str],
-    span: Optional[Span],
-    helps: int,
-) -> _Knob:
-    texts = tuple(str(k) for k in values)
-    return _Knob(
-        what, name, label, str(before), texts, lambda text: make(int(text)), lambda text: say(int(text)), span, helps
-    )
-
-
-def _reactions(reaction: Fraction) -> Tuple[str, ...]:
-    """Nine tenths of it, eight tenths, … and none; none alone where the tenths would be too fine to ask for."""
-    tenths = [reaction * k / 10 for k in range(9, -1, -1)]
-    return tuple(decimal_text(tenth) for tenth in tenths if tenth.denominator <= _FINEST)
-
-
-def _all_time(scenario: Scenario) -> Number:
-    """More than it takes to do everything once and to go each way in both directions, waiting included."""
-    slowest = max((agent.mobile or 0 for agent in scenario.agents), default=0)
-    working = sum((event.latest or event.duration or 0) + 2 for event in scenario.events)
-    working += sum(travel.window[1] for travel in scenario.travels)
-    return working + sum(2 * (way.distance * slowest + 2) for way in scenario.connections)
-
-
-def _decimal(value: Fraction) -> str:
-    return f"{float(value):g}"
