@@ -35,6 +35,18 @@ def write_texts(texts: Mapping[Path, str]) -> None:
     write_bytes({file: text.encode("utf-8") for file, text in texts.items()})
 
 
+def check_new(file: Path, force: bool) -> None:
+    """Raises PursueError (exit status 2) where a command that takes long would not write the file at its end: it is
+    there already, unless `force`, or it is a link.
+    """
+    if file.is_symlink():
+        message = f"cannot write {file}: it is a link"
+        raise PursueError([error("CLI003", message, hint="name the file that it leads to, or another one")], 2)
+    if file.exists() and not force:
+        message = f"cannot write {file}: it is there already"
+        raise PursueError([error("CLI003", message, hint="name another file, or replace it with --force")], 2)
+
+
 def write_bytes(contents: Mapping[Path, bytes]) -> None:
     """Write files of bytes, otherwise as `write_texts`."""
     staged: List[Tuple[str, Path]] = []

@@ -9,6 +9,7 @@ import typer
 
 from pursue_gen import __version__
 from pursue_gen.cli.bundle import bundle
+from pursue_gen.cli.calibrate import calibrate
 from pursue_gen.cli.check import check
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain
@@ -86,6 +87,9 @@ app.command(epilog="For example: pursue-gen explain PML110")(explain)
 app.command(epilog="For example: pursue-gen play scenarios/thesis/catch_the_thief.pur")(play)
 app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur --html")(report)
 app.command(epilog="For example: pursue-gen replay mission.bag")(replay)
+app.command(epilog="For example: pursue-gen calibrate my_floor.pur mission.bag drives.bag -o my_floor_calibrated.pur")(
+    calibrate
+)
 app.command(epilog="For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4")(sim)
 app.command(epilog="For example: pursue-gen fmt my_floor.pur")(fmt)
 app.command(epilog="For example: pursue-gen new my_floor --kind reach --robots 2")(new)

@@ -12,6 +12,7 @@ from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.replay.journal import Journal, read_journal
 from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
 from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.drives.report import DRIVES, Drive, parse_drive
 from pursue_runtime.state import SystemState, parse_state
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
@@ -24,14 +25,16 @@ _ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
 """Topics of a robot, below its name."""
 
 
-def read_recording(file: Path) -> Union[MissionRecord, Journal]:
-    """What is in the file. Raises PursueError (exit status 2) where that is nothing to check."""
+def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Journal]:
+    """What is in the file. Raises PursueError (exit status 2) where that is no mission; with `drives` a bag may hold
+    drives without one, or nothing yet.
+    """
     try:
         content = file.read_bytes()
     except (OSError, ValueError) as problem:
         raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
     if content.startswith(b"#ROSBAG"):
-        return _bag(file, content)
+        return _bag(file, content, drives)
     if content.lstrip()[:1] == b"{" or RECORD.match(content):
         journal = read_journal(content)
         if isinstance(journal, str):
@@ -40,14 +43,17 @@ def read_recording(file: Path) -> Union[MissionRecord, Journal]:
     raise _unreadable(f"{file} is neither a bag nor a journal", "RPL002")
 
 
-def _bag(file: Path, content: bytes) -> MissionRecord:
+def _bag(file: Path, content: bytes, drives: bool) -> MissionRecord:
     try:
         messages, problems = read_bag(content)
     except Damage as damage:
         known = MAGIC.decode().strip()
         raise _unreadable(f"{file} is a bag of another format than {known}: {damage}", "RPL003") from None
     record = from_messages(messages, problems)
-    if not record.states:
+    if record.drives and not record.states and not drives:
+        message = f"{file} holds drives that were measured, and no mission"
+        raise _unreadable(message, "RPL004", f"for times of drives: pursue-gen calibrate SCENARIO.pur {file}")
+    if not record.states and not (drives and (record.drives or record.game)):
         found = ", ".join(sorted({message.topic for message in messages})) or "no messages"
         hint = "; ".join([*problems, EXPECTED])
         raise _unreadable(f"{file} holds no state of a mission on pursue/system_state; it has {found}", "RPL004", hint)
@@ -61,6 +67,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     orders: List[RobotOrder] = []
     plans: Dict[int, Mapping[str, Any]] = {}
     game: Optional[Mapping[str, Any]] = None
+    drives: List[Drive] = []
     strange = 0
     # without `seq`, which counts what was sent to one subscriber alone, too
     simple = {(message.topic.strip("/"), message.data[4:]) for message in messages if message.topic.endswith(_SIMPLE)}
@@ -68,6 +75,10 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
         topic = message.topic.strip("/")
         if topic.endswith(_ORDERS):
             orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic)]
+        elif topic.endswith(DRIVES):
+            drive = parse_drive(_text(message.data))
+            drives += [] if drive is None else [drive]
+            strange += drive is None
         elif topic.endswith(("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")):
             text = _text(message.data)
             state = parse_state(text) if topic.endswith("system_state") else None
@@ -83,7 +94,8 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
             else:
                 strange += 1
     found = [*problems, *([f"{strange} messages on our topics could not be read"] if strange else [])]
-    return MissionRecord(ordered(iter(states)), tuple(words), tuple(orders), plans, game, tuple(found))
+    known = ordered(iter(states))
+    return MissionRecord(known, tuple(words), tuple(orders), plans, game, tuple(found), drives=tuple(drives))
 
 
 def _is_published_again(message: Message, topic: str, simple: AbstractSet[Tuple[str, bytes]]) -> bool:

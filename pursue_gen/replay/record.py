@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Iterator, Mapping, Optional, Tuple
 
+from pursue_runtime.drives.report import Drive
 from pursue_runtime.state import SystemState
 from pursue_runtime.words import FINISH, Word, parse_report, parse_word
 
@@ -47,7 +48,7 @@ class MissionRecord:
 
     `plans` holds what was on pursue/plan by number, `game` the scenario and rules where the recording has them.
     `problems`: what could not be read of it, in sentences. `by_words`: a journal, which holds no states of its own and
-    does not name the nodes that published its words.
+    does not name the nodes that published its words. `drives`: those that were measured without a mission.
     """
 
     states: Tuple[SystemState, ...]
@@ -57,6 +58,7 @@ class MissionRecord:
     game: Optional[Mapping[str, Any]] = None
     problems: Tuple[str, ...] = ()
     by_words: bool = False
+    drives: Tuple[Drive, ...] = ()
 
 
 def read_word(at: float, text: str, node: str = "") -> RecordedWord:

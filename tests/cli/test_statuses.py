@@ -25,12 +25,14 @@ COMMANDS: Dict[str, List[str]] = {
     "ws": ["ws", "FILE", "-o", "out"],
     "sim": ["sim", "FILE", "--runs", "1"],
     "play": ["play", "FILE"],
+    "calibrate": ["calibrate", "FILE", "mission.bag"],
     "bundle": ["bundle", "FILE", "--keys", "keys"],
     "send": ["send", "FILE", "--to", "robots.yaml", "--keys", "keys"],
 }
 OTHER_FILES: Dict[str, List[str]] = {
     "verify's plan": ["verify", FIRST, "FILE"],
     "replay": ["replay", "FILE"],
+    "calibrate's recording": ["calibrate", FIRST, "FILE"],
     "a network": ["solve", "FILE.xml", "query.q"],
     "ws with a plan": ["ws", FIRST, "--plan", "FILE", "-o", "out"],
     "ws with machines": ["ws", FIRST, "--machines", "FILE", "-o", "out"],

@@ -1,0 +1,222 @@
+"""What measured times say of the windows of a scenario, and the windows that they propose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil
+from typing import AbstractSet, Dict, List, Mapping, Sequence, Tuple
+
+from pursue_gen.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what
+from pursue_gen.calibration.windows import (
+    COUNTED,
+    FITTED,
+    SHARE,
+    Spread,
+    held_out,
+    outliers,
+    rounded,
+    spread_of,
+    window_of,
+)
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.numbers import decimal_text, exact
+from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.scenario import Scenario, Window
+from pursue_gen.lsp.new_numbers import Duration, NewNumber, TravelTime, with_numbers
+
+BY = "calibrate"
+"""Begins the notes in the scenario's text."""
+
+STEP = Fraction(1, 10)
+"""Windows are rounded outwards to multiples of so many time units."""
+
+TOLERANCE = 0.1
+"""Time units by which something may miss its window, as `replay` and the observer have it: messages take time."""
+
+_SHORTEST = Fraction(1, 1000)
+"""An event with a duration takes longer than this: 0 is none."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """`unit`: seconds per time unit; `step`: what windows are rounded to; `share` of later times that they are to hold.
+
+    `slack`: by how many time units each agent may be later than the present model. `outliers`: whether they count.
+    """
+
+    unit: float = 1.0
+    step: Fraction = STEP
+    share: float = SHARE
+    slack: Mapping[str, int] = field(default_factory=dict)
+    outliers: bool = True
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was measured of a way or an event. Times are in time units.
+
+    `present`: its window in the scenario (with slack); `proposed`: the new one, `basis` what that rests on (see
+    `windows`). `early`, `late`: how many times left the present window, `most_early`, `most_late` by how much at most.
+    `held`: how many times are in the window that the other nine tenths make; `widened`: of an agent that is not
+    controlled the present window is kept, and only widened. `far`: the outliers among `samples`.
+    """
+
+    what: Measured
+    samples: Tuple[Sample, ...]
+    times: Tuple[float, ...]
+    spread: Spread
+    far: Tuple[int, ...]
+    present: Window
+    proposed: Window
+    basis: str
+    early: int
+    late: int
+    most_early: float
+    most_late: float
+    held: int
+    widened: bool = False
+
+    @property
+    def source(self) -> str:
+        """Where the proposal comes from, as a note in the text."""
+        noun = "drive" if isinstance(self.what, Way) else "action"
+        count = self.spread.count
+        text = f"{count} {noun}{'s' * (count != 1)}, {self.spread.least:.1f} to {self.spread.most:.1f}"
+        if self.far:
+            text += f", {len(self.far)} far out"
+        return text if self.basis in (COUNTED, FITTED) else f"{text}, too few for more than a guess"
+
+    @property
+    def number(self) -> NewNumber:
+        """The proposal as a number for the text."""
+        low, high = self.proposed
+        if isinstance(self.what, Way):
+            return TravelTime(self.what.agent, self.what.a, self.what.b, low, high, self.source)
+        return Duration(self.what.event, low, high, self.source)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """All findings, in the scenario's order; `missing`: ways of robots of which nothing was measured.
+
+    `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units.
+    """
+
+    scenario: Scenario
+    options: Options
+    findings: Tuple[Finding, ...]
+    missing: Tuple[Way, ...]
+    unused: Tuple[Unused, ...]
+    slack: Mapping[str, int]
+    lost_after: int
+
+    @property
+    def left(self) -> Tuple[int, int]:
+        """How many times left the present model, and of how many."""
+        return sum(f.early + f.late for f in self.findings), sum(f.spread.count for f in self.findings)
+
+    @property
+    def held(self) -> Tuple[int, int]:
+        """How many times are in windows that were made without them, and of how many."""
+        return sum(f.held for f in self.findings), sum(f.spread.count for f in self.findings if f.spread.count > 1)
+
+    def text(self) -> str:
+        """The scenario's text with the proposed windows."""
+        return with_numbers(self.scenario.text, self.scenario.file, [f.number for f in self.findings], BY)
+
+    def checked(self) -> Scenario:
+        """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""
+        reading = read(self.text(), f"{self.scenario.file} with the proposal", self.scenario.name)
+        return without_errors(reading.scenario, check_reading(reading))
+
+
+def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
+    """What the times say. They have to be of this scenario's ways and events."""
+    measured = by_what(samples.measured)
+    present = _present(scenario, options.slack)
+    findings = [_finding(scenario, what, measured[what], window, options) for what, window in present.items()
+                if what in measured]  # fmt: skip
+    robots = {agent.name for agent in scenario.agents if agent.is_robot}
+    missing = tuple(
+        what for what in present if isinstance(what, Way) and what.agent in robots and what not in measured
+    )
+    return Proposal(
+        scenario, options, tuple(findings), missing, samples.unused, _slack(findings, robots, options),
+        _lost_after(findings, samples.unused, options),
+    )  # fmt: skip
+
+
+def _present(scenario: Scenario, slack: Mapping[str, int]) -> Dict[Measured, Window]:
+    """The windows of the scenario as it is played, in its order."""
+    found: Dict[Measured, Window] = {}
+    for agent in scenario.agents:
+        for way, (low, high) in scenario.movements(agent).items():
+            found[Way(agent.name, *way)] = low, exact(high + slack.get(agent.name, 0))
+    for event in scenario.events:
+        if event.window is not None:
+            doers = [agent.name for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+            later = min((slack.get(doer, 0) for doer in doers), default=0)
+            found[Work(event.name)] = event.window[0], exact(event.window[1] + later)
+    return found
+
+
+def _finding(
+    scenario: Scenario, what: Measured, samples: Sequence[Sample], present: Window, options: Options
+) -> Finding:
+    times = tuple(sample.seconds / options.unit for sample in samples)
+    far = outliers(times)
+    counted = times if options.outliers else tuple(time for place, time in enumerate(times) if place not in far)
+    window = window_of(counted, options.share)
+    low, high = (exact(steps * options.step) for steps in rounded(window, float(options.step)))
+    if isinstance(what, Work):
+        low = exact(max(low, _SHORTEST))
+        high = exact(max(high, low + options.step))
+    widened = not _is_controlled(scenario, what)
+    if widened:
+        low, high = min(low, present[0]), max(high, present[1])
+    early = [float(present[0]) - time for time in times if time < present[0] - TOLERANCE]
+    late = [time - float(present[1]) for time in times if time > present[1] + TOLERANCE]
+    return Finding(
+        what, tuple(samples), times, spread_of(times), far, present, (low, high), window.basis, len(early), len(late),
+        max(early, default=0.0), max(late, default=0.0), held_out(counted, options.share)[0], widened,
+    )  # fmt: skip
+
+
+def _is_controlled(scenario: Scenario, what: Measured) -> bool:
+    """True where only agents that are controlled are on the way, or do the event."""
+    if isinstance(what, Way):
+        return any(agent.controllable for agent in scenario.agents if agent.name == what.agent)
+    doers = [agent for agent in scenario.agents if any(ref.name == what.event for ref in agent.can_do)]
+    return all(agent.controllable for agent in doers)
+
+
+def _slack(findings: Sequence[Finding], robots: AbstractSet[str], options: Options) -> Dict[str, int]:
+    """By how many whole time units each robot would have to be allowed to be later, with the present windows."""
+    found: Dict[str, int] = {}
+    for finding in findings:
+        if isinstance(finding.what, Way) and finding.late and finding.what.agent in robots:
+            agent = finding.what.agent
+            found[agent] = max(found.get(agent, 0), options.slack.get(agent, 0) + ceil(finding.most_late))
+    return found
+
+
+def _lost_after(findings: Sequence[Finding], unused: Sequence[Unused], options: Options) -> int:
+    """As long again as the slowest took, or as long as a robot tried until it failed."""
+    times: List[float] = [finding.spread.most for finding in findings]
+    times += [each.seconds / options.unit for each in unused if each.is_failure]
+    return ceil(max(times, default=0.0))
+
+
+def window_text(window: Window) -> str:
+    """`4 to 6.3`."""
+    return f"{decimal_text(window[0])} to {decimal_text(window[1])}"
+
+
+def statement(finding: Finding) -> str:
+    """What the proposal is in the language."""
+    what = finding.what
+    if isinstance(what, Way):
+        return f"travel {what.agent} from {what.a} to {what.b} takes {window_text(finding.proposed)}"
+    return f'event "{what.event}" … duration {window_text(finding.proposed)}'
+

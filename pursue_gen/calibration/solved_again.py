@@ -1,0 +1,73 @@
+"""The scenario as it is and with the proposal, each solved: what changes in the verdict and the guaranteed time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, Dict, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.inputs import settled
+from pursue_gen.solving.least_time import decimal
+from pursue_gen.solving.optional import promised_of
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.solution import guaranteed, is_lost
+from pursue_gen.synthesis.limits import Listener, is_undecided
+from pursue_gen.tga.network import Kind
+
+WON, LOST, UNDECIDED = "won", "lost", "not decided"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """WON, LOST or UNDECIDED, with the reason for the last two; `takes`: time units to the goal at worst, None where
+    there is no goal or it was not found out; `given_up`: the numbers of the optional objectives that are not promised.
+    """
+
+    verdict: str
+    reason: str = ""
+    takes: Optional[Fraction] = None
+    has_goal: bool = False
+    given_up: Tuple[int, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """In half a sentence."""
+        text = self.verdict
+        if self.verdict == WON and self.has_goal:
+            worst = "not found out" if self.takes is None else f"at most {decimal(self.takes)} time units"
+            text += f", to the goal {worst}"
+        if self.given_up:
+            text += f", without optional {', '.join(map(str, self.given_up))}"
+        return text
+
+    def as_json(self) -> Dict[str, Any]:
+        """For programs."""
+        takes = None if self.takes is None else float(self.takes)
+        return {"verdict": self.verdict, "reason": self.reason, "takes": takes, "given_up": list(self.given_up)}
+
+
+def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Verdict:
+    """Solves the scenario within the limits of the request. Raises PursueError for what is no verdict."""
+    try:
+        found = promised_of(settled(scenario, request, progress), request, progress)
+    except PursueError as problem:
+        if not is_lost(problem) and not is_undecided(problem):
+            raise
+        return Verdict(LOST if is_lost(problem) else UNDECIDED, problem.diagnostics[0].message)
+    won = found.solution
+    has_goal = won.objective.kind is not Kind.SAFETY
+    takes = won.guarantee.worst if won.guarantee is not None else None
+    if has_goal and takes is None:
+        takes = guaranteed(won, limits=request.options.limits).worst
+    given_up = tuple(sorted({each.objective.optional for each in found.scenario.given_up}))
+    return Verdict(WON, "", takes, has_goal, given_up)
+
+
+def compared(
+    scenario: Scenario, proposed: Scenario, request: SolveRequest, progress: Optional[Listener] = None
+) -> Tuple[Verdict, Verdict]:
+    """The verdict as it is, slack included, and with the proposal, which needs no slack."""
+    return verdict_of(scenario, request, progress), verdict_of(proposed, replace(request, slack=()), progress)
+

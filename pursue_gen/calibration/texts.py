@@ -1,0 +1,176 @@
+"""A proposal for people, as tables and sentences, and for programs, as JSON."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
+
+from pursue_gen.calibration.proposal import Finding, Proposal, statement, window_text
+from pursue_gen.calibration.samples import Unused, Way
+from pursue_gen.calibration.solved_again import Verdict
+from pursue_gen.calibration.windows import COUNTED, FITTED, times_needed
+from pursue_gen.diagnostics import counted
+from pursue_gen.language.scenario import Scenario
+
+
+def report(proposal: Proposal) -> Iterator[str]:
+    """All of it for a terminal."""
+    yield f"1 time unit = {proposal.options.unit:g} s; times in time units"
+    yield ""
+    yield from table(proposal)
+    yield ""
+    yield from sentences(proposal)
+    yield ""
+    yield from proposed(proposal)
+
+
+HEAD = ("what", "times", "least", "median", "95 %", "most", "deviation", "model", "early", "late", "proposal", "basis")
+
+_BASES = {COUNTED: "counted", FITTED: "fitted"}
+_MANY = 12
+"""So many lines of a kind are printed."""
+
+
+def rows(proposal: Proposal) -> List[Tuple[str, ...]]:
+    """A row of texts for each way and event, in the order of HEAD; times in time units."""
+    return [_row(proposal.scenario, finding) for finding in proposal.findings]
+
+
+def _row(scenario: Scenario, finding: Finding) -> Tuple[str, ...]:
+    spread = finding.spread
+    figures = (spread.least, spread.median, spread.p95, spread.most, spread.deviation)
+    early = f"{finding.early} by {finding.most_early:.1f}" if finding.early else "-"
+    late = f"{finding.late} by {finding.most_late:.1f}" if finding.late else "-"
+    basis = _BASES.get(finding.basis, "guessed")
+    return (
+        shown(scenario, finding.what), str(spread.count), *(f"{figure:.2f}" for figure in figures),
+        window_text(finding.present), early, late, window_text(finding.proposed), basis,
+    )  # fmt: skip
+
+
+def shown(scenario: Scenario, what: object) -> str:
+    """A way or an event, as people read it."""
+    if isinstance(what, Way):
+        return f"{scenario.shown(what.agent)}: {scenario.shown(what.a)} to {scenario.shown(what.b)}"
+    return scenario.shown(str(what))
+
+
+def table(proposal: Proposal) -> Iterator[str]:
+    """The rows as lines below a head, in columns."""
+    cells = [HEAD, *rows(proposal)]
+    widths = [max(len(line[column]) for line in cells) for column in range(len(HEAD))]
+    for line in cells:
+        padded = [line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]
+        yield "  ".join(padded).rstrip()
+
+
+def sentences(proposal: Proposal) -> Iterator[str]:
+    """What else there is to say: how often the model was left, what the proposal rests on, what is missing."""
+    left, count = proposal.left
+    yield f"{left} of {counted(count, 'time')} left the present model ({100 * left / max(1, count):.1f} %)."
+    held, tried = proposal.held
+    share = float(proposal.options.share)
+    if tried:
+        yield (
+            f"Held against themselves: {held} of {tried} times ({100 * held / tried:.1f} %) are in the window that the "
+            "other nine tenths of their kind make."
+        )
+    kinds = {finding.basis for finding in proposal.findings}
+    needed = times_needed(share)
+    yield from (text for kind, text in _bases(share, needed).items() if kind in kinds)
+    yield from _far(proposal)
+    yield from _unused(proposal)
+    if proposal.missing:
+        some = ", ".join(shown(proposal.scenario, way) for way in proposal.missing[:_MANY])
+        more = " …" if len(proposal.missing) > _MANY else ""
+        yield f"Not measured, so windows stay: {some}{more}."
+    widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
+    if widened:
+        yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."
+    for robot, units in proposal.slack.items():
+        yield f"With the present windows, --slack {robot}={units} would be enough for all that were late."
+    yield (
+        f"lost_after:={proposal.lost_after} waits for a late agent as long as the slowest took in all, or as one tried "
+        "that failed."
+    )
+
+
+def _bases(share: float, needed: int) -> Dict[str, str]:
+    percent = f"{100 * share:g} %"
+    return {
+        COUNTED: f"counted: holds {percent} of later times, at a confidence of 95 %, however they are distributed.",
+        FITTED: f"fitted: holds {percent} of later times, at a confidence of 95 %, if their logarithms are normally "
+        f"distributed; without that assumption it takes {needed} times of a kind.",
+        "guessed": "guessed: less than 5 times: from half the shortest to twice the longest. Nothing can be claimed.",
+    }
+
+
+def _far(proposal: Proposal) -> Iterator[str]:
+    far = [(finding, finding.samples[place]) for finding in proposal.findings for place in finding.far]
+    if not far:
+        return
+    kept = "they count" if proposal.options.outliers else "left out of the proposal, so such times will leave the model"
+    yield f"Outliers (beyond a quartile by more than 3 times the distance of the quartiles); {kept}:"
+    for finding, sample in far[:_MANY]:
+        units = sample.seconds / proposal.options.unit
+        name = shown(proposal.scenario, finding.what)
+        yield f"  {name} took {units:.2f}, {sample.at:.1f} s after the beginning of {sample.file}"
+
+
+def _unused(proposal: Proposal) -> Iterator[str]:
+    kinds: Dict[Tuple[str, str], List[Unused]] = {}
+    for each in proposal.unused:
+        kinds.setdefault((shown(proposal.scenario, each.what), each.why), []).append(each)
+    for (what, why), some in list(kinds.items())[:_MANY]:
+        yield f"Not used: {what}, {counted(len(some), 'time')} ({why})."
+
+
+def proposed(proposal: Proposal) -> Iterator[str]:
+    """The statements of the proposal, each with where it comes from."""
+    lines = [statement(finding) for finding in proposal.findings]
+    width = max(map(len, lines), default=0)
+    for line, finding in zip(lines, proposal.findings):
+        yield f"{line.ljust(width)}  // {finding.source}"
+
+
+def changed(before: Verdict, after: Verdict) -> Iterator[str]:
+    """What the proposal changes."""
+    yield f"as it is:          {before.words}"
+    yield f"with the proposal: {after.words}"
+    for verdict in (before, after):
+        if verdict.reason:
+            yield f"  {verdict.reason}"
+
+
+def as_json(proposal: Proposal, verdicts: Sequence[Verdict] = ()) -> Dict[str, Any]:
+    """Everything as a JSON object; times in time units."""
+    left, held = proposal.left, proposal.held
+    data: Dict[str, Any] = {
+        "unit": proposal.options.unit,
+        "share": proposal.options.share,
+        "times": [_finding_json(finding, proposal) for finding in proposal.findings],
+        "left": {"times": left[0], "of": left[1]},
+        "held_out": {"held": held[0], "of": held[1]},
+        "missing": [vars(way) for way in proposal.missing],
+        "unused": [{"what": str(u.what), "why": u.why, "seconds": u.seconds, "file": u.file} for u in proposal.unused],
+        "slack": dict(proposal.slack),
+        "lost_after": proposal.lost_after,
+    }
+    if verdicts:
+        data["before"], data["after"] = (verdict.as_json() for verdict in verdicts)
+    return data
+
+
+def _finding_json(finding: Finding, proposal: Proposal) -> Dict[str, Any]:
+    return {
+        **vars(finding.what),
+        **vars(finding.spread),
+        "outliers": [finding.times[place] for place in finding.far],
+        "present": [float(end) for end in finding.present],
+        "proposed": [float(end) for end in finding.proposed],
+        "basis": finding.basis,
+        "early": finding.early,
+        "late": finding.late,
+        "most_early": finding.most_early,
+        "most_late": finding.most_late,
+        "held_out": finding.held,
+    }

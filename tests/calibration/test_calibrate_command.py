@@ -1,0 +1,143 @@
+"""`pursue-gen calibrate` as a person calls it: the table, the copy of the scenario, what changes."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, List
+
+import pytest
+
+from pursue_gen.calibration.proposal import Options, Proposal, propose
+from pursue_gen.calibration.samples import Sample, Samples, Way, Work
+from pursue_gen.language import load, parse
+from tests.calibration.drive_bags import FLOOR, drives, noisy, write_drives
+from tests.cli.test_commands import Outcome, pursue
+
+OUT, BACK = Way("bot", "desk", "shelf"), Way("bot", "shelf", "desk")
+
+
+def called(*words: Any) -> Outcome:
+    done = pursue("calibrate", *words)
+    assert "Traceback" not in done.err, done.err
+    return done
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scenario, and a bag with eighteen drives there and three back."""
+    place = tmp_path_factory.mktemp("floor")
+    (place / "floor.pur").write_text(FLOOR, encoding="utf-8")
+    there, back = drives("bot", OUT_WAY, noisy(5.0, 18, 1)), drives("bot", BACK_WAY, noisy(5.5, 3, 2), 300.0)
+    write_drives(place / "drives.bag", [*there, *back])
+    return place
+
+
+OUT_WAY, BACK_WAY = ("desk", "shelf"), ("shelf", "desk")
+
+
+def proposal(samples: List[Sample], text: str = FLOOR, **options: Any) -> Proposal:
+    scenario = parse(text, "floor.pur", "floor")
+    return propose(scenario, Samples(tuple(samples), unit=1.0), Options(**options))
+
+
+def test_the_proposal_is_written_into_a_copy_with_where_it_comes_from(folder: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.pur"
+    done = called(folder / "floor.pur", folder / "drives.bag", "-o", copy)
+    assert done.status == 0, done.err
+    text = copy.read_text(encoding="utf-8")
+    assert "travel bot from desk to shelf takes 3.8 to 6.8 // paced; calibrate: 18 drives, 4.6 to 5.7\n" in text
+    assert "travel bot from shelf to desk takes 2.8 to 13.1 // calibrate: 3 drives, 5.7 to 6.5, too few" in text
+    assert text.startswith("// the floor of the tests\n")
+    assert (folder / "floor.pur").read_text(encoding="utf-8") == FLOOR
+    assert load(str(copy)).travels[0].window[1] == Fraction(34, 5)
+    again = tmp_path / "again.pur"
+    called(copy, folder / "drives.bag", "-o", again, "--no-solve")
+    assert again.read_text(encoding="utf-8") == text
+
+
+def test_what_changes_is_said(folder: Path) -> None:
+    done = called(folder / "floor.pur", folder / "drives.bag")
+    assert "9 by 0.7" in done.out and "12 of 21 times left the present model" in done.out
+    assert "as it is:          won, to the goal at most 11.2" in done.out
+    assert "with the proposal: won, to the goal at most 13.0" in done.out
+    assert "-o floor_calibrated.pur" in done.err
+
+
+def test_a_proposal_with_which_the_objective_is_lost_says_so(folder: Path, tmp_path: Path) -> None:
+    tight = tmp_path / "tight.pur"
+    tight.write_text(FLOOR.replace("within 20", "within 12"), encoding="utf-8")
+    done = called(tight, folder / "drives.bag", "-o", tmp_path / "copy.pur")
+    assert done.status == 0
+    assert "with the proposal: lost" in done.out and "cannot be met" in done.out
+
+
+def test_a_program_gets_the_same_as_numbers(folder: Path) -> None:
+    data = json.loads(called(folder / "floor.pur", folder / "drives.bag", "--json", "--time-unit", 2).out)
+    first, second = data["times"]
+    assert (first["agent"], first["a"], first["b"], first["count"], second["count"]) == ("bot", "desk", "shelf", 18, 3)
+    assert first["most"] == pytest.approx(max(noisy(5.0, 18, 1)) / 2, abs=1e-5) and data["unit"] == 2
+    assert data["left"] == {"times": 21, "of": 21} and first["early"] == 18
+    assert (data["before"]["verdict"], data["after"]["verdict"]) == ("won", "won")
+
+
+def test_no_file_that_is_there_is_replaced_unless_that_is_wanted(folder: Path, tmp_path: Path) -> None:
+    scenario = tmp_path / "floor.pur"
+    scenario.write_text(FLOOR, encoding="utf-8")
+    link = tmp_path / "link.pur"
+    link.symlink_to(scenario)
+    for target in (scenario, link):
+        done = called(scenario, folder / "drives.bag", "-o", target, "--no-solve")
+        assert done.status == 2 and "CLI003" in done.err
+    assert called(scenario, folder / "drives.bag", "-o", link, "--no-solve", "--force").status == 2
+    assert scenario.read_text(encoding="utf-8") == FLOOR
+    assert called(scenario, folder / "drives.bag", "-o", scenario, "--no-solve", "--force").status == 0
+    assert "calibrate: 18 drives" in scenario.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("words", [["--time-unit", "0"], ["--step", "0"], ["--step", "x"], ["--share", "1"]])
+def test_options_that_cannot_be_meant_are_reported(folder: Path, words: List[str]) -> None:
+    done = called(folder / "floor.pur", folder / "drives.bag", *words)
+    assert done.status == 2 and "CLI004" in done.err
+
+
+def test_windows_of_agents_that_are_not_controlled_are_only_widened() -> None:
+    text = FLOOR.replace("reach_objective", 'agent "guest" mobile 2 location desk\nreach_objective', 1)
+    walk = Way("guest", "desk", "shelf")
+    (found,) = proposal([Sample(walk, 8.5) for _ in range(6)], text).findings
+    assert found.widened and found.proposed == (8, 9)
+    (found,) = proposal([Sample(walk, 8.0 + n) for n in range(6)], text).findings
+    assert found.proposed[0] < 8 and found.proposed[1] > 13
+
+
+def test_slack_belongs_to_the_present_model() -> None:
+    times = [Sample(OUT, 4.0), Sample(OUT, 5.8)]
+    assert proposal(times).left == (1, 2) and proposal(times).slack == {"bot": 1}
+    assert proposal(times, slack={"bot": 1}).left == (0, 2) and proposal(times, slack={"bot": 1}).slack == {}
+
+
+def test_outliers_count_unless_they_are_left_out() -> None:
+    times = [Sample(OUT, 5.0 + 0.1 * (n % 4)) for n in range(12)] + [Sample(OUT, 30.0, "drives.bag", 77.0)]
+    (found,) = proposal(times).findings
+    assert found.far == (12,) and found.proposed[1] >= 30 and found.source.endswith("1 far out")
+    (less,) = proposal(times, outliers=False).findings
+    assert less.proposed[1] < 7 and less.spread.most == 30.0
+    assert proposal(times).lost_after == 30
+
+
+def test_durations_of_actions_are_proposed_too() -> None:
+    found = proposal([Sample(Work("fetch"), 2.0 + 0.1 * n) for n in range(10)])
+    text = found.checked().text
+    assert 'event "fetch" location shelf duration ' in text and "// calibrate: 10 actions, 2.0 to 2.9\n" in text
+    assert found.missing == (OUT, BACK)
+
+
+def test_an_action_that_takes_hardly_any_time_keeps_a_duration() -> None:
+    (found,) = proposal([Sample(Work("fetch"), 0.02)] * 6).findings
+    assert 0 < found.proposed[0] < 0.02 < found.proposed[1]
+
+
+def test_windows_are_rounded_to_the_step() -> None:
+    (found,) = proposal([Sample(OUT, 5.0 + 0.1 * n) for n in range(10)], step=Fraction(1)).findings
+    assert all(end == int(end) for end in found.proposed)
