@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Sequence, Tuple
 
-from pursue_gen.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what
+from pursue_gen.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what, of_record
 from pursue_gen.calibration.windows import (
     COUNTED,
     FITTED,
@@ -19,11 +19,13 @@ from pursue_gen.calibration.windows import (
     spread_of,
     window_of,
 )
+from pursue_gen.diagnostics import counted
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario, Window
 from pursue_gen.lsp.new_numbers import Duration, NewNumber, TravelTime, with_numbers
+from pursue_gen.replay.record import MissionRecord
 
 BY = "calibrate"
 """Begins the notes in the scenario's text."""
@@ -43,6 +45,7 @@ class Options:
     """`unit`: seconds per time unit; `step`: what windows are rounded to; `share` of later times that they are to hold.
 
     `slack`: by how many time units each agent may be later than the present model. `outliers`: whether they count.
+    `tolerance`: time units by which something may miss its window and still keep it.
     """
 
     unit: float = 1.0
@@ -50,6 +53,7 @@ class Options:
     share: float = SHARE
     slack: Mapping[str, int] = field(default_factory=dict)
     outliers: bool = True
+    tolerance: float = TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -78,11 +82,18 @@ class Finding:
     widened: bool = False
 
     @property
+    def is_left(self) -> bool:
+        """True where times left the present window."""
+        return self.early + self.late > 0
+
+    @property
     def source(self) -> str:
         """Where the proposal comes from, as a note in the text."""
         noun = "drive" if isinstance(self.what, Way) else "action"
         count = self.spread.count
-        text = f"{count} {noun}{'s' * (count != 1)}, {self.spread.least:.1f} to {self.spread.most:.1f}"
+        text = f"{counted(count, noun)}, {self.spread.least:.1f}"
+        if count > 1:
+            text += f" to {self.spread.most:.1f}"
         if self.far:
             text += f", {len(self.far)} far out"
         return text if self.basis in (COUNTED, FITTED) else f"{text}, too few for more than a guess"
@@ -117,6 +128,12 @@ class Proposal:
         return sum(f.early + f.late for f in self.findings), sum(f.spread.count for f in self.findings)
 
     @property
+    def left_most(self) -> Tuple[Finding, ...]:
+        """Where the present model was left: most often first, then by most."""
+        left = (finding for finding in self.findings if finding.is_left)
+        return tuple(sorted(left, key=lambda f: (-f.early - f.late, -max(f.most_early, f.most_late))))
+
+    @property
     def held(self) -> Tuple[int, int]:
         """How many times are in windows that were made without them, and of how many."""
         return sum(f.held for f in self.findings), sum(f.spread.count for f in self.findings if f.spread.count > 1)
@@ -147,6 +164,14 @@ def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
     )  # fmt: skip
 
 
+def of_mission(
+    record: MissionRecord, scenario: Scenario, slack: Mapping[str, int], tolerance: float, file: str
+) -> Proposal:
+    """What the times of one mission say; `slack`, in time units, is that of the game that was played."""
+    samples = of_record(record, scenario, file)
+    return propose(scenario, samples, Options(samples.unit or 1.0, slack=slack, tolerance=tolerance))
+
+
 def _present(scenario: Scenario, slack: Mapping[str, int]) -> Dict[Measured, Window]:
     """The windows of the scenario as it is played, in its order."""
     found: Dict[Measured, Window] = {}
@@ -166,8 +191,8 @@ def _finding(
 ) -> Finding:
     times = tuple(sample.seconds / options.unit for sample in samples)
     far = outliers(times)
-    counted = times if options.outliers else tuple(time for place, time in enumerate(times) if place not in far)
-    window = window_of(counted, options.share)
+    used = times if options.outliers else tuple(time for place, time in enumerate(times) if place not in far)
+    window = window_of(used, options.share)
     low, high = (exact(steps * options.step) for steps in rounded(window, float(options.step)))
     if isinstance(what, Work):
         low = exact(max(low, _SHORTEST))
@@ -175,11 +200,11 @@ def _finding(
     widened = not _is_controlled(scenario, what)
     if widened:
         low, high = min(low, present[0]), max(high, present[1])
-    early = [float(present[0]) - time for time in times if time < present[0] - TOLERANCE]
-    late = [time - float(present[1]) for time in times if time > present[1] + TOLERANCE]
+    early = [float(present[0]) - time for time in times if time < present[0] - options.tolerance]
+    late = [time - float(present[1]) for time in times if time > present[1] + options.tolerance]
     return Finding(
         what, tuple(samples), times, spread_of(times), far, present, (low, high), window.basis, len(early), len(late),
-        max(early, default=0.0), max(late, default=0.0), held_out(counted, options.share)[0], widened,
+        max(early, default=0.0), max(late, default=0.0), held_out(used, options.share)[0], widened,
     )  # fmt: skip
 
 

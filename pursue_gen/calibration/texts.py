@@ -124,6 +124,27 @@ def _unused(proposal: Proposal) -> Iterator[str]:
         yield f"Not used: {what}, {counted(len(some), 'time')} ({why})."
 
 
+def left_most(proposal: Proposal) -> Iterator[str]:
+    """Where the model was left most, with what is proposed there; nothing where it was kept."""
+    found = proposal.left_most
+    if found:
+        yield "Where the model was left most (in time units), and the windows that these times propose:"
+    for finding in found[:_MANY]:
+        by = [("early", finding.early, finding.most_early), ("late", finding.late, finding.most_late)]
+        of = finding.spread.count
+        how = " and ".join(f"{count} of {of} {word} by {most:.2f}" for word, count, most in by if count)
+        what = shown(proposal.scenario, finding.what)
+        yield f"  {what}, model {window_text(finding.present)}: {how}"
+        yield f"    {statement(finding)} // {finding.source}"
+    if len(found) > _MANY:
+        yield f"  and {len(found) - _MANY} more"
+
+
+def left_most_json(proposal: Proposal) -> List[Dict[str, Any]]:
+    """The same for programs."""
+    return [_finding_json(finding) for finding in proposal.left_most]
+
+
 def proposed(proposal: Proposal) -> Iterator[str]:
     """The statements of the proposal, each with where it comes from."""
     lines = [statement(finding) for finding in proposal.findings]
@@ -147,7 +168,7 @@ def as_json(proposal: Proposal, verdicts: Sequence[Verdict] = ()) -> Dict[str, A
     data: Dict[str, Any] = {
         "unit": proposal.options.unit,
         "share": proposal.options.share,
-        "times": [_finding_json(finding, proposal) for finding in proposal.findings],
+        "times": [_finding_json(finding) for finding in proposal.findings],
         "left": {"times": left[0], "of": left[1]},
         "held_out": {"held": held[0], "of": held[1]},
         "missing": [vars(way) for way in proposal.missing],
@@ -160,7 +181,7 @@ def as_json(proposal: Proposal, verdicts: Sequence[Verdict] = ()) -> Dict[str, A
     return data
 
 
-def _finding_json(finding: Finding, proposal: Proposal) -> Dict[str, Any]:
+def _finding_json(finding: Finding) -> Dict[str, Any]:
     return {
         **vars(finding.what),
         **vars(finding.spread),

@@ -14,6 +14,7 @@ from pursue_gen.cli.options import JSON, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
 
 if TYPE_CHECKING:
+    from pursue_gen.calibration.proposal import Proposal
     from pursue_gen.replay import Findings, Game, MissionRecord
     from pursue_gen.solving.request import SolveRequest
 
@@ -38,11 +39,12 @@ def replay(
     quiet: bool = typer.Option(False, "--quiet", "-q", help="Only what is wrong, the summary and the verdict."),
     as_json_: bool = JSON,
 ) -> None:
-    """Check a recorded mission against its scenario, step by step, and say where the world left the model.
+    """Check a recorded mission against its scenario, step by step, and say where the world left the model most.
 
     Needs no ROS. The exit status is 0 if the mission kept to the model and was won, 1 if not, 2 if there is nothing to
     check.
     """
+    from pursue_gen.calibration.proposal import of_mission
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.replay import check, game_of, read_recording
     from pursue_gen.replay.journal import Journal, reconstruct
@@ -60,7 +62,8 @@ def replay(
     if timeline is not None:
         _draw(record, game, recording, timeline)
     findings = check(record, game, tolerance)
-    _print(findings, game, record, recording, quiet, as_json_)
+    proposal = of_mission(record, game.scenario, source.rules.slack, tolerance, recording.name)
+    _print(findings, game, record, recording, proposal, quiet, as_json_)
     if not (findings.kept and findings.won):
         raise typer.Exit(1)
 
@@ -77,18 +80,26 @@ def _draw(record: MissionRecord, game: Game, recording: Path, timeline: Path) ->
 
 
 def _print(
-    findings: Findings, game: Game, record: MissionRecord, recording: Path, quiet: bool, as_json_: bool
+    findings: Findings,
+    game: Game,
+    record: MissionRecord,
+    recording: Path,
+    proposal: Proposal,
+    quiet: bool,
+    as_json_: bool,
 ) -> None:
+    from pursue_gen.calibration.texts import left_most, left_most_json
     from pursue_gen.replay.summary import as_json, listed, summary, verdict
     from pursue_gen.workspace.model_file import model_data
     from pursue_runtime.model import Model
 
     if as_json_:
-        print(json.dumps(as_json(findings, record, str(recording)), indent=1))
+        data = {**as_json(findings, record, str(recording)), "left_most": left_most_json(proposal)}
+        print(json.dumps(data, indent=1))
         info(verdict(findings))
         return
     if not quiet or not findings.kept:
         model = Model(model_data(game.network, game.objective, game.scenario, Fraction(0)))
         print(*listed(findings, model, notes=not quiet), sep="\n")
-    print(summary(findings))
+    print(*left_most(proposal), summary(findings), sep="\n")
     print(verdict(findings))

@@ -56,6 +56,23 @@ def test_what_a_workspace_knows_is_taken(bag: Path, tmp_path: Path) -> None:
     assert called(bag, "--workspace", tmp_path).status == 2
 
 
+def test_it_is_said_where_the_model_was_left_most_and_what_would_have_held(tmp_path: Path) -> None:
+    play = [(at - 1.0 if "c_to_b2b" in word else at, word, node) for at, word, node in PLAY]
+    play = [(at + 2.0 if "inaDONE" in word else at, word, node) for at, word, node in play]
+    file = write_bag(mission(tuple(play)), tmp_path / "mission.bag", GAME)
+    done = called(file, "--quiet")
+    lines = done.out.splitlines()
+    head = next(number for number, line in enumerate(lines) if line.startswith("Where the model was left most"))
+    assert lines[head + 1 : head + 5] == [
+        "  bot2_ina, model 6 to 7: 1 of 1 late by 1.40",
+        '    event "bot2_ina" … duration 4.1 to 16.8 // 1 action, 8.4, too few for more than a guess',
+        "  bot1: c to b, model 9 to 10: 1 of 1 early by 0.70",
+        "    travel bot1 from c to b takes 4.1 to 16.6 // 1 drive, 8.3, too few for more than a guess",
+    ]
+    (late, early) = json.loads(called(file, "--json").out)["left_most"]
+    assert (late["event"], late["late"], early["a"], early["early"]) == ("bot2_ina", 1, "c", 1)
+
+
 def test_a_mission_that_left_the_model_gives_status_1_and_says_where(tmp_path: Path) -> None:
     play = tuple((at - 1.0 if "c_to_b2b" in word else at, word, node) for at, word, node in PLAY)
     bag = write_bag(mission(play), tmp_path / "early.bag", GAME)
