@@ -47,7 +47,7 @@ def samples_in(
     return found, tuple(findings)
 
 
-_RECORD = "record a mission (roslaunch … record:=true) until movements and actions have ended, and name its bag"
+_RECORD = "record a mission until robots have arrived (roslaunch … record:=true), or drives (rosrun UI drive_legs)"
 
 
 def _record(file: Path, scenario: Scenario) -> MissionRecord:

@@ -55,7 +55,7 @@ def calibrate(
     """Compare measured times with the scenario's windows, and propose windows that hold nearly all later times.
 
     The times are those of movements and actions in recorded missions, and those of drives that were measured without a
-    mission. Needs no ROS.
+    mission (rosrun UI drive_legs). Needs no ROS.
     """
     from pursue_gen.calibration import texts
     from pursue_gen.calibration.proposal import propose

@@ -1,0 +1,229 @@
+"""All ways of one robot, driven so many times each: what it is sent, and what is measured. Without ROS.
+
+Goals, retries and arrivals are those of a mission: `Navigation` is shown a state in which the robot is on its way, and
+the word with which it would report the end is the end of the drive. Times are seconds of ROS time, `real` of the
+monotonic clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_runtime.controller.goal import Answer, Goal, Movement
+from pursue_runtime.controller.navigation import Log, Navigation, View
+from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
+from pursue_runtime.drives.tour import Way, next_way
+from pursue_runtime.locations import movement
+from pursue_runtime.words import HELD, parse_report, parse_word
+
+MOST_FAILURES = 2
+"""So often a way is tried that fails; then it is given up."""
+
+
+class Plan(NamedTuple):
+    """What is to be driven: each of the `ways` `times` times. `limit`: the seconds that one drive may take; `pause`:
+    the seconds between two of them."""
+
+    ways: Tuple[Way, ...]
+    times: int = 5
+    limit: float = 300.0
+    pause: float = 1.0
+
+
+class Due(NamedTuple):
+    """What is to be done now: a goal to send, the id of a goal to call back, a drive that has ended."""
+
+    goal: Optional[Goal] = None
+    cancel: Optional[str] = None
+    drive: Optional[Drive] = None
+
+
+@dataclass
+class _Leg:
+    """A drive that is under way; `counts`: it is one of the plan, and not one to a place to begin at."""
+
+    a: str
+    b: str
+    start: float
+    counts: bool
+    goals: int = 0
+
+
+class Session:
+    """The drives of one robot.
+
+    It begins with a drive to `start`, which does not count, and so it goes on after a failed one: to where that began,
+    or to another place. A robot that another node sends elsewhere is left to that.
+    """
+
+    def __init__(
+        self, robot: str, places: Mapping[str, Place], start: str, plan: Plan, settings: Settings, log: Log
+    ) -> None:
+        self.robot, self.plan = robot, plan
+        self.is_over = False
+        self.problem = ""  # why it ended before all was driven
+        self.measured: Dict[Way, List[float]] = {way: [] for way in plan.ways}
+        self._nav = Navigation(robot, settings, log)
+        self._places, self._log = places, log
+        self._failures: Dict[Way, int] = {}
+        self._leg: Optional[_Leg] = None
+        self._place = ""  # where it is, "": not known
+        self._tries = [start, *(place for place in places if place != start)]  # where it may begin
+        self._next_at = float("-inf")
+        self._seq = 0
+        self._word: Optional[str] = None
+
+    @property
+    def goal(self) -> str:
+        """The id of the goal in progress, "" if none."""
+        return self._nav.goal
+
+    @property
+    def location(self) -> str:
+        """The location of the robot in a mission that would be so far; "" where it stands."""
+        return movement(self._leg.a, self._leg.b) if self._leg is not None else ""
+
+    # From the robot ---------------------------------------------------------------------------------------------------
+
+    def on_result(self, answer: Answer, now: float) -> None:
+        """Takes a result of move_base."""
+        self._nav.on_result(answer, now)
+
+    def on_status(self, answers: Sequence[Answer], now: float, real: float) -> None:
+        """Takes move_base's status."""
+        self._nav.on_status(answers, now, real)
+
+    def on_position(self, position: Optional[Position], now: float) -> None:
+        """Takes a position on the map; None: it is not published any more."""
+        self._nav.on_position(position, now)
+
+    def on_word(self, text: str) -> None:
+        """Takes a word on pursue/events: a robot may report by one that it has arrived, from wherever, or failed."""
+        report, word, leg = parse_report(text), parse_word(text), self._leg
+        if leg is None:
+            return
+        ends = {f"{self.robot}_{movement(a, leg.b)}2{leg.b}" for a in (leg.a, *self._places)}
+        arrives = word is not None and word.event in ends
+        if arrives or (report is not None and report.agent == self.robot):
+            self._word = text
+
+    # What is due ------------------------------------------------------------------------------------------------------
+
+    def due(self, now: float, real: float) -> Due:
+        """What is to be done now."""
+        if self.is_over:
+            return Due()
+        if self._leg is None and (now < self._next_at or not self._begin(now)):
+            return Due()
+        leg = self._leg
+        assert leg is not None, "a drive has begun"
+        due = self._nav.due(now, real)
+        leg.goals += due.goal is not None
+        word, self._word = self._word or due.word, None
+        if word is not None:
+            return self._ended(leg, word, now)
+        if now >= leg.start + self.plan.limit:
+            cancel = self.goal
+            drive = self._end(leg, LATE, f"not there after {self.plan.limit:g} s", now)
+            return Due(cancel=cancel, drive=drive)
+        return Due(goal=due.goal)
+
+    def next_moment(self) -> Optional[float]:
+        """When to call `due` again; None: not before the next input."""
+        if self.is_over:
+            return None
+        if self._leg is None:
+            return self._next_at
+        moment = self._nav.next_moments()[0]
+        limit = self._leg.start + self.plan.limit
+        return limit if moment is None else min(moment, limit)
+
+    def stop(self, now: float) -> Due:
+        """Ends it at once: what is measured stays."""
+        self._stop("stopped")
+        leg, cancel = self._leg, self.goal
+        if leg is None:
+            return Due()
+        return Due(cancel=cancel, drive=self._end(leg, INTERRUPTED, "", now))
+
+    def summary(self) -> Iterator[str]:
+        """What was measured of each way, a sentence each."""
+        for way, times in self.measured.items():
+            took = f", {min(times):.1f} to {max(times):.1f} s" if times else ""
+            failed = self._failures.get(way, 0)
+            text = f"{self.robot} from {way[0]} to {way[1]}: {len(times)} of {self.plan.times} drives{took}"
+            yield text + (f"; {failed} failed" if failed else "")
+
+    @property
+    def is_complete(self) -> bool:
+        """True where each way was driven so often as was wanted."""
+        return all(len(times) >= self.plan.times for times in self.measured.values())
+
+    # Drives -----------------------------------------------------------------------------------------------------------
+
+    def _begin(self, now: float) -> bool:
+        """Begins the next drive; False where there is none."""
+        if self._place:
+            way = next_way(self._place, self._left(), self._usable())
+            if way is None:
+                missing = not self.is_complete
+                self._stop("the rest cannot be reached, or failed too often" if missing else "")
+                return False
+            self._leg = _Leg(*way, now, counts=True)
+        elif self._tries:
+            self._leg = _Leg("", self._tries.pop(0), now, counts=False)
+        else:
+            self._stop("it gets to no place")
+            return False
+        self._seq += 1
+        leg = self._leg
+        way_there = Movement(movement(leg.a, leg.b), self._places[leg.b])
+        self._word = None
+        self._nav.on_state(View(way_there.location, way_there, seq=self._seq), now)
+        self._nav.start(way_there, now)
+        return True
+
+    def _ended(self, leg: _Leg, word: str, now: float) -> Due:
+        report = parse_report(word)
+        if report is None:
+            return Due(drive=self._end(leg, ARRIVED, "", now))
+        if report.event == HELD:
+            self._stop(f"{report.text or 'it was called back'}: it is left to that")
+            return Due(drive=self._end(leg, INTERRUPTED, report.text, now))
+        cancel = self.goal or None
+        return Due(cancel=cancel, drive=self._end(leg, FAILED, report.text, now))
+
+    def _end(self, leg: _Leg, outcome: str, text: str, now: float) -> Optional[Drive]:
+        """The drive is over; what it is on `pursue/drives`, None where it does not count."""
+        drive = Drive(self.robot, leg.a, leg.b, leg.start, now, outcome, leg.goals, text)
+        self._leg = None
+        arrived = outcome == ARRIVED
+        self._place = leg.b if arrived else ""
+        self._next_at = now + self.plan.pause
+        self._nav.on_state(View(self._place, seq=self._seq), now)
+        if arrived and leg.counts:
+            self.measured.setdefault((leg.a, leg.b), []).append(drive.seconds)
+            count = sum(len(times) for times in self.measured.values())
+            all_ = self.plan.times * len(self.plan.ways)
+            self._log("info", f"{self.robot} from {leg.a} to {leg.b}: {drive.seconds:.2f} s ({count} of {all_})")
+        elif not arrived:
+            whence = f" from {leg.a}" if leg.a else ""
+            self._log("warn", f"{self.robot}{whence} to {leg.b}: {outcome}{f', {text}' if text else ''}")
+        if outcome in (FAILED, LATE) and leg.counts:
+            self._failures[leg.a, leg.b] = self._failures.get((leg.a, leg.b), 0) + 1
+            self._tries = [leg.a, *(place for place in self._places if place != leg.a)]
+        return drive if leg.counts else None
+
+    def _left(self) -> Dict[Way, int]:
+        """How often each way is still to be driven."""
+        times = self.plan.times
+        return {way: max(0, times - len(self.measured[way])) for way in self.plan.ways if way in self._usable()}
+
+    def _usable(self) -> Tuple[Way, ...]:
+        return tuple(way for way in self.plan.ways if self._failures.get(way, 0) < MOST_FAILURES)
+
+    def _stop(self, problem: str) -> None:
+        self.is_over, self.problem = True, self.problem or problem

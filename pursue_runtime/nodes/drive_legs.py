@@ -1,0 +1,218 @@
+"""Drives the robots of a mission along all ways, without the mission, and records how long that takes: for
+`pursue-gen calibrate`. One robot after the other; the others stand.
+
+Parameters: ~robots (names; all by default), ~times (how often each way, 5), ~start (where the first robot begins; by
+default each where the scenario has it), ~limit (seconds that a drive may take, 300), ~pause (seconds between two of
+them, 1), ~file (a path; by default pursue/<scenario>/drives.bag under ROS_HOME; no file is ever
+overwritten, the name gets a number), ~config, and how robots are connected, as for controllers: ~goals (action), ~ends
+(result), ~on_stop (cancel), and the others.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import threading
+import time
+from functools import partial
+from typing import Any, Dict, List, Mapping, Optional, Tuple
+
+import rosbag
+import rosgraph
+import rospy
+from std_msgs.msg import String
+
+from pursue_runtime.controller.goal import Answer
+from pursue_runtime.controller.settings import Settings, read_settings
+from pursue_runtime.controller.whereabouts import Position, place_of
+from pursue_runtime.data import DataError, Package
+from pursue_runtime.drives.report import DRIVES, Drive, format_drive
+from pursue_runtime.drives.robots import Driven, driven_robots
+from pursue_runtime.drives.session import Due, Session
+from pursue_runtime.folders import scenario_folder
+from pursue_runtime.missions import own_source
+from pursue_runtime.nodes.node import Alarm, Ending, Later, run_node, subscribe
+from pursue_runtime.nodes.recorder import CHUNK, stamp
+from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.ui.recording import GAME, reserve_file
+from pursue_runtime.words import EVENTS, STATE
+
+DEFAULTS: Mapping[str, Any] = {"goals": "action", "ends": "result", "on_stop": "cancel"}
+"""Those of real robots, as `mission.launch simulate:=false` has them."""
+
+LOOKS = 0.2
+"""Seconds of real time between two looks at tf."""
+
+LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
+
+
+class DriveLegs:
+    """The node on ROS: one lock, the topics of one robot at a time, a bag."""
+
+    def __init__(self, package: Package) -> None:
+        self.ending = Ending()
+        self._given = {**DEFAULTS, **rospy.get_param("~", {})}
+        source = own_source(package, "model.yaml", str(self._given.get("config", "")))
+        self._waiting = driven_robots(source.read, self._given, _package_folder)
+        check_no_mission()
+        file = str(self._given.get("file", ""))
+        folder = scenario_folder(os.environ, package.scenario)
+        self.path = reserve_file(file or os.path.join(folder, "drives.bag"), folder)
+        self._lock = threading.RLock()
+        self._bag: Optional[rosbag.Bag] = rosbag.Bag(self.path + ".active", "w", chunk_threshold=CHUNK)
+        with contextlib.suppress(DataError):
+            self._bag.write(rospy.resolve_name(GAME), String(json.dumps(source.read("game.yaml"))), stamp())
+        self._drives = rospy.Publisher(DRIVES, String, queue_size=100, latch=True)
+        self._lines = Later("log", self.ending)
+        self._alarm = Alarm(self._act, self.ending)
+        self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
+        self._done: List[Session] = []
+        self._next_look = 0.0
+        subscribe(EVENTS, String, lambda message: self._take("on_word", message.data), self.ending, queue_size=100)
+        subscribe(STATE, rospy.AnyMsg, self._on_mission, self.ending)
+        rospy.on_shutdown(self._stop)
+
+    def run(self) -> int:
+        """Runs until all robots are done; the exit status is 0 where each way was driven so often as was wanted."""
+        rospy.loginfo("recording %s", self.path)
+        try:
+            self._next_robot()
+            return self.ending.wait(linger=0.5)
+        finally:
+            self._stop()
+            with self._lock:
+                if self._bag is not None:
+                    self._bag.close()
+                    self._bag = None
+                    os.rename(self.path + ".active", self.path)
+            for session in self._done:
+                for text in session.summary():
+                    rospy.loginfo("%s", text)
+            rospy.loginfo("the drives are in %s: pursue-gen calibrate SCENARIO.pur %s", self.path, self.path)
+
+    # One robot after the other ----------------------------------------------------------------------------------------
+
+    def _next_robot(self) -> None:
+        with self._lock:
+            if not self._waiting:
+                self.ending.end(0 if all(session.is_complete for session in self._done) else 1)
+                return
+            robot = self._waiting.pop(0)
+            settings = read_settings(robot.name, self._given)
+            places = {poi: place_of(poi, pose) for poi, pose in robot.poses.items()}
+            session = Session(robot.name, places, robot.start, robot.plan, settings, self._log)
+            take = self._on_result, self._on_statuses, self._on_position
+            link = RobotLink(robot.name, settings, self.ending, self._log, *take)
+            self._robot = robot, settings, session, link
+            ways = len(robot.plan.ways)
+            self._log("info", f"{robot.name} drives {ways} ways {robot.plan.times} times each, from {robot.start} on")
+        link.watch()
+        self._alarm.set(None, 1.0)  # the robot's node connects meanwhile
+
+    def _act(self) -> None:
+        """Looks where the robot is, and does what is due."""
+        with self._lock:
+            if self._robot is None:
+                return
+            _, _, session, link = self._robot
+        if time.monotonic() >= self._next_look:
+            self._next_look = time.monotonic() + LOOKS
+            position = link.look()
+            if position is not None or link.has_lost_position:
+                self._take("on_position", position, rospy.get_time())
+        with self._lock:
+            self._carry_out(session.due(rospy.get_time(), time.monotonic()))
+            patience = LOOKS if link.looks else 1.0
+            is_over = session.is_over
+            if is_over:
+                self._finish()
+            else:
+                self._alarm.set(session.next_moment(), patience)
+        if is_over:
+            self._next_robot()
+
+    def _finish(self) -> None:
+        assert self._robot is not None, "a robot is driven"
+        robot, _, session, link = self._robot
+        self._robot = None
+        self._done.append(session)
+        if session.problem:
+            self._log("warn", f"{robot.name}: {session.problem}")
+        link.close()
+
+    def _carry_out(self, due: Due) -> None:
+        assert self._robot is not None, "a robot is driven"
+        robot, settings, session, link = self._robot
+        link.keep(session.location, True, session.goal)
+        if due.cancel and settings.on_stop == "cancel":
+            link.cancel(due.cancel)
+        if due.goal is not None:
+            link.go(due.goal, robot.poses[due.goal.movement.place.poi])
+        if due.drive is not None:
+            self._publish(due.drive)
+
+    def _publish(self, drive: Drive) -> None:
+        message = String(format_drive(drive))
+        if self._bag is not None:
+            self._bag.write(rospy.resolve_name(DRIVES), message, stamp())
+        with contextlib.suppress(rospy.ROSException):  # the node is going down
+            self._drives.publish(message)
+
+    # From the robot ---------------------------------------------------------------------------------------------------
+
+    def _on_result(self, answer: Answer) -> None:
+        self._take("on_result", answer, rospy.get_time())
+        self._alarm.set(None, 0.0)
+
+    def _on_statuses(self, answers: List[Answer]) -> None:
+        self._take("on_status", answers, rospy.get_time(), time.monotonic())
+
+    def _on_position(self, position: Position) -> None:
+        self._take("on_position", position, rospy.get_time())
+
+    def _take(self, what: str, *arguments: Any) -> None:
+        """Passes something to the session, and looks what is due then."""
+        with self._lock:
+            if self._robot is not None:
+                getattr(self._robot[2], what)(*arguments)
+        if what != "on_position":
+            self._alarm.set(None, 0.0)
+
+    def _on_mission(self, _: rospy.AnyMsg) -> None:
+        rospy.logerr("a mission has been started: the drives end here")
+        self.ending.end(1)
+
+    def _stop(self) -> None:
+        """The node ends: what is under way is called back, and what was measured stays."""
+        with self._lock:
+            if self._robot is not None:
+                self._carry_out(self._robot[2].stop(rospy.get_time()))
+                self._finish()
+
+    def _log(self, level: str, text: str) -> None:
+        self._lines.do(partial(LOGS[level], "%s", text))
+
+
+def check_no_mission() -> None:
+    """Raises DataError while an observer runs: its controllers command the same robots."""
+    topic = rospy.resolve_name(STATE)
+    publishers: Dict[str, List[str]] = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
+    if publishers.get(topic):
+        nodes = ", ".join(publishers[topic])
+        raise DataError(f"{nodes} runs, and its mission commands the same robots: end its launch first")
+
+
+def _package_folder(package: str) -> Optional[str]:
+    """The folder of a package on this machine; None where it is not here."""
+    import rospkg
+
+    try:
+        return str(rospkg.RosPack().get_path(package))
+    except rospkg.ResourceNotFound:
+        return None
+
+
+def main(package: Package) -> int:
+    """Runs the node of this package until it ends; returns its exit status."""
+    return run_node("drive_legs", lambda: DriveLegs(package).run(), OSError)

@@ -1,0 +1,45 @@
+"""`rosrun UI drive_legs`: robots as move_base shows them are driven along all ways, and calibrate reads the bag."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from fake_robots import Robots, robots_workspace, wait_for
+from ros_world import Ros, end
+
+from pursue_gen.calibration.recordings import samples_in
+from pursue_gen.language import load
+
+pytestmark = pytest.mark.ros
+
+SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
+WAYS = ["bot1 from a to c", "bot1 from b to c", "bot1 from c to a", "bot1 from c to b"]
+
+
+def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_measured(
+    ros: Ros, tmp_path: Path
+) -> None:
+    workspace = robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
+    log, bag = tmp_path / "log", tmp_path / "drives.bag"
+    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _pause:=0.05 _file:={bag}"
+    with ros.master() as there:
+        robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3}, bot2={"plays": ["never"]})
+        try:
+            drives = ros.start(command, workspace, log, **there)
+            try:
+                wait_for(lambda: "goal c" in robots.heard("bot2"), log, "bot2 is not driven")
+                drives.send_signal(signal.SIGINT)
+                wait_for(lambda: drives.poll() is not None, log, "it does not end")
+            finally:
+                end(drives)
+            wait_for(lambda: robots.heard("bot2") == ["goal c", "cancel"], log, "bot2 was not called back")
+        finally:
+            robots.end()
+    assert len(robots.heard("bot1")) == 5, "to its start, and four ways"
+    found, findings = samples_in([bag], load(str(SCENARIO)))
+    assert sorted(str(sample.what) for sample in found.measured) == WAYS and findings == ()
+    assert all(sample.seconds > 0.29 for sample in found.measured)
+    assert not bag.with_suffix(".bag.active").exists()
+    assert "bot1 from c to b: 1 of 1 drives" in log.read_text()

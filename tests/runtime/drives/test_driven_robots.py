@@ -1,0 +1,84 @@
+"""Which robots are driven along which ways: by the data of a generated workspace and the node's parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional
+
+import pytest
+
+from pursue_gen.language import parse
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.workspace import Options, write_workspace
+from pursue_runtime.data import DataError, read_data
+from pursue_runtime.drives.robots import Driven, driven_robots
+
+TEXT = """\
+poi "hall" //[0, 0, 0, 0, 0, 0, 1]
+poi "lab" //[5, 0, 0, 0, 0, 0, 1]
+poi "exit" //[9, 0, 0, 0, 0, 0, 1]
+connect hall and lab distance 5
+connect lab and exit distance 4 one_way
+event "scan" location lab
+agent "bot1" controllable mobile 1 location hall can_do scan
+agent "bot2" controllable mobile 1 location lab
+agent "arm" controllable location lab
+agent "guest" mobile 1 location hall
+reach_objective: do scan
+"""
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    scenario = parse(TEXT, "lab.pur", "lab")
+    won = solve_scenario(scenario, Rules())
+    folder = tmp_path_factory.mktemp("lab") / "ws"
+    write_workspace(scenario, won.network, won.objective, won.strategy, Options(), folder)
+    return folder
+
+
+def robots(workspace: Path, without: str = "", **given: Any) -> List[Driven]:
+    def read(name: str) -> Mapping[str, Any]:
+        return read_data(str(workspace / "src" / "UI" / "config" / name))
+
+    def folder(package: str) -> Optional[str]:
+        place = workspace / "src" / package
+        return str(place) if place.is_dir() and package != without else None
+
+    return driven_robots(read, given, folder)
+
+
+def test_each_mobile_robot_drives_all_its_ways_from_where_the_scenario_has_it(workspace: Path) -> None:
+    found = {robot.name: robot for robot in robots(workspace)}
+    assert set(found) == {"bot1", "bot2"}
+    ways = {("hall", "lab"), ("lab", "hall"), ("lab", "exit")}
+    assert all(set(robot.plan.ways) == ways for robot in found.values())
+    assert (found["bot1"].start, found["bot2"].start) == ("hall", "lab")
+
+
+def test_each_robot_has_its_own_poses_as_far_as_its_controller_is_here(workspace: Path) -> None:
+    first, second = robots(workspace)
+    assert first.poses["lab"][:2] == [5.0, 0.0] != second.poses["lab"][:2]
+    assert robots(workspace, without="controller_bot2")[1].poses["lab"][:2] == [5.0, 0.0]
+
+
+def test_parameters_say_which_robots_how_often_and_from_where(workspace: Path) -> None:
+    (found,) = robots(workspace, robots="bot2", times=3, start="exit", limit=60, pause=0)
+    assert (found.name, found.start) == ("bot2", "exit")
+    assert (found.plan.times, found.plan.limit, found.plan.pause) == (3, 60.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"robots": "guest"}, "expected some of bot1, bot2, arm"),
+        ({"robots": "arm"}, "no robot of this scenario is mobile"),
+        ({"times": 0}, "~times is 0; expected a whole number of at least 1"),
+        ({"limit": 0}, "~limit is 0; expected a number greater than 0"),
+        ({"start": "attic"}, "~start is 'attic'; expected one of hall, lab, exit"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(workspace: Path, given: Dict[str, Any], message: str) -> None:
+    with pytest.raises(DataError, match=message.replace("~", r"\~")):
+        robots(workspace, **given)

@@ -1,0 +1,198 @@
+"""A robot drives all ways without a mission: with a simulated robot, in simulated time, without ROS."""
+
+from __future__ import annotations
+
+import heapq
+from typing import Dict, List, Optional, Tuple
+
+import pytest
+
+from pursue_runtime.controller.goal import Answer, Goal
+from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive, format_drive, parse_drive
+from pursue_runtime.drives.session import Plan, Session
+from pursue_runtime.drives.tour import Way
+
+PLACES = {name: Place(name, float(x), 0.0) for x, name in enumerate("abc")}
+WAYS: Tuple[Way, ...] = (("a", "b"), ("b", "a"), ("b", "c"), ("c", "b"))
+TAKES: Dict[Way, float] = {("a", "b"): 4.0, ("b", "a"): 5.0, ("b", "c"): 6.0, ("c", "b"): 7.0}
+RESULT = Settings(goals="action", ends="result", on_stop="cancel", retries=1)
+
+SUCCEEDED, PREEMPTED, ABORTED = 3, 2, 4
+
+
+class Robot:
+    """A robot with move_base: it takes its time for each way, and fails on those that are blocked."""
+
+    def __init__(self, session: Session, at: str = "a", blocked: Tuple[Way, ...] = ()) -> None:
+        self.session, self.at, self.blocked = session, at, blocked
+        self.now = 100.0
+        self.drives: List[Drive] = []
+        self.goals: List[str] = []
+        self.cancelled: List[str] = []
+        self._answers: List[Tuple[float, int, str, str, int]] = []
+
+    def run(self, until: float = 10_000.0) -> None:
+        """Until the session is over, or that moment has come."""
+        for _ in range(10_000):
+            if not self.step(until):
+                return
+        raise AssertionError("it does not end")
+
+    def step(self, until: float) -> bool:
+        due = self.session.due(self.now, self.now)
+        if due.goal is not None:
+            self.take(due.goal)
+        if due.cancel is not None:
+            self.cancelled.append(due.cancel)
+        if due.drive is not None:
+            self.drives.append(due.drive)
+        if self.session.is_over:
+            return False
+        if due.goal is None and due.drive is None:
+            moments = [self._answers[0][0]] if self._answers else []
+            moment = self.session.next_moment()
+            moments += [] if moment is None else [moment]
+            self.now = max(self.now, min(moments))
+            if self.now > until:
+                return False
+            while self._answers and self._answers[0][0] <= self.now:
+                _, _, name, to, status = heapq.heappop(self._answers)
+                self.at = to if status == SUCCEEDED else self.at
+                self.answer(name, status)
+        return True
+
+    def take(self, goal: Goal) -> None:
+        """A goal: it is answered when the robot is there."""
+        to = goal.movement.place.poi
+        self.goals.append(to)
+        way = (self.at, to)
+        status = ABORTED if way in self.blocked else SUCCEEDED
+        heapq.heappush(self._answers, (self.now + TAKES.get(way, 1.0), len(self.goals), goal.name, to, status))
+
+    def answer(self, goal: str, status: int) -> None:
+        """A result of move_base."""
+        self.session.on_result(Answer(goal, self.now, status, "no way" if status == ABORTED else ""), self.now)
+
+
+def robot(
+    plan: Optional[Plan] = None, settings: Settings = RESULT, at: str = "a", blocked: Tuple[Way, ...] = ()
+) -> Robot:
+    session = Session("bot", PLACES, "a", plan or Plan(WAYS, times=3), settings, lambda level, text: None)
+    return Robot(session, at, blocked)
+
+
+def test_each_way_is_driven_so_often_and_its_time_is_measured() -> None:
+    found = robot()
+    found.run()
+    assert found.session.is_complete and not found.session.problem
+    assert found.session.measured == {way: [pytest.approx(TAKES[way])] * 3 for way in WAYS}
+    assert [(drive.a, drive.b) for drive in found.drives].count(("c", "b")) == 3
+    assert all(drive.outcome == ARRIVED and drive.goals == 1 for drive in found.drives)
+    assert len(found.goals) == 1 + 3 * len(WAYS)  # the first one is to where it begins
+    assert next(found.session.summary()) == "bot from a to b: 3 of 3 drives, 4.0 to 4.0 s"
+
+
+def test_it_comes_to_its_start_first_and_that_does_not_count() -> None:
+    found = robot(at="c")
+    found.run()
+    assert found.goals[0] == "a" and found.drives[0].a == "a"
+    assert found.session.is_complete
+
+
+def test_a_way_that_fails_is_reported_and_the_tour_goes_on() -> None:
+    found = robot(blocked=(("b", "c"),))
+    found.run()
+    measured = {way: len(times) for way, times in found.session.measured.items()}
+    assert measured == {("a", "b"): 3, ("b", "a"): 3, ("b", "c"): 0, ("c", "b"): 0}
+    failed = [drive for drive in found.drives if drive.outcome == FAILED]
+    assert [(drive.a, drive.b, drive.goals) for drive in failed] == [("b", "c", 2)] * 2
+    assert "no way" in failed[0].text
+    assert not found.session.is_complete and "cannot be reached" in found.session.problem
+
+
+def test_a_robot_that_does_not_come_is_called_back_and_goes_on_from_another_place() -> None:
+    found = robot(Plan(WAYS, times=1, limit=6.5))
+    found.run()
+    late = [drive for drive in found.drives if drive.outcome == LATE]
+    assert {(drive.a, drive.b) for drive in late} == {("c", "b")}
+    assert len(found.cancelled) == len(late) == 2
+    assert len(found.session.measured["b", "c"]) >= 1
+
+
+def test_what_was_measured_stays_when_it_is_stopped() -> None:
+    found = robot()
+    found.run(until=120.0)
+    due = found.session.stop(found.now)
+    assert due.drive is not None and due.drive.outcome == INTERRUPTED and due.cancel
+    assert found.drives and found.session.is_over
+    assert found.session.stop(found.now) == found.session.due(found.now, found.now)
+
+
+def test_a_robot_that_a_person_sends_elsewhere_is_left_to_that() -> None:
+    found = robot()
+    found.run(until=110.0)
+    found.answer(found.session.goal, PREEMPTED)
+    found.run()
+    assert found.drives[-1].outcome == INTERRUPTED
+    assert "preempted" in found.session.problem and not found.session.is_complete
+
+
+def test_a_robot_that_gets_nowhere_ends_it() -> None:
+    found = robot(blocked=tuple(("a", place) for place in PLACES))
+    found.run()
+    assert found.drives == [] and found.session.problem == "it gets to no place"
+
+
+def test_arrivals_are_those_of_a_mission_with_positions() -> None:
+    settings = Settings(goals="simple", ends="pose", end_settle=0.5)
+    session = Session("bot", PLACES, "a", Plan((("a", "b"),), times=1), settings, lambda level, text: None)
+
+    def stand(x: float, since: float) -> Optional[Drive]:
+        session.on_position(Position(x, 0.0, 0.0), since)
+        session.due(since, since)
+        return session.due(since + 0.6, since + 0.6).drive
+
+    assert session.due(10.0, 10.0).goal is not None
+    assert stand(0.0, 12.0) is None  # it is at its start
+    goal = session.due(14.0, 14.0).goal
+    assert goal is not None and goal.movement.place.poi == "b"
+    assert stand(0.5, 16.0) is None
+    drive = stand(1.0, 18.0)
+    assert drive is not None and (drive.outcome, drive.seconds) == (ARRIVED, pytest.approx(4.6))
+
+
+def test_arrivals_may_be_words() -> None:
+    session = Session("bot", PLACES, "a", Plan((("a", "b"),), times=1), Settings(), lambda level, text: None)
+    session.due(10.0, 10.0)
+    session.on_word("bot_going_b_to_a2a")
+    session.due(12.0, 12.0)
+    session.due(14.0, 14.0)
+    session.on_word("other_going_a_to_b2b")
+    assert session.due(15.0, 15.0).drive is None
+    session.on_word("bot_going_a_to_b2b")
+    drive = session.due(18.0, 18.0).drive
+    assert drive is not None and drive.seconds == 4.0
+    assert session.due(19.0, 19.0).drive is None and session.is_over
+
+
+@pytest.mark.parametrize("outcome", [ARRIVED, FAILED])
+def test_what_is_published_of_a_drive_is_read_again(outcome: str) -> None:
+    drive = Drive("bot", "a", "b", 1.5, 7.25, outcome, 2, "why" if outcome == FAILED else "")
+    assert parse_drive(format_drive(drive)) == drive
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "[]", "{}", '{"format": 2}',
+        '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 2, "end": 1, "outcome": "arrived"}',
+        '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 1, "end": true, "outcome": "arrived"}',
+        '{"format": 1, "robot": "", "from": "a", "to": "b", "start": 1, "end": 2, "outcome": "arrived"}',
+        '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 1, "end": 2, "outcome": "flew"}',
+        '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 1, "end": 1e400, "outcome": "late"}',
+    ],
+)  # fmt: skip
+def test_what_is_no_drive_is_not_taken_for_one(text: str) -> None:
+    assert parse_drive(text) is None
