@@ -33,7 +33,13 @@ def units(amount: str) -> str:
 
 def objective_words(scenario: Scenario) -> List[str]:
     """What is wanted, a sentence for each objective."""
-    return [_ranked(objective, _sentence(scenario, objective)) for objective, *_ in scenario.statements]
+    return [objective_sentence(scenario, objective) for objective, *_ in scenario.statements]
+
+
+def objective_sentence(scenario: Scenario, objective: StatedObjective) -> str:
+    """What one objective wants, as a sentence, with its number where it is optional."""
+    text = _sentence(scenario, objective)
+    return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
 def promise_words(scenario: Scenario) -> List[str]:
@@ -51,10 +57,6 @@ def promise_words(scenario: Scenario) -> List[str]:
         why = "cannot be promised together with the rest" if one.decided else "was too much work to decide"
         said[number] = f"optional {number} is given up, it {why}: {'; '.join(texts)}"
     return [said[number] for number in sorted(said)]
-
-
-def _ranked(objective: StatedObjective, text: str) -> str:
-    return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
 def _sentence(scenario: Scenario, objective: StatedObjective) -> str:

@@ -43,6 +43,7 @@ class Options:
     `ends` and `slack`: the rest of the rules of that game (see `solving.rules.Rules`), for new plans.
     `optimize` and `within`: what its solver was asked for (see `solving.options.SolveOptions`), to solve it again.
     `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
+    `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
     where the scenario does not say where they stand. The rest goes into the manifests.
@@ -56,6 +57,7 @@ class Options:
     optimize: Optional[str] = None
     within: Optional[Fraction] = None
     margin: str = ""
+    guarantee: Optional[Fraction] = None
     time_unit: float = 1.0
     machines: Machines = ONE_MACHINE
     docker: bool = False

@@ -15,18 +15,16 @@ from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
 from pursue_gen.language.labels import in_markdown
-from pursue_gen.language.scenario import Connection, Reach, Safety, Scenario
+from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed, objective_text
 from pursue_gen.partition import SubStrategy, partition, strategy_file
-from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.status_words import statuses
 from pursue_gen.tga.uppaal_write import write_network, write_query
 from pursue_gen.tga.words import event_word
-from pursue_gen.workspace import context, deploy, expected, game_file, model_file
+from pursue_gen.workspace import context, deploy, expected, game_file, model_file, ui_file
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (
     RECEIVING,
@@ -40,7 +38,7 @@ from pursue_gen.workspace.packages import (
     templates_dir,
 )
 from pursue_gen.workspace.poses_text import poses_text
-from pursue_gen.workspace.spots import Placing, placing
+from pursue_gen.workspace.spots import placing
 from pursue_runtime.manifest import MISSION, Manifest, make_manifest, mission_file
 
 _UI = "UI"
@@ -77,7 +75,7 @@ def generate(
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
-        "ui": _ui_settings(values, scenario, network, where),
+        "ui": ui_file.render(scenario, network, where, options, values["controllers"], values["reported"], __version__),
         "controllers": _controllers(values),
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
@@ -213,34 +211,6 @@ def _expected(
     owner = {agent: sub.controller for sub in controllers for agent in sub.agents if agent in robots}
     nodes = ["observer", "simulator", _UI, *commands]
     return expected.expected(network, objective, owner, commands, nodes)
-
-
-def _ui_settings(values: Mapping[str, Any], scenario: Scenario, network: Network, where: Placing) -> bytes:
-    """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends the simulator reports, the
-    connections of the map with their lengths, the robots' spots that are not the pose of their place, and what rules,
-    states and objectives are at, in words."""
-    spots = {
-        robot: {name: inline([pose.x, pose.y]) for name, pose in table.items() if pose != where.places[name]}
-        for robot, table in where.spots.items()
-    }
-    data = {
-        "format": 1,
-        "nodes": inline(("observer", *values["controllers"], "simulator")),
-        "reports": inline(values["reported"]),
-        "connections": inline([_connection(way) for way in scenario.connections]),
-        "spots": {robot: table for robot, table in spots.items() if table},
-        "statuses": [
-            inline({"of": each.of, "label": each.label, "texts": dict(each.texts)})
-            for each in statuses(scenario, network)
-        ],
-    }
-    head = f"Written by pursue-gen {__version__} for the UI and the simulator of {values['scenario']}."
-    return yaml_text(data, [head]).encode()
-
-
-def _connection(way: Connection) -> List[Any]:
-    """A connection in ui.yaml: its ends, its length, and `one_way` where it goes from the first to the second only."""
-    return [way.a, way.b, number(way.distance), *(["one_way"] if way.one_way else [])]
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:

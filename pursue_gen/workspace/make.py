@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solution import Solution, guaranteed
 from pursue_gen.solving.verdict import margin_text, margins
+from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options, machines_for, write_workspace
 from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
 
@@ -48,10 +50,23 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         request.options.optimize,
         won.within,
         margin,
+        _guarantee(won),
         docker=extras.docker,
         systemd=extras.systemd,
         spot_distance=extras.spot_distance,
     )
+
+
+def _guarantee(won: Solution) -> Optional[Fraction]:
+    """In how many time units the strategy comes to the goal at worst; None where that is not quickly found out.
+
+    The same on every machine: the search counts states, and no limit in seconds ends it.
+    """
+    if won.objective.kind is Kind.SAFETY:
+        return None
+    known = won.guarantee.worst if won.guarantee is not None else None
+    worst = guaranteed(won).worst if known is None else known
+    return won.within if worst is None else worst
 
 
 def make_workspace(

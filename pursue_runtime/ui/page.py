@@ -15,7 +15,8 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.ui.mission_view import possible_words, tasks
-from pursue_runtime.ui.phrases import begin_of, not_promised, phrase, sentence
+from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
+from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.words import START
 
@@ -93,11 +94,21 @@ class Page:
     """What there is to show, from the states of one mission."""
 
     def __init__(
-        self, model: Model, plan: FloorPlan, reporters: Sequence[str] = (), statuses: Sequence[Status] = ()
+        self,
+        model: Model,
+        plan: FloorPlan,
+        reporters: Sequence[str] = (),
+        statuses: Sequence[Status] = (),
+        promise: Promise = NOTHING,
     ) -> None:
-        """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents."""
+        """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents;
+        `promise`: what is to be achieved."""
         self._model = model
         self._statuses = statuses
+        self._promise = promise
+        watching = {name for objective in promise.objectives for name in objective.of}
+        self._others = [status for status in statuses if status.of not in watching]  # than those of objectives
+        self._guarantee = Guarantee(promise, model)
         self._plan = plan
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
@@ -127,7 +138,7 @@ class Page:
         agents = [self._agent(automaton, state, facts.at) for automaton in self._acting]
         for agent in agents:
             agent["next"] = [
-                {"label": self._label(agent["name"], offer.word), "opens": opens[offer.word][0],
+                {"may": self._may(offer.agent, offer.word, state), "opens": opens[offer.word][0],
                  "closes": opens[offer.word][1]}
                 for offer in offers if offer.agent == agent["name"]
             ]
@@ -137,8 +148,10 @@ class Page:
             "verdict": facts.verdict[1] if facts.verdict else "", "good": bool(facts.verdict and not facts.verdict[0]),
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
+            "objectives": objectives_now(self._promise, self._statuses, self._model, state, facts.at),
+            "guarantee": self._guarantee.now(state),
             "clocks": {name: _round(value) for name, value in state.clocks.items()},
-            "statuses": status_texts(self._statuses, self._model, state, facts.at),
+            "statuses": status_texts(self._others, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
         }
@@ -146,6 +159,7 @@ class Page:
     def on_state(self, state: SystemState, at: float) -> List[Dict[str, Any]]:
         """A state came; what is new in the log."""
         last, self._last = self._last, state
+        self._guarantee.on_state(state)
         fresh: List[Dict[str, Any]] = []
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
             fresh.append(self.note(at, f"the mission starts{not_promised(self._model)}"))
@@ -177,21 +191,27 @@ class Page:
         """Where an agent is, what it does, and between which moments that ends."""
         location = state.locations.get(automaton.name, automaton.initial)
         place, to = self._where(automaton, location)
-        shown = self._model.shown
         window = end_window(self._model, automaton, location)
-        agent: Dict[str, Any] = {"name": automaton.name, "place": place, "to": to,
-                                 "doing": f"at {shown(place or location)}",
-                                 "since": None, "low": None, "high": None, "lost": automaton.name in state.lost}
-        begin = begin_of(automaton, location)
-        if to:
-            agent["doing"] = f"from {shown(place)} to {shown(to)}"
-        elif begin is not None and is_action(location):
-            agent["doing"] = f"{shown(begin.word)}, at {shown(place or begin.source)}"
-            agent["doing"] += " (has finished)" if automaton.name in state.finished else ""
+        agent: Dict[str, Any] = {
+            "name": automaton.name, "place": place, "to": to,
+            "doing": doing(self._model, automaton, location, place),
+            "awaited": awaited(self._model, automaton, location),
+            "notes": [text for text, agents in self._notes(state) if automaton.name in agents],
+            "since": None, "low": None, "high": None, "lost": automaton.name in state.lost,
+        }
         if window is not None and window.clock in state.clocks:
             since = at - state.clocks[window.clock]
             agent.update(since=_round(since), low=_round(since + window.low), high=_end(since, window.high))
         return agent
+
+    @staticmethod
+    def _notes(state: SystemState) -> Sequence[Tuple[str, Sequence[str]]]:
+        """What has to be known of agents besides, and of which."""
+        return (
+            ("counts as lost", state.lost), ("held, until it is resumed", state.held),
+            ("is not known to be there", [name for name in state.displaced if name not in state.returning]),
+            ("is sent back there", state.returning), ("has finished", state.finished),
+        )
 
     def _where(self, automaton: Automaton, location: str) -> Tuple[str, str]:
         """The point of interest where that is, and the one that it leads to ("" where there is none)."""
@@ -211,15 +231,14 @@ class Page:
         if state.status != RUNNING:
             return ""
         present = [agent for agent in agents if not agent["lost"]]
-        free = [agent["name"] for agent in present if agent["since"] is None and agent["next"]]
-        alone = {automaton.name for automaton in self._model.of_kind("agent")}
-        groups = {
-            "Under way": [agent["name"] for agent in present if agent["since"] is not None],
-            "The strategy decides": [name for name in free if name not in alone],
-            "Nobody controls": [name for name in free if name in alone],
-        }
         shown = self._model.shown
-        return " ".join(f"{what}: {', '.join(map(shown, names))}." for what, names in groups.items() if names)
+        under_way = [f"{shown(agent['name'])} to {agent['awaited']}" for agent in present if agent["awaited"]]
+        if under_way:
+            return f"Waits for {listed(under_way)}."
+        alone = {automaton.name for automaton in self._model.of_kind("agent")}
+        free = [shown(agent["name"]) for agent in present if agent["name"] in alone and agent["next"]]
+        others = f", or for what {listed(free, 'or')} may do" if free else ""
+        return f"Waits for the next command of the strategy{others}."
 
     def _tasks(self, state: SystemState, agents: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
         """What agents do now whose ends are reported here, and the word for the end."""
@@ -230,14 +249,16 @@ class Page:
 
     # Words ------------------------------------------------------------------------------------------------------------
 
-    def _buttons(self, automaton: Automaton) -> List[Dict[str, str]]:
-        """One for each thing that the agent may begin, possible now or not: nothing moves under a finger."""
-        found: Dict[str, Dict[str, str]] = {}
+    def _buttons(self, automaton: Automaton) -> List[Dict[str, Any]]:
+        """One for each thing that the agent may begin, possible now or not, with the locations where it may."""
+        found: Dict[str, Dict[str, Any]] = {}
         for edge in automaton.edges:
             if edge.sync != "receive" and not is_end(edge.source, edge.target):
                 word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
-                found.setdefault(word, {"agent": automaton.name, "word": word, "label": label})
+                button = found.setdefault(word, {"agent": automaton.name, "word": word, "label": label, "from": []})
+                if edge.source not in button["from"]:
+                    button["from"].append(edge.source)
         return list(found.values())
 
     def _label(self, agent: str, word: str) -> str:
@@ -247,6 +268,14 @@ class Page:
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
         return phrase(self._model, automaton, edge).label if edge is not None else self._model.shown(event)
+
+    def _may(self, agent: str, word: str, state: SystemState) -> str:
+        """What its agent may do with a word, behind the word may."""
+        automaton = self._model.automaton(agent)
+        event = word.rpartition(":")[2]
+        edges = (edge for edge in automaton.edges_from(state.locations[agent]) if edge.word == event)
+        edge = next(edges, None)
+        return possibility(self._model, automaton, edge) if edge is not None else self._model.shown(event)
 
     def _kind(self, agent: str) -> str:
         return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)

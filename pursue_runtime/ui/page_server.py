@@ -13,6 +13,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
+from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.statuses import read_statuses
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
@@ -88,7 +89,8 @@ def open_page(
         raise ParameterError(what) from None
     poses = source.read("poses.yaml")
     people = reporters(model, options.ends, settings)
-    board = PageServer(Page(model, read_floor_plan(poses, settings), people, read_statuses(settings)), node)
+    words = read_statuses(settings), read_promise(settings)
+    board = PageServer(Page(model, read_floor_plan(poses, settings), people, *words), node)
     try:
         board.web = Web(
             STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Sequence
 
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
@@ -51,6 +51,43 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     likely = sorted(edges, key=lambda edge: (edge.target != here, edge.source != before))
     does = phrase(model, automaton, likely[0]).does if likely else f"does {model.shown(state.event)}"
     return f"{model.shown(state.agent)} {does}"
+
+
+def doing(model: Model, automaton: Automaton, location: str, place: str) -> str:
+    """What an agent does at a location, which is at a place (a POI, "" where that is not known).
+
+    Nobody sends one that is not controlled: it is on its way.
+    """
+    begin = begin_of(automaton, location)
+    if begin is None:
+        return f"at {model.shown(place or location)}"
+    if is_movement(location):
+        goes = "goes" if automaton.kind != "agent" else "is on its way"
+        return f"{goes} from {model.shown(begin.source)} to {model.shown(destination(automaton, location))}"
+    return f"does {model.shown(begin.word)}, at {model.shown(place or begin.source)}"
+
+
+def awaited(model: Model, automaton: Automaton, location: str) -> str:
+    """What ends what an agent does there, as in `arrive at b`; "" where it does nothing."""
+    end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
+    return "" if end is None else possibility(model, automaton, end)
+
+
+def possibility(model: Model, automaton: Automaton, edge: Edge) -> str:
+    """What an agent may do, behind the word may, or to: `go to b`, `do catch`, `arrive at b`, `end catch`."""
+    if is_end(edge.source, edge.target):
+        if is_movement(edge.source):
+            return f"arrive at {model.shown(edge.target)}"
+        begin = begin_of(automaton, edge.source)
+        return f"end {model.shown(edge.word if begin is None else begin.word)}"
+    if is_movement(edge.target):
+        return f"go to {model.shown(destination(automaton, edge.target))}"
+    return f"do {model.shown(edge.word)}"
+
+
+def listed(names: Sequence[str], last: str = "and") -> str:
+    """`a`, `a and b`, `a, b and c`; at least one."""
+    return f"{', '.join(names[:-1])} {last} {names[-1]}" if len(names) > 1 else names[0]
 
 
 def not_promised(model: Model) -> str:

@@ -1,4 +1,4 @@
-"""Serves the page: three files, and a WebSocket for views and requests.
+"""Serves the page: its files, and a WebSocket for views and requests.
 
 Accepted are pages that this server has served (`Host` and `Origin` are checked, against other sites and rebound
 names), and for any address but loopback only those who know the token. It comes once in the address, then in a cookie.
@@ -30,7 +30,7 @@ from pursue_runtime.http_server import LimitedServer, drop_chunks
 
 FILES = {
     "/": ("index.html", "text/html"),
-    "/page.js": ("page.js", "text/javascript"),
+    **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in ("agents", "objectives", "page", "plan")},
     "/page.css": ("page.css", "text/css"),
 }
 TICK = 0.5  # real seconds between two words on what time it is

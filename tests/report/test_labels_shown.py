@@ -154,9 +154,9 @@ def test_a_mission_shows_labels_and_listens_to_names() -> None:
     page = Page(model, FloorPlan({"desk": (0.0, 0.0), "shelf": (1.0, 0.0)}, (("desk", "shelf", 2.0),)), ["bot"])
     scene = page.scene()
     assert scene["labels"] == LABELS
-    assert {"agent": "guest", "word": "ring", "label": RING} in scene["buttons"]
+    assert {("guest", "ring", RING)} <= {(each["agent"], each["word"], each["label"]) for each in scene["buttons"]}
     seen = page.view(Facts("running", (), gone, 2.0, 2.0))
-    assert seen["agents"][0]["doing"] == f"from {DESK} to {SHELF}"
+    assert seen["agents"][0]["doing"] == f"goes from {DESK} to {SHELF}"
     assert seen["tasks"][0]["shown"] == BOT
     assert BOT in seen["turn"]
     json.dumps([scene, seen])

@@ -81,6 +81,11 @@ class Browser:
         self._call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                    mobile=width < 500)
 
+    def dark(self, on: bool) -> None:
+        """Looks at it on a device that prefers dark colours, or light ones."""
+        feature = {"name": "prefers-color-scheme", "value": "dark" if on else "light"}
+        self._call("Emulation.setEmulatedMedia", features=[feature])
+
     def click(self, selector: str) -> None:
         """Presses the left button in the middle of an element."""
         middle = ("(() => { const e = document.querySelector(%s); e.scrollIntoView({block: 'center'}); "

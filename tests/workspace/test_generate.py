@@ -11,12 +11,13 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
+from fractions import Fraction
 from pathlib import Path
 from typing import Dict, FrozenSet, List, Set, Tuple
 
 import pytest
 import yaml
-from worlds import SCENARIOS, files, world
+from worlds import REACTION, SCENARIOS, files, world
 
 import pursue_runtime
 from pursue_gen.diagnostics import PursueError
@@ -472,6 +473,16 @@ def test_the_simulator_tells_the_ends_that_no_controller_decides() -> None:
     assert settings["reports"] == ["bot1", "bot2"]
     assert settings["nodes"] == ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator"]
     assert yaml.safe_load(files("thesis/scenario_1", "general")["src/UI/config/ui.yaml"])["reports"] == []
+
+
+def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None:
+    settings = yaml.safe_load(files("thesis/catch_the_thief")["src/UI/config/ui.yaml"])
+    assert settings["objectives"] == [{"says": "catch happens.", "of": ["reachObj"]}]
+    assert "guarantee" not in settings, "nobody has found it out"
+    known = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(43, 2)))
+    assert yaml.safe_load(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
+    several = yaml.safe_load(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
+    assert [each["of"] for each in several] == [["reachObj"]] and "within 26 units" in several[0]["says"]
 
 
 def paths_in(readme: str) -> List[str]:

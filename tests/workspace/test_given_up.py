@@ -18,7 +18,9 @@ from pursue_gen.replay.game import Source, from_data, game_of
 from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import guaranteed
 from pursue_gen.workspace import Options, generate
+from pursue_gen.workspace.make import options_for
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.page import FloorPlan, Page
@@ -103,3 +105,15 @@ def test_where_nothing_is_promised_a_person_plays_the_robots_of_what_has_to_be()
     session = session_of(parse(text, "x.pur", "x"), Rules())
     assert session.setup.scenario.optional == ()
     assert "The robots cannot be sure of it." in opening(session)
+
+
+def test_the_page_says_what_is_promised_and_what_is_not_and_the_time_that_it_takes_at_worst() -> None:
+    won = found().solution
+    options = options_for(SolveRequest(), won)
+    assert options.guarantee is not None and options.guarantee == guaranteed(won).worst
+    written = generate(found().scenario, won.network, won.objective, won.strategy, options)
+    settings = yaml.safe_load(written["src/UI/config/ui.yaml"])
+    assert settings["guarantee"] == pytest.approx(float(options.guarantee))
+    says = {each["says"]: each["of"] for each in settings["objectives"]}
+    assert list(says.values()) == [["reachObj"], ["reachObj2"], []]
+    assert list(says)[2].startswith("Optional 2: water happens within 24")

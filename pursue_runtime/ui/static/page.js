@@ -4,8 +4,7 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 0.05; // time units inside a bound that something must be to count as possible, as in ui/mission_view.py
-const MARK = 24; // pixels from one mark to the next above it
-const POI = 14; // half the height of a point of interest
+const SETTLED = 300; // ms for which buttons that have just appeared do nothing: the press was meant for what was there
 const $ = (id) => document.getElementById(id);
 
 let scene = null; // what stays: map, agents, buttons
@@ -15,8 +14,7 @@ let socket = null;
 let heard = 0; // number of the last entry of the log
 let following = true; // whether the end of the log is kept in sight
 let patience = 1000; // ms until the next try to connect
-const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), clocks: new Map(), rest: new Map(), statuses: new Map() };
-const map = { points: new Map(), marks: new Map(), moving: false, last: 0 };
+const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), groups: [], clocks: new Map(), rest: new Map(), statuses: new Map() };
 
 function make(tag, kind, text) {
   const made = document.createElement(tag);
@@ -139,20 +137,6 @@ function setScene(fresh) {
   setMap();
 }
 
-function setAgents() {
-  widgets.rows.clear();
-  $("agents").replaceChildren(...scene.agents.map((agent) => {
-    const row = make("li", "agent-row"), line = make("div"), doing = make("span"), next = make("div", "next");
-    const progress = make("progress");
-    progress.max = 1;
-    progress.setAttribute("aria-label", `progress of ${shown(agent.name)}`);
-    line.append(make("span", `tag ${agent.kind}`, shown(agent.name)), " ", doing);
-    row.append(line, progress, next);
-    widgets.rows.set(agent.name, { row, doing, progress, next });
-    return row;
-  }));
-}
-
 function setTasks() {
   const reporters = scene.agents.filter((agent) => scene.reporters.includes(agent.name));
   widgets.tasks.clear();
@@ -165,6 +149,7 @@ function setTaskList(section, list, agents) {
   $(list).replaceChildren(...agents.map((agent) => {
     const row = make("li", "idle"), text = make("span", "task"), time = make("span", "task-time"), done = make("button", "done", "Done");
     done.type = "button";
+    if (agent.kind === "human") text.setAttribute("aria-live", "assertive"); // the text alone: times change all the while
     const idle = agent.kind === "human" ? "nothing to do now" : "not under way";
     const task = { row, text, time, done, idle, word: "", pressed: "" };
     onPress(done, () => {
@@ -179,132 +164,51 @@ function setTaskList(section, list, agents) {
   }));
 }
 
-function setButtons() {
+function setButtons() { // only those are shown that are possible where their agent is
   const groups = new Map();
   widgets.buttons.clear();
-  for (const { agent, word, label } of scene.buttons) {
+  for (const { agent, word, label, from } of scene.buttons) {
     if (!groups.has(agent)) {
-      const group = make("div", "group"), inside = make("div");
+      const group = make("div", "group"), inside = make("div"), none = make("p", "none", "nothing now");
       group.setAttribute("role", "group");
-      group.setAttribute("aria-label", shown(agent));
+      group.setAttribute("aria-label", `${shown(agent)}: what it may do`);
       group.append(make("span", "tag agent", shown(agent)), inside);
-      groups.set(agent, { group, inside });
+      inside.append(none);
+      groups.set(agent, { group, inside, none, words: [], counts: new Map(), there: "", since: -Infinity });
     }
-    const button = make("button"), time = make("small");
+    const known = groups.get(agent), button = make("button"), time = make("small");
     button.type = "button";
+    button.hidden = true;
     button.dataset.word = word;
     button.setAttribute("aria-disabled", "true");
     button.append(make("span", "", label), time);
     onPress(button, () => ask({ do: "say", word }));
-    groups.get(agent).inside.append(button);
-    widgets.buttons.set(word, { button, time });
+    known.inside.append(button);
+    known.words.push(word);
+    for (const place of from) known.counts.set(place, (known.counts.get(place) || 0) + 1);
+    widgets.buttons.set(word, { button, time, group: known });
   }
+  widgets.groups = [...groups.values()];
+  for (const { inside, counts } of widgets.groups) inside.dataset.rows = String(Math.min(6, Math.ceil(Math.max(...counts.values()) / 2)));
   $("free").hidden = groups.size === 0;
-  $("buttons").replaceChildren(...[...groups.values()].map(({ group }) => group));
+  $("buttons").replaceChildren(...widgets.groups.map(({ group }) => group));
 }
 
-// The map ------------------------------------------------------------------------------------------------------------
-
-function setMap() {
-  const names = Object.keys(scene.places), width = $("map").clientWidth;
-  map.points.clear();
-  map.marks.clear();
-  $("where").hidden = names.length === 0;
-  if (!names.length || !width) return;
-  const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
-  const above = 2 * POI + MARK * Math.min(3, scene.agents.length), below = 2 * POI, side = Math.min(width / 4, 16 + 4.2 * longest);
-  const xs = names.map((name) => scene.places[name][0]), ys = names.map((name) => scene.places[name][1]);
-  const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
-  const scale = Math.min((width - 2 * side) / (across || 1e-6), 420 / (up || 1e-6), across || up ? Infinity : 1);
-  const left = (width - scale * across) / 2, high = Math.max(above + below + scale * up, 200);
-  const top = above + (high - above - below - scale * up) / 2;
-  const picture = document.createElementNS(SVG, "svg");
-  picture.setAttribute("viewBox", `0 0 ${width} ${high}`);
-  picture.setAttribute("height", high);
-  picture.setAttribute("role", "img");
-  picture.setAttribute("aria-label", `Map of ${scene.scenario}; the list "Who does what" says the same in words`);
-  $("map").replaceChildren(picture);
-  names.forEach((name, i) => map.points.set(name, { x: left + scale * (xs[i] - Math.min(...xs)), y: top + scale * (Math.max(...ys) - ys[i]) }));
-  for (const [a, b] of scene.ways) {
-    const from = map.points.get(a), to = map.points.get(b);
-    draw("line", picture, { class: "way", x1: from.x, y1: from.y, x2: to.x, y2: to.y });
+function showButtons(now, here) {
+  for (const group of widgets.groups) {
+    const there = group.words.filter((word) => view.open[word]).join(" ");
+    if (there !== group.there) Object.assign(group, { there, since: performance.now() });
+    group.none.hidden = there !== "";
   }
-  for (const [a, b] of scene.one_ways) {
-    draw("polygon", picture, { class: "arrow", points: arrow(map.points.get(a), map.points.get(b)) });
-  }
-  for (const [a, b, length] of scene.ways) {
-    const from = map.points.get(a), to = map.points.get(b);
-    const part = scene.one_ways.some(([first, second]) => first === a && second === b) ? 0.42 : 0.5;
-    draw("text", picture, { class: "length", x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) }).textContent = length;
-  }
-  for (const name of names) {
-    const { x, y } = map.points.get(name);
-    labelled(picture, "poi", shown(name), 2 * POI, 14).setAttribute("transform", `translate(${x} ${y})`);
-  }
-  for (const { name, kind } of scene.agents) {
-    const group = labelled(picture, `mark ${kind}`, shown(name), 22, 4);
-    group.dataset.agent = name;
-    map.marks.set(name, { group, half: group.querySelector("rect").width.baseVal.value / 2, x: null, y: null });
-  }
-  map.width = width;
-  animate(performance.now());
-}
-
-function arrow(from, to) { // its head, in front of the place that it leads to
-  const length = Math.hypot(to.x - from.x, to.y - from.y) || 1;
-  const x = (to.x - from.x) / length, y = (to.y - from.y) / length, before = 2 * POI, head = 12;
-  const tip = [to.x - before * x, to.y - before * y], back = [tip[0] - head * x, tip[1] - head * y];
-  const points = [tip, [back[0] - head / 2 * y, back[1] + head / 2 * x], [back[0] + head / 2 * y, back[1] - head / 2 * x]];
-  return points.map((point) => point.map((value) => value.toFixed(1)).join(",")).join(" ");
-}
-
-function labelled(parent, kind, name, height, round) { // a name in a box, around 0, 0
-  const group = draw("g", parent, { class: kind }), box = draw("rect", group), text = draw("text", group);
-  draw("title", group).textContent = name;
-  text.textContent = short(name);
-  const width = Math.max(height, text.getComputedTextLength() + 14);
-  for (const [key, value] of Object.entries({ x: -width / 2, y: -height / 2, width, height, rx: round })) box.setAttribute(key, value);
-  return group;
-}
-
-function share(agent, now) { // of what it does: nine tenths when it may end, all when it must
-  if (agent.since === null) return 0;
-  const { since, low, high } = agent;
-  const part = now < low ? 0.9 * (now - since) / (low - since) : 0.9 + 0.1 * (high > low ? (now - low) / (high - low) : 1);
-  return Math.min(1, Math.max(0, part));
-}
-
-function animate(moment) {
-  map.moving = false;
-  if (!view || !map.marks.size) return;
-  const now = present(), pace = Math.min(1, (moment - map.last) / 150), standing = new Map();
-  map.last = moment;
-  let unsettled = false;
-  for (const agent of view.agents) {
-    const mark = map.marks.get(agent.name), from = map.points.get(agent.place), to = map.points.get(agent.to);
-    if (!mark) continue;
-    mark.group.style.display = from ? "" : "none";
-    mark.group.classList.toggle("lost", agent.lost);
-    if (!from) continue;
-    const anchor = agent.to ? [agent.place, agent.to].join("\n") : agent.place;
-    const row = standing.get(anchor) || 0, part = to ? share(agent, now) : 0;
-    standing.set(anchor, row + 1);
-    const x = to ? from.x + part * (to.x - from.x) : from.x;
-    const y = (to ? from.y + part * (to.y - from.y) : from.y - POI - 13) - MARK * row;
-    const inside = Math.min(map.width - mark.half - 2, Math.max(mark.half + 2, x));
-    const fast = mark.x === null || calm.matches;
-    mark.x = fast ? inside : mark.x + pace * (inside - mark.x);
-    mark.y = fast ? y : mark.y + pace * (y - mark.y);
-    mark.group.setAttribute("transform", `translate(${mark.x.toFixed(1)} ${mark.y.toFixed(1)})`);
-    unsettled = unsettled || Math.abs(mark.x - inside) + Math.abs(mark.y - y) > 0.5 || (to && part < 1 && view.live);
-  }
-  if (unsettled && !map.moving) {
-    map.moving = true;
-    requestAnimationFrame(animate);
+  for (const [word, { button, time, group }] of widgets.buttons) {
+    const [opens, closes] = view.open[word] || [Infinity, null];
+    const possible = opens <= now + MARGIN && (closes === null || now <= closes);
+    const settled = performance.now() - group.since >= SETTLED;
+    button.hidden = !view.open[word];
+    enable(button, here && possible && settled);
+    say(time, possible ? (closes === null ? "now" : `now, for ${units(closes - now)}`) : opens > now && opens < Infinity ? `in ${units(opens - now)}` : "");
   }
 }
-
-const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 // What changes -------------------------------------------------------------------------------------------------------
 
@@ -323,6 +227,7 @@ function setView(fresh) {
   const missing = view.missing.length ? `Not ready yet: ${view.missing.join(", ")}` : "";
   say($("why"), lost + (view.verdict || view.reason || missing));
   say($("turn"), view.turn);
+  setObjectives();
   pairs(widgets.rest, $("rest"), Object.keys(view.rest));
   pairs(widgets.clocks, $("clocks"), Object.keys(view.clocks));
   pairs(widgets.statuses, $("statuses"), Object.keys(view.statuses));
@@ -351,26 +256,10 @@ function refresh() { // what changes while nothing happens: times, and what is p
   enable($("start"), here && !over && view.status === "waiting" && view.phase === "ready");
   enable($("stop"), here && !over);
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
-  for (const [word, { button, time }] of widgets.buttons) {
-    const [opens, closes] = view.open[word] || [Infinity, null];
-    const possible = opens <= now + MARGIN && (closes === null || now <= closes);
-    enable(button, here && possible);
-    say(time, possible ? (closes === null ? "now" : `now, for ${units(closes - now)}`) : opens > now && opens < Infinity ? `in ${units(opens - now)}` : "");
-  }
+  showButtons(now, here);
+  showObjectives(now);
   for (const agent of view.agents) showAgent(widgets.rows.get(agent.name), agent, now);
   for (const [name, widget] of widgets.tasks) showTask(widget, name, view.tasks.find((task) => task.agent === name), now, here);
-}
-
-function showAgent(widget, agent, now) {
-  widget.row.classList.toggle("lost", agent.lost);
-  say(widget.doing, agent.doing + (agent.lost ? " (counts as lost)" : ""));
-  widget.progress.style.visibility = agent.since === null || !view.live ? "hidden" : "visible";
-  widget.progress.value = share(agent, now);
-  const parts = agent.next.map(({ label, opens, closes }) => {
-    if (closes !== null && now > closes) return agent.since !== null && agent.high !== null && now > agent.high ? `${label}: ${units(now - closes)} late` : "";
-    return `${label} ${opens <= now + MARGIN ? "now" : `in ${units(opens - now)}`}`;
-  }).filter((part) => part);
-  say(widget.next, parts.slice(0, 4).join(", ") + (parts.length > 4 ? " …" : ""));
 }
 
 function showTask(widget, name, task, now, here) {
@@ -416,6 +305,7 @@ onPress($("stop"), () => {
 });
 onPress($("stop-yes"), () => { $("sure").close(); ask({ do: "stop" }); });
 onPress($("stop-no"), () => $("sure").close());
+$("inside").addEventListener("toggle", () => $("log").classList.toggle("raw", $("inside").open));
 $("log").addEventListener("scroll", () => {
   const log = $("log");
   following = log.scrollHeight - log.scrollTop - log.clientHeight < 40;

@@ -13,6 +13,8 @@ import pytest
 from pursue_runtime.model import Model
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
+from pursue_runtime.ui.promise import Objective, Promise
+from pursue_runtime.ui.statuses import Status
 from tests.runtime.models import model_data, mover, state, worker
 
 pytest.importorskip("tornado", reason="tornado is not installed")
@@ -30,16 +32,59 @@ HOSTILE = "<img src=x onerror=window.hacked=1>"
 LONG = "the_very_long_name_of_an_agent_that_somebody_has_invented_on_a_rainy_day"
 
 
+STATUSES = (Status("reachObj", "do screw", {"unlocked": "screw to be done", "win": "reached"}),)
+PROMISE = Promise((Objective("screw happens.", ("reachObj",)), Objective("Optional 1: nap happens.", ())), 60.0)
+UNREADABLE = """
+(() => {
+  const channel = (v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
+  const light = ([r, g, b]) => 0.2126 * channel(r) + 0.7152 * channel(g) + 0.0722 * channel(b);
+  const rgb = (text) => (text.match(/[\\d.]+/g) || [0, 0, 0, 0]).map(Number);
+  const under = (e) => { // the colour behind it
+    for (let at = e; at; at = at.parentElement) {
+      const box = at.tagName === "g" && at.querySelector("rect");
+      const back = rgb(box ? getComputedStyle(box).fill : getComputedStyle(at).backgroundColor);
+      if (back.length === 3 || back[3] > 0) return back;
+    }
+    return [255, 255, 255];
+  };
+  const found = [];
+  for (const e of document.querySelectorAll("body *")) {
+    const own = [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+    const style = getComputedStyle(e), box = e.getBoundingClientRect();
+    if (!own || !box.width || style.visibility === "hidden" || e.tagName === "title") continue;
+    const fore = light(rgb(e.namespaceURI.endsWith("svg") ? style.fill : style.color)), back = light(under(e));
+    const ratio = (Math.max(fore, back) + 0.05) / (Math.min(fore, back) + 0.05);
+    if (ratio < 4.5) found.push(`${e.tagName} #${e.id} ${e.textContent}: ${ratio.toFixed(2)}`);
+  }
+  return found;
+})()
+"""
+"""Texts whose contrast with what is behind them is below 4.5, as WCAG 2 computes it."""
+
+COVERED = """
+(() => {
+  const boxes = [...document.querySelectorAll("#map .poi, #map .mark, #map .length")]
+    .filter((e) => getComputedStyle(e).display !== "none" && getComputedStyle(e).visibility !== "hidden")
+    .map((e) => [e.textContent, e.getBoundingClientRect()]);
+  const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+  const pairs = boxes.flatMap((a, i) => boxes.slice(i + 1).map((b) => [a, b]));
+  return pairs.filter(([a, b]) => !apart(a[1], b[1])).map(([a, b]) => `${a[0]} and ${b[0]}`);
+})()
+"""
+"""Labels on the map that cover each other."""
+
+
 class Node:
     """A node that shows one state after the other."""
 
-    def __init__(self, model: Any, places: Any, ways: Any, ends: bool) -> None:
+    def __init__(self, model: Any, places: Any, ways: Any, ends: bool, promise: Promise) -> None:
         self.lock = threading.RLock()
         self.model, self.wanted = model, []
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        self.board = ui_board.PageServer(Page(model, FloorPlan(places, ways), reporters(model, ends, {})), self)
+        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise)
+        self.board = ui_board.PageServer(page, self)
 
     def serve(self, port: int = 0) -> Any:
         board = self.board
@@ -76,13 +121,15 @@ def show(page: Browser) -> Iterator[Callable[..., Node]]:
     nodes = []
 
     def start(
-        *automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), ends: bool = False, **more: Any
+        *automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), ends: bool = False,
+        promise: Promise = PROMISE, **more: Any
     ) -> Node:
         data = {**model_data(*automata), **more}
-        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends)
+        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends, promise)
         nodes.append(node)
         page.complaints.clear()
         page.screen(1100, 800)
+        page.dark(False)
         page.open(node.serve().url)
         page.wait("!document.getElementById('main').hidden")
         return node
@@ -99,6 +146,10 @@ def everybody() -> Any:
 
 def says(page: Browser, selector: str, text: str) -> None:
     page.wait(f"document.querySelector({selector!r}).textContent.includes({text!r})")
+
+
+def matches(page: Browser, selector: str, pattern: str) -> None:
+    page.wait(f"/{pattern}/.test(document.querySelector({selector!r}).textContent)")
 
 
 def drawn(page: Browser) -> None:
@@ -190,7 +241,8 @@ def test_the_page_says_that_the_connection_is_lost_and_comes_back(page: Browser,
 def test_nothing_jumps_while_the_mission_goes_on(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
     boxes = (
-        "[...document.querySelectorAll('section, button')].map((e) => { const r = e.getBoundingClientRect(); "
+        "[...document.querySelectorAll('section, .group, button:not([data-word])')].map((e) => { "
+        "const r = e.getBoundingClientRect(); "
         "return [e.id, Math.round(r.y + window.scrollY), Math.round(r.height)].join(' '); }).join('; ')"
     )
     for width, height in ((1100, 800), (360, 740)):
@@ -215,27 +267,114 @@ def test_long_names_fit_on_a_phone(page: Browser, show: Callable[..., Node]) -> 
     node.show(1, 0.0, event=f"{LONG}_a2b", agent=LONG, reason=LONG, **{"z" + LONG: "doing_screw_in_s"})
     says(page, "#why", LONG)
     assert page.value("document.documentElement.scrollWidth") <= 360
-    lowest = "Math.min(...[...document.querySelectorAll('main button')].map((b) => b.getBoundingClientRect().height))"
-    assert page.value(lowest) >= 44, "buttons are for fingers"
+    heights = "[...document.querySelectorAll('main button:not([hidden])')].map((b) => b.getBoundingClientRect().height)"
+    assert min(page.value(heights)) >= 44, "buttons are for fingers"
+
+
+def tabs(page: Browser, count: int) -> Any:
+    """Where the keyboard comes to with so many tabs from the beginning of the page."""
+    page.value("document.body.tabIndex = -1; document.body.focus(); document.body.removeAttribute('tabindex')")
+    reached = []
+    for _ in range(count):
+        page.key("Tab", 9)
+        reached.append(page.value("document.activeElement.id || document.activeElement.dataset.word || ''"))
+    return reached
 
 
 def test_the_keyboard_does_everything(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
     page.wait("document.getElementById('start').getAttribute('aria-disabled') === 'false'")
-    reached = []
-    for _ in range(12):
-        page.key("Tab", 9)
-        reached.append(page.value("document.activeElement.id || document.activeElement.dataset.word || ''"))
-    assert reached[:2] == ["start", "stop"] and {"thief_a2b", "boy:screw", "log"} <= set(reached)
-    page.value("document.getElementById('start').focus()")
+    assert tabs(page, 2) == ["stop", "start"]
     page.key("Enter", 13, "\r")
     says(page, "#remark", "as you like")
-    page.value("document.getElementById('stop').focus()")
-    page.key("Enter", 13, "\r")
-    page.wait("document.getElementById('sure').open")
-    page.key("Escape", 27)
-    page.wait("!document.getElementById('sure').open")
+    for status in ("running", "holding"):  # while a new plan is looked for, too
+        node.show(1, 0.0, event="_start_", status=status)
+        says(page, "#status", status)
+        page.value("document.getElementById('stop').focus()")
+        page.key("Enter", 13, "\r")
+        page.wait("document.getElementById('sure').open")
+        page.key("Escape", 27)
+        page.wait("!document.getElementById('sure').open")
+    page.wait("document.querySelector('[data-word=thief_a2b]').getAttribute('aria-disabled') === 'false'")
+    reached = tabs(page, 8)
+    assert reached[0] == "stop" and {"thief_a2b", "boy:screw", "log"} <= set(reached)
+    assert "thief_b2a" not in reached, "only what is possible where it is"
     assert node.wanted == [("start", "")]
+
+
+def test_what_is_to_be_achieved_and_the_guaranteed_time_are_above_all(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody())
+    node.clock = lambda: 0.0  # the page goes on by three seconds at most without another word on the time
+    says(page, "#objectives", "to be reached screw happens.screw to be done")
+    says(page, "#objectives", "not promised Optional 1: nap happens.")
+    says(page, "#guarantee", "at most 60 time units from the start")
+    tops = "[...document.querySelectorAll('main section')].map((e) => [e.id, e.getBoundingClientRect().top])"
+    assert min(page.value(tops), key=lambda each: float(each[1]) or 9e9)[0] == "goal"
+    node.show(1, 0.0, event="_start_")
+    node.show(2, 10.0, clock=2.0, event="bot_a2b", agent="bot", bot="going_a_to_b", thief="going_a_to_b")
+    matches(page, "#guarantee", r"at most (50|4[789](\.\d)?) time units from now, 60 in all")
+    says(page, "#agents", "bot goes from a to b")
+    says(page, "#agents", "thief is on its way from a to b")
+    matches(page, "#agents", r"is to arrive at b in [4567]\.\d to [5678]\.\d")
+    node.show(3, 30.0, clock=15.0, bot="going_a_to_b")
+    page.wait("document.querySelector('.agent-row.late') !== null")
+    matches(page, ".agent-row.late", r"is to arrive at b: [5678]\.\d late")
+    matches(page, "#agents", r"thief at a.*may go to b now")
+    node.show(4, 31.0, reachObj="win", status="won")
+    says(page, "#objectives", "reached screw happens.")
+    assert page.complaints == []
+
+
+def test_labels_never_cover_each_other(page: Browser, show: Callable[..., Node]) -> None:
+    crowd = [mover(name, kind, 9) for name, kind in (("polBot1", "robot"), ("polBot2", "robot"), ("thief", "agent"))]
+    places = {"a": (0, 0), "b": (4, 0.4), "s": (2, 1.2), "door": (3.6, 0.8)}
+    ways = (("a", "b", 9.0), ("b", "s", 2.0), ("b", "door", 1.0))
+    node = show(*crowd, worker("nurse", "human"), places=places, ways=ways)
+    page.value("Object.defineProperty(calm, 'matches', {value: true}); true")  # nobody glides: labels are there at once
+    for width, height in ((1100, 800), (360, 740)):
+        page.screen(width, height)
+        drawn(page)
+        seq = 10 if width > 500 else 20
+        for number, clock in enumerate((0.0, 3.0, 8.0, 9.4)):
+            moving = {"polBot1": "going_a_to_b", "polBot2": "going_a_to_b", "thief": "going_b_to_a"}
+            node.show(seq + number, 10.0, clock=clock, **moving)
+            page.wait(f"view.seq === {seq + number}")
+            page.wait(f"{COVERED}.length === 0")
+        node.show(seq + 8, 20.0, polBot1="b", polBot2="b", thief="b")
+        page.wait(f"view.seq === {seq + 8}")
+        page.wait(f"{COVERED}.length === 0")
+
+
+def test_every_text_can_be_read_in_light_and_dark_colours(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody(), ends=True)
+    going = {"bot": "going_a_to_b", "thief": "going_a_to_b", "nurse": "doing_screw_in_s"}
+    for number, status in enumerate(("running", "holding", "lost", "won")):
+        node.verdict = (status != "won", "So it ends.") if status in ("won", "lost") else None
+        node.show(2 + number, 20.0, clock=12.0, status=status, reason="for a reason", **going)
+        says(page, "#status", status)
+        for dark in (False, True):
+            page.dark(dark)
+            page.wait(f"matchMedia('(prefers-color-scheme: dark)').matches === {'true' if dark else 'false'}")
+            assert page.value(UNREADABLE) == [], (status, dark)
+
+
+def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody(), ends=True)
+    node.show(2, 20.0, clock=12.0, bot="going_a_to_b", nurse="doing_screw_in_s")
+    says(page, "#agents", "bot goes from a to b")
+    label = "document.getElementById(e.getAttribute('aria-labelledby') || '')?.textContent"
+    nameless = f"(e) => !(e.getAttribute('aria-label') || {label} || e.textContent).trim()"
+    for kind in ("button", "section", "progress", "[role=group]", "dialog", "svg", "summary"):
+        assert page.value(f"[...document.querySelectorAll('{kind}')].filter({nameless}).length") == 0, kind
+    assert page.value("document.documentElement.lang") == "en"
+    levels = page.value("[...document.querySelectorAll('h1, h2, h3')].map((e) => e.tagName)")
+    assert levels[0] == "H1" and set(levels[1:]) == {"H2"}
+    ids = page.value("[...document.querySelectorAll('[id]')].map((e) => e.id)")
+    assert len(set(ids)) == len(ids)
+    read_aloud = "[...document.querySelectorAll('[aria-live], [role=status], [role=alert], [role=log]')]"
+    counting = f"{read_aloud}.filter((e) => e.querySelector('.task-time, .next, progress, small'))"
+    assert page.value(f"{counting}.length") == 0, "what changes all the while is not read aloud"
+    assert page.value("[...document.querySelectorAll('[tabindex]')].every((e) => e.tabIndex === 0)") is True
 
 
 def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node]) -> None:
@@ -295,7 +434,7 @@ def test_the_end_is_reported_and_nothing_can_be_pressed(page: Browser, show: Cal
     says(page, "#status", status)
     says(page, "#why", "So it ends.")
     assert page.value("document.title").startswith(status)
-    enabled = "document.querySelectorAll('main button:not([aria-disabled=true])').length"
+    enabled = "document.querySelectorAll('body > :not(dialog) button:not([aria-disabled=true])').length"
     assert page.value(enabled) == 0
     node.board.web.close()
     says(page, "#link", "the mission has ended")

@@ -46,8 +46,11 @@ def test_the_scene_has_the_map_everybody_and_a_button_for_each_thing_that_nobody
     assert scene["places"] == {"a": [0.0, 0.0], "b": [9.0, 0.0], "s": [3.0, 4.0]}
     assert scene["ways"] == [["a", "b", 9.0]]
     assert [agent["kind"] for agent in scene["agents"]] == ["robot", "agent", "human", "agent"]
-    buttons = {button["word"]: (button["agent"], button["label"]) for button in scene["buttons"]}
-    assert buttons == {"thief_a2b": ("thief", "a → b"), "thief_b2a": ("thief", "b → a"), "boy:screw": ("boy", "screw")}
+    buttons = {button["word"]: (button["agent"], button["label"], button["from"]) for button in scene["buttons"]}
+    assert buttons == {
+        "thief_a2b": ("thief", "a → b", ["a"]), "thief_b2a": ("thief", "b → a", ["b"]),
+        "boy:screw": ("boy", "screw", ["s"]),
+    }  # fmt: skip
 
 
 def test_ends_are_reported_on_the_page_for_those_whose_ends_come_from_there() -> None:
@@ -79,35 +82,57 @@ def test_a_map_is_read_and_a_wrong_one_refused() -> None:
 def test_a_movement_is_reported_with_its_ends_and_the_window_of_its_arrival() -> None:
     seen = view(page(), at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b"), at=20.0)
     bot = agent(seen, "bot")
-    assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "from a to b")
+    assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "goes from a to b")
     assert (bot["since"], bot["low"], bot["high"]) == (18.0, 27.0, 28.0)
     (arrival,) = bot["next"]
-    assert arrival["label"] == "arrive at b" and 27.0 < arrival["opens"] < 27.1 and arrival["closes"] == 28.0
+    assert bot["awaited"] == arrival["may"] == "arrive at b"
+    assert 27.0 < arrival["opens"] < 27.1 and arrival["closes"] == 28.0
 
 
 def test_an_action_is_reported_where_it_is_done() -> None:
     nurse = agent(view(page(), at(3, 120.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=20.0), "nurse")
-    assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "screw, at s")
+    assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "does screw, at s")
+    assert nurse["awaited"] == "end screw"
     assert (nurse["low"], nurse["high"]) == (22.0, 23.0)
 
 
 def test_whoever_stands_is_reported_with_what_may_come_and_when() -> None:
     seen = view(page(), at(1, 100.0, clock=0.0), at=0.0)
     thief = agent(seen, "thief")
-    assert (thief["doing"], thief["since"]) == ("at a", None)
-    assert [choice["label"] for choice in thief["next"]] == ["a → b"]
+    assert (thief["doing"], thief["awaited"], thief["since"]) == ("at a", "", None)
+    assert [choice["may"] for choice in thief["next"]] == ["go to b"]
     assert 1.0 < thief["next"][0]["opens"] < 1.1 and thief["next"][0]["closes"] is None
     assert seen["open"]["thief_a2b"] == [thief["next"][0]["opens"], None]
 
 
-def test_whose_turn_it_is() -> None:
+def test_who_is_not_controlled_is_not_said_to_go_anywhere() -> None:
+    under_way = at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b", thief="going_a_to_b")
+    seen = view(page(), under_way, at=20.0)
+    assert agent(seen, "bot")["doing"] == "goes from a to b"
+    assert agent(seen, "thief")["doing"] == "is on its way from a to b"
+
+
+def test_what_the_mission_waits_for() -> None:
     shown = page()
-    busy = view(shown, at(2, 100.0, clocks={"Cthief": 1.0}, thief="going_a_to_b"))
-    assert busy["turn"] == "Under way: thief. The strategy decides: bot, nurse. Nobody controls: boy."
-    lost = view(shown, at(2, 100.0, thief="going_a_to_b")._replace(lost=("thief",)))
-    assert "thief" not in lost["turn"] and agent(lost, "thief")["lost"]
+    busy = at(2, 100.0, clocks={"Cthief": 1.0}, bot="going_b_to_a", thief="going_a_to_b", nurse="doing_screw_in_s")
+    everybody = "Waits for bot to arrive at a, thief to arrive at b and nurse to end screw."
+    assert view(shown, busy)["turn"] == everybody
+    without = view(shown, busy._replace(lost=("thief",)))
+    assert "thief" not in without["turn"] and agent(without, "thief")["lost"]
+    quiet = view(shown, at(2, 100.0))["turn"]
+    assert quiet == "Waits for the next command of the strategy, or for what thief or boy may do."
     assert "holds" in view(shown, at(2, 100.0, status="holding"))["turn"]
     assert view(shown, at(2, 100.0, status="won"))["turn"] == ""
+
+
+def test_what_has_to_be_known_of_an_agent_is_said() -> None:
+    now = at(2, 100.0, bot="going_a_to_b", nurse="doing_screw_in_s")
+    now = now._replace(held=("bot",), lost=("thief",), displaced=("boy", "nurse"), returning=("boy",))
+    seen = view(page(), now)
+    assert {each["name"]: each["notes"] for each in seen["agents"]} == {
+        "bot": ["held, until it is resumed"], "thief": ["counts as lost"],
+        "nurse": ["is not known to be there"], "boy": ["is sent back there"],
+    }  # fmt: skip
 
 
 def test_rules_leave_nothing_to_press() -> None:

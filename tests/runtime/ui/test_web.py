@@ -132,11 +132,15 @@ def test_the_page_is_served_and_may_load_nothing_but_itself(serve: Serve, path: 
 
 
 def test_the_page_names_nothing_outside_and_has_no_scripts_in_its_text() -> None:
-    page, script = (Path(FOLDER, name).read_text(encoding="utf-8") for name in ("index.html", "page.js"))
+    page = Path(FOLDER, "index.html").read_text(encoding="utf-8")
+    scripts = sorted(Path(FOLDER).glob("*.js"))
+    script = "".join(each.read_text(encoding="utf-8") for each in scripts)
     style = Path(FOLDER, "page.css").read_text(encoding="utf-8")
     for text in (page, style, script.replace("http://www.w3.org/2000/svg", "")):
         assert "http://" not in text and "https://" not in text and "//cdn" not in text
-    assert page.count("<script") == 1 and "onclick" not in page and "style=" not in page
+    assert page.count("<script") == len(scripts)
+    assert all(f'<script src="{each.name}" defer>' in page for each in scripts)
+    assert "onclick" not in page and "style=" not in page
     for danger in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function"):
         assert danger not in script, "names are text, never markup"
 

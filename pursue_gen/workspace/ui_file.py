@@ -1,0 +1,64 @@
+"""The settings of the UI and the simulator: ui.yaml, see docs/run_time.md."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Sequence
+
+from pursue_gen.language.scenario import Connection, Scenario
+from pursue_gen.language.wording import objective_sentence, objective_words
+from pursue_gen.partition.strategy_data import number
+from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.tga.network import Network
+from pursue_gen.tga.objectives import stated
+from pursue_gen.tga.status_words import statuses
+from pursue_gen.workspace.context import Options
+from pursue_gen.workspace.spots import Placing
+
+
+def render(
+    scenario: Scenario,
+    network: Network,
+    where: Placing,
+    options: Options,
+    controllers: Sequence[str],
+    reported: Sequence[str],
+    generator: str,
+) -> bytes:
+    """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends are `reported`, the connections of
+    the map with their lengths, what is to be achieved and in which time, the robots' spots that are not the pose of
+    their place, and what all but agents is at, in words."""
+    spots = {
+        robot: {name: inline([pose.x, pose.y]) for name, pose in table.items() if pose != where.places[name]}
+        for robot, table in where.spots.items()
+    }
+    data: Dict[str, Any] = {
+        "format": 1,
+        "nodes": inline(("observer", *controllers, "simulator")),
+        "reports": inline(reported),
+        "connections": inline([_connection(way) for way in scenario.connections]),
+        "spots": {robot: table for robot, table in spots.items() if table},
+        "objectives": [inline(each) for each in _objectives(scenario)],
+    }
+    if options.guarantee is not None:
+        data["guarantee"] = number(options.guarantee)
+    data["statuses"] = [
+        inline({"of": each.of, "label": each.label, "texts": dict(each.texts)}) for each in statuses(scenario, network)
+    ]
+    head = f"Written by pursue-gen {generator} for the UI and the simulator of {scenario.name}."
+    return yaml_text(data, [head]).encode()
+
+
+def _connection(way: Connection) -> List[Any]:
+    """A connection in ui.yaml: its ends, its length, and `one_way` where it goes from the first to the second only."""
+    return [way.a, way.b, number(way.distance), *(["one_way"] if way.one_way else [])]
+
+
+def _objectives(scenario: Scenario) -> List[Dict[str, Any]]:
+    """What is to be achieved: a sentence for each statement, and the automata that watch it; none if it is given up."""
+    watched = stated(scenario)
+    found: List[Dict[str, Any]] = []
+    for sentence, statement in zip(objective_words(scenario), scenario.statements):
+        automata = [name for name, objective in watched.items() if any(objective is each for each in statement)]
+        found.append({"says": sentence, "of": automata})
+    found += [{"says": objective_sentence(scenario, one.objective), "of": []} for one in scenario.given_up]
+    return found

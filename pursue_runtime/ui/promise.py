@@ -1,0 +1,139 @@
+"""What is to be achieved, what of it is achieved, and the time that the strategy guarantees, from ui.yaml.
+
+Times are time units since the start of the mission.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_runtime.data import DataError
+from pursue_runtime.locations import is_end
+from pursue_runtime.model import Model
+from pursue_runtime.simulator.simulator import ACTING, end_window
+from pursue_runtime.state import HOLDING, LIVE, SystemState
+from pursue_runtime.ui.statuses import Status, status_texts
+
+REACHED, KEPT, BROKEN, OPEN, NOT_PROMISED = "reached", "kept", "broken", "open", "not promised"
+"""What has become of an objective: `open` is what is still to be reached, `kept` what has to hold until the end."""
+
+TOLERANCE = 0.2
+"""Time units by which an end may miss its window: clocks are those of several machines."""
+
+
+class Objective(NamedTuple):
+    """An objective as a sentence, and the automata that watch it; none where the mission does not promise it."""
+
+    says: str
+    of: Tuple[str, ...]
+
+
+class Promise(NamedTuple):
+    """The objectives of a mission. `most`: in how many time units the workspace's own strategy comes to the goal at
+    worst, if everybody keeps to the model; None where that is not known."""
+
+    objectives: Tuple[Objective, ...] = ()
+    most: Optional[float] = None
+
+
+NOTHING = Promise()
+"""Of a mission of which nothing is known."""
+
+
+def read_promise(settings: Mapping[str, Any]) -> Promise:
+    """The promise in ui.yaml; an empty one where it is of a version that had none. Raises DataError."""
+    try:
+        given = [(str(each["says"]), tuple(map(str, each["of"]))) for each in settings.get("objectives", ())]
+        most = settings.get("guarantee")
+        number = None if most is None else float(most)
+    except (KeyError, TypeError, ValueError, AttributeError) as problem:
+        raise DataError(f"ui.yaml lacks or misspells something in objectives: {problem!r}") from problem
+    if number is not None and not (math.isfinite(number) and number >= 0):
+        raise DataError(f"ui.yaml: guarantee is {most!r}; expected a number of time units")
+    return Promise(tuple(Objective(says, of) for says, of in given), number)
+
+
+def objectives_now(
+    promise: Promise, statuses: Sequence[Status], model: Model, state: SystemState, at: float
+) -> List[Dict[str, str]]:
+    """What has become of each objective in a state that began at `at`: its sentence, one of the words above, and what
+    it is at, in words ("" where that says no more)."""
+    found = []
+    for objective in promise.objectives:
+        own = [status for status in statuses if status.of in objective.of]
+        texts = dict.fromkeys(status_texts(own, model, state, at).values())
+        become = _become(objective, model, state)
+        now = [text for text in texts if text != become]
+        found.append({"says": objective.says, "is": become, "now": "; ".join(now)})
+    return found
+
+
+def _become(objective: Objective, model: Model, state: SystemState) -> str:
+    """What has become of an objective."""
+    goals = dict(model.goal)
+    there = {(name, state.locations.get(name, "")) for name in objective.of}
+    if not objective.of:
+        return NOT_PROMISED
+    if there & set(model.bad):
+        return BROKEN
+    if all(name in goals for name in objective.of):
+        return REACHED if there <= set(model.goal) else OPEN
+    return KEPT
+
+
+class Guarantee:
+    """Whether the guaranteed time still holds: it is that of the workspace's own strategy from the start on, as long as
+    everybody keeps to the model."""
+
+    def __init__(self, promise: Promise, model: Model) -> None:
+        self._most = promise.most
+        self._model = model
+        self._last: Optional[SystemState] = None
+        self._void = ""  # why it does not hold any more in this mission
+
+    def on_state(self, state: SystemState) -> None:
+        """A state came."""
+        last, self._last = self._last, state
+        if state.status not in LIVE or (last is not None and state.seq < last.seq):
+            self._void = ""
+        elif last is None and state.seq > 1:
+            self._void = "what happened before this page was served is not known"
+        if state.status in LIVE:
+            self._void = self._void or self._reason(state, last)
+
+    def now(self, state: SystemState) -> Dict[str, Any]:
+        """For the page: `most` (None: not known) and why it does not hold (`void`, "" if it does); empty where the
+        mission has no goal."""
+        if not self._model.goal:
+            return {}
+        if state.plan:
+            return {"most": None, "void": "a new plan is in force, which leads to the goal"}
+        return {"most": self._most, "void": self._void}
+
+    def _reason(self, state: SystemState, last: Optional[SystemState]) -> str:
+        shown = self._model.shown
+        lists = {"late": state.late, "lost": state.lost, "held": state.held, "not in its place": state.displaced}
+        for what, agents in lists.items():
+            if agents:
+                return f"{shown(agents[0])} was {what}"
+        if state.status == HOLDING:
+            return "the mission was held"
+        broken = [each.says for each in self._model.assumptions if state.values.get(each.variable) == 0]
+        if broken:
+            return f"an assumption was broken: {broken[0]}"
+        return self._off_time(state, last)
+
+    def _off_time(self, state: SystemState, last: Optional[SystemState]) -> str:
+        """Who has ended something outside the window of its model with this event."""
+        agent = next((each for each in self._model.of_kind(*ACTING) if each.name == state.agent), None)
+        if last is None or agent is None or last.seq != state.seq - 1:
+            return ""
+        before, here = last.locations.get(agent.name, ""), state.locations.get(agent.name, "")
+        window = end_window(self._model, agent, before) if is_end(before, here) else None
+        if window is None or window.clock not in last.clocks:
+            return ""
+        took = last.clocks_at(state.stamp)[window.clock]
+        if window.low - TOLERANCE <= took <= window.high + TOLERANCE:
+            return ""
+        return f"{self._model.shown(agent.name)} was {'earlier' if took < window.low else 'later'} than its model"

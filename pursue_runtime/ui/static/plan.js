@@ -1,0 +1,181 @@
+"use strict";
+// The map: places, ways, and where everybody is. Labels go where they cover no other label (see arranged).
+
+const ROW = 24; // pixels from one label to the next above it
+const POI = 14; // half the height of a point of interest
+const map = { points: new Map(), marks: new Map(), places: [], lengths: [], moving: false, last: 0, width: 0, height: 0 };
+const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+function setMap() {
+  const names = Object.keys(scene.places), width = $("map").clientWidth;
+  map.points.clear();
+  map.marks.clear();
+  $("where").hidden = names.length === 0;
+  if (!names.length || !width) return;
+  const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
+  const above = 2 * POI + ROW * Math.min(3, scene.agents.length), below = 2 * POI + ROW, side = Math.min(width / 4, 16 + 4.2 * longest);
+  const xs = names.map((name) => scene.places[name][0]), ys = names.map((name) => scene.places[name][1]);
+  const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
+  const scale = Math.min((width - 2 * side) / (across || 1e-6), 420 / (up || 1e-6), across || up ? Infinity : 1);
+  const left = (width - scale * across) / 2, high = Math.max(above + below + scale * up, 200);
+  const top = above + (high - above - below - scale * up) / 2;
+  const picture = document.createElementNS(SVG, "svg");
+  picture.setAttribute("viewBox", `0 0 ${width} ${high}`);
+  picture.setAttribute("height", high);
+  picture.setAttribute("role", "img");
+  picture.setAttribute("aria-label", `Map of ${scene.scenario}; the list "Who does what" says the same in words`);
+  $("map").replaceChildren(picture);
+  Object.assign(map, { width, height: high });
+  names.forEach((name, i) => map.points.set(name, { x: left + scale * (xs[i] - Math.min(...xs)), y: top + scale * (Math.max(...ys) - ys[i]) }));
+  drawWays(picture);
+  const under = draw("g", picture); // lines to labels, and points: no name is under them
+  drawPlaces(picture, names, under);
+  drawLengths(picture);
+  for (const { name, kind } of scene.agents) {
+    const lead = draw("line", under, { class: `lead ${kind}` }), dot = draw("circle", under, { class: `dot ${kind}`, r: 4 });
+    const group = labelled(picture, `mark ${kind}`, shown(name), 22, 4);
+    group.dataset.agent = name;
+    map.marks.set(name, { group, lead, dot, ...size(group), x: null, y: null, choice: 0 });
+  }
+  animate(performance.now());
+}
+
+function drawWays(picture) {
+  for (const [a, b] of scene.ways) {
+    const from = map.points.get(a), to = map.points.get(b);
+    draw("line", picture, { class: "way", x1: from.x, y1: from.y, x2: to.x, y2: to.y });
+  }
+  for (const [a, b] of scene.one_ways) {
+    draw("polygon", picture, { class: "arrow", points: arrow(map.points.get(a), map.points.get(b)) });
+  }
+}
+
+function drawPlaces(picture, names, under) { // where two would cover each other, one is beside its point
+  map.places = [];
+  for (const name of names) {
+    const point = map.points.get(name), lead = draw("line", under, { class: "lead" });
+    const group = labelled(picture, "poi", shown(name), 2 * POI, 14), { half, tall } = size(group);
+    const box = arranged(point, half, tall, [{ x: 0, y: 0 }, ...around(half, tall, 2 * POI)], map.places, 0).box;
+    map.places.push(box);
+    put(group, box);
+    join(lead, point, box);
+  }
+}
+
+function drawLengths(picture) { // in the middle of the way, or where there is room; nowhere rather than over a name
+  map.lengths = [];
+  for (const [a, b, length] of scene.ways) {
+    const from = map.points.get(a), to = map.points.get(b);
+    const first = scene.one_ways.some(([one, two]) => one === a && two === b) ? 0.42 : 0.5;
+    const text = draw("text", picture, { class: "length" });
+    text.textContent = length;
+    const half = text.getComputedTextLength() / 2 + 2;
+    const boxes = [first, 0.6, 0.4, 0.68, 0.32].map((part) => ({ x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), half, tall: 9 }));
+    const box = boxes.find((one) => !map.places.some((other) => covers(one, other)) && !map.lengths.some((other) => covers(one, other.box)));
+    if (!box) {
+      text.remove();
+      continue;
+    }
+    text.setAttribute("x", box.x);
+    text.setAttribute("y", box.y);
+    map.lengths.push({ box, text });
+  }
+}
+
+function arrow(from, to) { // its head, in front of the place that it leads to
+  const length = Math.hypot(to.x - from.x, to.y - from.y) || 1;
+  const x = (to.x - from.x) / length, y = (to.y - from.y) / length, before = 2 * POI, head = 12;
+  const tip = [to.x - before * x, to.y - before * y], back = [tip[0] - head * x, tip[1] - head * y];
+  const points = [tip, [back[0] - head / 2 * y, back[1] + head / 2 * x], [back[0] + head / 2 * y, back[1] - head / 2 * x]];
+  return points.map((point) => point.map((value) => value.toFixed(1)).join(",")).join(" ");
+}
+
+function labelled(parent, kind, name, height, round) { // a name in a box, around 0, 0
+  const group = draw("g", parent, { class: kind }), box = draw("rect", group), text = draw("text", group);
+  draw("title", group).textContent = name;
+  text.textContent = short(name);
+  const width = Math.max(height, text.getComputedTextLength() + 14);
+  for (const [key, value] of Object.entries({ x: -width / 2, y: -height / 2, width, height, rx: round })) box.setAttribute(key, value);
+  return group;
+}
+
+const size = (group) => ({ half: group.querySelector("rect").width.baseVal.value / 2, tall: group.querySelector("rect").height.baseVal.value / 2 });
+const put = (group, { x, y }) => group.setAttribute("transform", `translate(${x.toFixed(1)} ${y.toFixed(1)})`);
+
+function join(lead, point, box) { // a line to a label that is not at its point
+  const dx = Math.max(0, Math.abs(point.x - box.x) - box.half), dy = Math.max(0, Math.abs(point.y - box.y) - box.tall);
+  lead.style.display = dx + dy > POI ? "" : "none";
+  for (const [key, value] of Object.entries({ x1: point.x, y1: point.y, x2: box.x, y2: box.y })) lead.setAttribute(key, value.toFixed(1));
+}
+
+// Labels -------------------------------------------------------------------------------------------------------------
+
+const covers = (a, b) => Math.abs(a.x - b.x) < a.half + b.half + 1 && Math.abs(a.y - b.y) < a.tall + b.tall + 1;
+
+function around(half, tall, away) { // where a label may be beside its point: above, below, at the sides, further away
+  const found = [];
+  for (let ring = 0; ring < 5; ring += 1) {
+    const up = away + tall - POI + ROW * ring, side = away - POI + half + 4 + ROW * ring;
+    found.push({ x: 0, y: -up }, { x: 0, y: up }, { x: side, y: 0 }, { x: -side, y: 0 });
+    found.push({ x: side, y: -up }, { x: -side, y: -up }, { x: side, y: up }, { x: -side, y: up });
+  }
+  return found;
+}
+
+function arranged(point, half, tall, offsets, taken, last) { // the first place that covers nothing; the last one before others
+  const boxes = offsets.map(({ x, y }) => ({
+    x: Math.min(map.width - half - 2, Math.max(half + 2, point.x + x)),
+    y: Math.min(map.height - tall - 2, Math.max(tall + 2, point.y + y)), half, tall,
+  }));
+  const free = (box) => !taken.some((other) => covers(box, other));
+  const choice = free(boxes[last]) ? last : boxes.findIndex(free);
+  return choice < 0 ? { box: boxes[last], choice: last } : { box: boxes[choice], choice };
+}
+
+// What moves ---------------------------------------------------------------------------------------------------------
+
+function share(agent, now) { // of what it does: nine tenths when it may end, all when it must
+  if (agent.since === null) return 0;
+  const { since, low, high } = agent;
+  const part = now < low ? 0.9 * (now - since) / (low - since) : 0.9 + 0.1 * (high > low ? (now - low) / (high - low) : 1);
+  return Math.min(1, Math.max(0, part));
+}
+
+function animate(moment) {
+  map.moving = false;
+  if (!view || !map.marks.size) return;
+  const now = present(), pace = Math.min(1, (moment - map.last) / 150), taken = [...map.places];
+  map.last = moment;
+  let unsettled = false;
+  for (const agent of view.agents) {
+    const mark = map.marks.get(agent.name), from = map.points.get(agent.place), to = map.points.get(agent.to);
+    if (!mark) continue;
+    for (const part of [mark.group, mark.lead, mark.dot]) part.style.display = from ? "" : "none";
+    mark.group.classList.toggle("lost", agent.lost);
+    if (!from) continue;
+    const part = to ? share(agent, now) : 0;
+    const point = to ? { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) } : from;
+    const target = settle(mark, point, to ? POI + 4 : 2 * POI, taken);
+    const fast = mark.x === null || calm.matches;
+    mark.x = fast ? target.x : mark.x + pace * (target.x - mark.x);
+    mark.y = fast ? target.y : mark.y + pace * (target.y - mark.y);
+    put(mark.group, mark);
+    join(mark.lead, point, mark);
+    mark.dot.style.display = to ? "" : "none";
+    mark.dot.setAttribute("cx", point.x.toFixed(1));
+    mark.dot.setAttribute("cy", point.y.toFixed(1));
+    unsettled = unsettled || Math.abs(mark.x - target.x) + Math.abs(mark.y - target.y) > 0.5 || (to && part < 1 && view.live);
+  }
+  for (const { box, text } of map.lengths) text.style.visibility = taken.some((other) => covers(box, other)) ? "hidden" : "";
+  if (unsettled && !map.moving) {
+    map.moving = true;
+    requestAnimationFrame(animate);
+  }
+}
+
+function settle(mark, point, away, taken) { // where a label comes to rest; what it takes is free no more
+  const { box, choice } = arranged(point, mark.half, mark.tall, around(mark.half, mark.tall, away), taken, mark.choice);
+  mark.choice = choice;
+  taken.push(box);
+  return box;
+}

@@ -1,0 +1,129 @@
+"""The page says what is to be achieved, what of it is achieved, and which time is guaranteed for how long."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List
+
+import pytest
+
+from pursue_runtime.data import DataError
+from pursue_runtime.model import Model
+from pursue_runtime.ui.page import Facts, FloorPlan, Page
+from pursue_runtime.ui.promise import Guarantee, Objective, Promise, objectives_now, read_promise
+from pursue_runtime.ui.statuses import Status
+from tests.runtime.models import model_data, mover, state
+
+GUARD = {
+    "name": "obj", "kind": "safety", "initial": "idle", "locations": {"idle": [], "atRisk": ["Cobj <= 50"], "lose": []},
+    "edges": [{"from": "atRisk", "to": "lose", "word": "obj_atRisk2lose", "sync": "own", "controllable": False}],
+}  # fmt: skip
+DATA = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20))
+DATA["automata"].append(GUARD)
+DATA["clocks"].append("Cobj")
+DATA["variables"]["Sassumed"] = 1
+DATA["assumptions"] = [{"variable": "Sassumed", "says": "thief never does ring"}]
+DATA["objective"] = {"kind": "reach-while-safe", "goal": ["reachObj", "win"], "bad": ["obj", "lose"]}
+MODEL = Model(DATA)
+STATUSES = (
+    Status("reachObj", "do screw", {"unlocked": "screw to be done", "win": "reached"}),
+    Status("obj", "patrol a every 50 by bot", {"idle": "bot is there", "atRisk": "a visit is due", "lose": "broken"}),
+)
+SETTINGS: Dict[str, Any] = {
+    "objectives": [
+        {"says": "screw happens.", "of": ["reachObj"]},
+        {"says": "bot is at a at least every 50 units.", "of": ["obj"]},
+        {"says": "Optional 1: fetch happens.", "of": []},
+    ],
+    "guarantee": 21.5,
+}
+PROMISE = read_promise(SETTINGS)
+
+
+def become(**places: str) -> List[str]:
+    shown = objectives_now(PROMISE, STATUSES, MODEL, state(MODEL, 3, 120.0, {"Cobj": 8.5}, **places), 20.0)
+    assert [each["says"] for each in shown] == [each["says"] for each in SETTINGS["objectives"]]
+    return [f"{each['is']}: {each['now']}" for each in shown]
+
+
+def test_each_objective_is_said_with_what_has_become_of_it() -> None:
+    assert become() == ["open: screw to be done", "kept: bot is there", "not promised: "]
+    assert become(obj="atRisk") == ["open: screw to be done", "kept: a visit is due, by 61.5", "not promised: "]
+    assert become(reachObj="win", obj="lose") == ["reached: ", "broken: ", "not promised: "]
+
+
+def test_objectives_are_not_said_twice() -> None:
+    statuses = (*STATUSES, Status("Sassumed", "open", {"1": "true"}))
+    page = Page(MODEL, FloorPlan({}, ()), statuses=statuses, promise=PROMISE)
+    seen = page.view(Facts("running", (), state(MODEL, 3, 120.0, {}), 20.0, 20.0))
+    assert [each["is"] for each in seen["objectives"]] == ["open", "kept", "not promised"]
+    assert seen["statuses"] == {"open": "true"}
+
+
+def test_the_guaranteed_time_is_that_of_ui_yaml_where_everybody_keeps_to_the_model() -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    now = state(MODEL, 1, 100.0, {}, event="_start_")
+    guarantee.on_state(now)
+    assert guarantee.now(now) == {"most": 21.5, "void": ""}
+    gone = state(MODEL, 2, 102.0, {"Cbot": 0.0}, event="bot_a2b", agent="bot", bot="going_a_to_b")
+    guarantee.on_state(gone)
+    there = state(MODEL, 3, 111.5, {"Cbot": 0.0}, event="bot_going_a_to_b2b", agent="bot", bot="b")
+    guarantee.on_state(there)
+    assert guarantee.now(there)["void"] == ""
+
+
+@pytest.mark.parametrize("arrival, void", [
+    (108.0, "bot was earlier than its model"), (114.0, "bot was later than its model"),
+])
+def test_an_arrival_that_the_model_does_not_have_voids_the_guaranteed_time(arrival: float, void: str) -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    guarantee.on_state(state(MODEL, 1, 100.0, {}, event="_start_"))
+    guarantee.on_state(state(MODEL, 2, 102.0, {"Cbot": 0.0}, event="bot_a2b", agent="bot", bot="going_a_to_b"))
+    there = state(MODEL, 3, arrival, {"Cbot": 0.0}, event="bot_going_a_to_b2b", agent="bot", bot="b")
+    guarantee.on_state(there)
+    guarantee.on_state(there._replace(seq=4, event="", agent=""))
+    assert guarantee.now(there)["void"] == void, "and nothing restores it"
+
+
+@pytest.mark.parametrize("change, void", [
+    ({"late": ("bot",)}, "bot was late"), ({"lost": ("bot",)}, "bot was lost"), ({"held": ("bot",)}, "bot was held"),
+    ({"displaced": ("bot",)}, "bot was not in its place"), ({"status": "holding"}, "the mission was held"),
+    ({"values": {**MODEL.initial().values, "Sassumed": 0}}, "an assumption was broken: thief never does ring"),
+])
+def test_what_leaves_the_model_voids_the_guaranteed_time_until_the_next_mission(change: Any, void: str) -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    start = state(MODEL, 1, 100.0, {}, event="_start_")
+    guarantee.on_state(start)
+    guarantee.on_state(start._replace(stamp=105.0, **change))
+    later = state(MODEL, 2, 106.0, {})
+    guarantee.on_state(later)
+    assert guarantee.now(later) == {"most": 21.5, "void": void}
+    guarantee.on_state(start._replace(stamp=200.0))
+    assert guarantee.now(start) == {"most": 21.5, "void": ""}
+
+
+def test_under_another_plan_the_guaranteed_time_is_not_known() -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    found = guarantee.now(state(MODEL, 7, 100.0, {})._replace(plan=1))
+    assert found["most"] is None and "new plan" in found["void"]
+
+
+def test_who_was_not_there_from_the_start_does_not_know_whether_it_holds() -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    now = state(MODEL, 5, 100.0, {})
+    guarantee.on_state(now)
+    assert "not known" in guarantee.now(now)["void"]
+
+
+def test_without_a_goal_there_is_no_time_to_it() -> None:
+    data = {**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["obj", "lose"]}}
+    assert Guarantee(PROMISE, Model(data)).now(state(MODEL, 1, 100.0, {})) == {}
+
+
+def test_a_file_of_before_promises_nothing_and_a_wrong_one_is_refused() -> None:
+    assert read_promise({}) == Promise()
+    assert read_promise({"objectives": [{"says": "x", "of": ["y"]}]}) == Promise((Objective("x", ("y",)),))
+    wrong: Any
+    for wrong in ({"objectives": 7}, {"objectives": [7]}, {"objectives": [{"says": "x"}]}, {"guarantee": "soon"},
+                  {"guarantee": float("inf")}, {"guarantee": [1]}, {"guarantee": -1}):
+        with pytest.raises(DataError, match=r"ui\.yaml"):
+            read_promise(wrong)
