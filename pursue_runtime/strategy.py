@@ -11,6 +11,7 @@ from typing import (
     FrozenSet,
     Generic,
     Iterable,
+    Iterator,
     List,
     Mapping,
     NamedTuple,
@@ -75,6 +76,15 @@ class StateTable(Generic[Payload]):
         candidates = self._candidates.get(_parts(state, self._common), ())
         looked_up = ((names, _parts(state, names)) for names in candidates)
         return [(names, parts) for names, parts in looked_up if parts in self._tables[names]]
+
+    def beside(self, entry: Entry) -> Iterator[Tuple[str, str, List[Payload]]]:
+        """The entries that differ from this one in the location or value of one name alone: that name, where it is
+        there, and what was entered for it."""
+        names, parts = entry
+        for others, payloads in self._tables[names].items():
+            differing = [place for place, value in enumerate(others) if value != parts[place]]
+            if len(differing) == 1:
+                yield names[differing[0]], others[differing[0]], payloads
 
     def names_in(self, state: SystemState) -> FrozenSet[str]:
         """The automata and variables that matter in this state: those that the entries name which apply."""
@@ -189,6 +199,16 @@ class Strategy:
         """The commands of this controller in this discrete state."""
         return [command for commands in self._table.find(state) for command in commands]
 
+    def entries(self, state: SystemState) -> List[Tuple[Entry, List[Command]]]:
+        """The entries that apply in this discrete state, each with its commands."""
+        return [(entry, _joined(self._table.entered(entry))) for entry in self._table.applying(state)]
+
+    def beside(self, entry: Entry) -> Iterator[Tuple[str, str, List[Command]]]:
+        """The entries that differ from this one in the location or value of one name alone: that name, where it is
+        there, and their commands."""
+        for name, value, payloads in self._table.beside(entry):
+            yield name, value, _joined(payloads)
+
     def instant(self, agent: str, event: str, location: str) -> bool:
         """True for a command that is done at once: it leaves the agent at this location, where it was."""
         return (agent, event, location) in self._instant
@@ -238,6 +258,18 @@ class Strategy:
 
     def __len__(self) -> int:
         return len(self._table)
+
+
+def read_strategies(data: Mapping[str, Any]) -> List[Strategy]:
+    """The strategies of all controllers, as strategies.yaml has them. Raises DataError."""
+    controllers = data.get("strategies")
+    if not isinstance(controllers, dict):
+        raise DataError("strategies.yaml: expected strategies: and a strategy for each controller")
+    return [Strategy(part) for part in controllers.values()]
+
+
+def _joined(payloads: Iterable[Tuple[Command, ...]]) -> List[Command]:
+    return [command for commands in payloads for command in commands]
 
 
 def _first(moments: Sequence[Tuple[float, Command]]) -> Optional[Tuple[float, Command]]:

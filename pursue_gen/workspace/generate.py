@@ -76,6 +76,7 @@ def generate(
         "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
         "ui": ui_file.render(scenario, network, where, options, values["controllers"], values["reported"], __version__),
+        "strategies": ui_file.render_strategies(controllers, scenario, options.reaction, __version__) or b"",
         "controllers": _controllers(values),
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),
     }
@@ -174,6 +175,7 @@ def _packages(
     packages.append(Package("observer", "observer", "The observer: keeps the state of the mission.", observer))
     ui = {"config/model.yaml": data["model"], "config/poses.yaml": data["poses"], **people}
     ui["config/ui.yaml"], ui["config/game.yaml"] = data["ui"], data["game"]
+    ui.update({"config/strategies.yaml": data["strategies"]} if data["strategies"] else {})
     packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
     packages += [Package(name, name, summary, {}) for name, summary in RECEIVING.items()]
     packages += [message_package(), runtime_package()]

@@ -1,18 +1,24 @@
-"""The settings of the UI and the simulator: ui.yaml, see docs/run_time.md."""
+"""What the UI reads: its settings and the simulator's (ui.yaml), the strategies (strategies.yaml). docs/run_time.md has
+the formats."""
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Sequence
+from fractions import Fraction
+from typing import Any, Dict, List, Optional, Sequence
 
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.wording import objective_sentence, objective_words
-from pursue_gen.partition.strategy_data import number
+from pursue_gen.partition import SubStrategy
+from pursue_gen.partition.strategy_data import number, strategy_data
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.status_words import statuses
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.spots import Placing
+
+LARGEST = 2_000
+"""States of strategies that a UI reads at most: it starts with the mission."""
 
 
 def render(
@@ -37,7 +43,7 @@ def render(
         "reports": inline(reported),
         "connections": inline([_connection(way) for way in scenario.connections]),
         "spots": {robot: table for robot, table in spots.items() if table},
-        "objectives": [inline(each) for each in _objectives(scenario)],
+        "objectives": inline(_objectives(scenario)),
     }
     if options.guarantee is not None:
         data["guarantee"] = number(options.guarantee)
@@ -46,6 +52,18 @@ def render(
     ]
     head = f"Written by pursue-gen {generator} for the UI and the simulator of {scenario.name}."
     return yaml_text(data, [head]).encode()
+
+
+def render_strategies(
+    controllers: Sequence[SubStrategy], scenario: Scenario, reaction: Fraction, generator: str
+) -> Optional[bytes]:
+    """The text of strategies.yaml: what the controllers do, from which the page says what is next, and why; None for
+    large strategies. Each strategy is one line: strategy.yaml of its controller has it for people."""
+    if sum(len(sub.blocks) for sub in controllers) > LARGEST:
+        return None
+    found = {sub.controller: inline(strategy_data(sub, reaction)) for sub in controllers}
+    head = f"What the controllers of {scenario.name} do, written by pursue-gen {generator} for the page of the UI."
+    return yaml_text({"format": 1, "strategies": found}, [head]).encode()
 
 
 def _connection(way: Connection) -> List[Any]:

@@ -152,8 +152,12 @@ class UI:
         except DataError as problem:
             rospy.logerr("cannot use the new plan: %s", problem)
             return
+        if plan.get("mission", "") not in ("", self.membership.source.mission):
+            return
         with self.lock:
-            if orders is not None and plan.get("mission", "") in ("", self.membership.source.mission):
+            if self.board is not None:
+                self.board.on_plan(plan)
+            if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()
 

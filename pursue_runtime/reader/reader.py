@@ -34,7 +34,7 @@ from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.reader.contents import StoreError, StoreState, is_signed, manifest
 from pursue_runtime.reader.store import Log, Store
 from pursue_runtime.state import LATE, LIVE, SystemState, older
-from pursue_runtime.strategy import Strategy, read_cover
+from pursue_runtime.strategy import Strategy, read_cover, read_strategies
 from pursue_runtime.trusted_keys import KeyFolder
 
 PATIENCE = 5.0
@@ -361,6 +361,7 @@ def check_data(path: str) -> None:
     readers: Dict[str, Callable[[Mapping[str, Any]], object]] = {
         "strategy.yaml": Strategy,
         "people.yaml": Strategy,
+        "strategies.yaml": read_strategies,
         "cover.yaml": read_cover,
         "model.yaml": Model,
         POSES: read_poses,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import threading
-from typing import Any, Dict, Mapping, Optional, Protocol, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Protocol, Tuple
 
+from pursue_runtime.data import DataError
 from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Strategy, read_strategies
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
@@ -18,6 +20,10 @@ from pursue_runtime.ui.statuses import read_statuses
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
+
+
+STRATEGIES = "strategies.yaml"
+"""The data file with the strategies of all controllers; missions with large ones have none."""
 
 
 class PageNode(Protocol):
@@ -43,6 +49,15 @@ class PageServer:
     def on_state(self, state: SystemState, at: float) -> None:
         """Take a state, `at` time units after the start."""
         self._page.on_state(state, at)
+
+    def on_plan(self, plan: Mapping[str, Any]) -> None:
+        """Take a new plan, as `parse_plan` returns it: what the page says of it needs its strategies."""
+        try:
+            parts = [*dict(plan["strategies"]).values(), *([plan["people"]] if plan.get("people") else [])]
+            strategies = [Strategy(part) for part in parts]
+        except (DataError, KeyError, TypeError, ValueError):
+            return  # the nodes that need it say what is wrong with it
+        self._page.add_plan(plan["plan"], strategies)
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
         """Show the end of the mission; `verdict` is the exit status and a sentence."""
@@ -76,6 +91,14 @@ class PageServer:
         return facts.now if facts.live else None
 
 
+def strategies_of(source: Source) -> List[Strategy]:
+    """The strategies of all controllers, and of people, where the mission's data have them. Raises DataError."""
+    if not source.has(STRATEGIES):
+        return []
+    people = [Strategy(source.read("people.yaml"))] if source.has("people.yaml") else []
+    return [*read_strategies(source.read(STRATEGIES)), *people]
+
+
 def open_page(
     model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: PageNode
 ) -> Optional[PageServer]:
@@ -90,7 +113,7 @@ def open_page(
     poses = source.read("poses.yaml")
     people = reporters(model, options.ends, settings)
     words = read_statuses(settings), read_promise(settings)
-    board = PageServer(Page(model, read_floor_plan(poses, settings), people, *words), node)
+    board = PageServer(Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source)), node)
     try:
         board.web = Web(
             STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present

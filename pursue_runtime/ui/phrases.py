@@ -67,6 +67,18 @@ def doing(model: Model, automaton: Automaton, location: str, place: str) -> str:
     return f"does {model.shown(begin.word)}, at {model.shown(place or begin.source)}"
 
 
+def is_there(model: Model, automaton: Automaton, location: str, verb: str) -> str:
+    """Where an agent is, behind its name: `is at c`, `is on its way from c to b`, `is doing catch at b`; `verb` is `is`
+    or another form of it."""
+    begin = begin_of(automaton, location)
+    if begin is None:
+        return f"{verb} at {model.shown(location)}"
+    if is_movement(location):
+        to = model.shown(destination(automaton, location))
+        return f"{verb} on its way from {model.shown(begin.source)} to {to}"
+    return f"{verb} doing {model.shown(begin.word)} at {model.shown(begin.source)}"
+
+
 def awaited(model: Model, automaton: Automaton, location: str) -> str:
     """What ends what an agent does there, as in `arrive at b`; "" where it does nothing."""
     end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)

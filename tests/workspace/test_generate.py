@@ -25,7 +25,7 @@ from pursue_gen.language import load, parse
 from pursue_gen.partition import partition
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
-from pursue_gen.workspace import Options, generate, templates_dir, write_workspace
+from pursue_gen.workspace import Options, generate, templates_dir, ui_file, write_workspace
 from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
 from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
@@ -483,6 +483,18 @@ def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None
     assert yaml.safe_load(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
     several = yaml.safe_load(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
     assert [each["of"] for each in several] == [["reachObj"]] and "within 26 units" in several[0]["says"]
+
+
+def test_the_page_gets_the_strategies_of_all_controllers_unless_they_are_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    path = "src/UI/config/strategies.yaml"
+    found = files("thesis/catch_the_thief")
+    written = yaml.safe_load(found[path])["strategies"]
+    assert list(written) == ["controller_polBot1", "controller_polBot2", "controllerObj"]
+    for controller, data in written.items():
+        assert data == yaml.safe_load(found[f"src/{controller}/config/strategy.yaml"])
+    assert found[path].count(b"\n") < 10, "one line each"
+    monkeypatch.setattr(ui_file, "LARGEST", 10)
+    assert path not in files("thesis/catch_the_thief")
 
 
 def paths_in(readme: str) -> List[str]:

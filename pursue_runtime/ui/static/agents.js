@@ -4,13 +4,13 @@
 function setAgents() {
   widgets.rows.clear();
   $("agents").replaceChildren(...scene.agents.map((agent) => {
-    const row = make("li", "agent-row"), line = make("div"), doing = make("span"), next = make("div", "next");
+    const row = make("li", `agent-row ${agent.kind}`), line = make("div"), doing = make("span"), next = make("div", "next"), why = make("div", "why");
     const progress = make("progress");
     progress.max = 1;
     progress.setAttribute("aria-label", `progress of ${shown(agent.name)}`);
     line.append(make("span", `tag ${agent.kind}`, shown(agent.name)), " ", doing);
-    row.append(line, progress, next);
-    widgets.rows.set(agent.name, { row, doing, progress, next, kind: agent.kind });
+    row.append(line, progress, next, why);
+    widgets.rows.set(agent.name, { row, doing, progress, next, why, kind: agent.kind });
     return row;
   }));
 }
@@ -22,8 +22,18 @@ function showAgent(widget, agent, now) {
   say(widget.doing, [agent.doing, ...agent.notes].join("; "));
   widget.progress.style.visibility = agent.since === null || !view.live ? "hidden" : "visible";
   widget.progress.value = share(agent, now);
+  if (widget.kind !== "agent") say(widget.why, view.live ? whyAndThen(agent, now) : "");
   say(widget.next, !view.live ? "" : agent.awaited ? ending(widget, agent, now, late) : widget.kind === "agent" ? mayDo(agent, now) : "");
 }
+
+function whyAndThen(agent, now) { // only what the strategy says; nothing where it is not known here
+  const parts = [agent.why].filter((text) => text);
+  if (agent.then) parts.push(`${agent.awaited ? "then" : "next"}: ${agent.then.does} ${due(agent.then.at, now)}`);
+  else if (view.planned && view.status === "running" && !agent.awaited && !agent.lost) parts.push("waits: nothing is planned for it until something else happens");
+  return parts.join("; ");
+}
+
+const due = (at, now) => (at <= now + MARGIN ? "now" : `in ${units(at - now)}`);
 
 const LATE = 0.2; // time units after its window at which an end is late: the observer allows for a little, too
 

@@ -6,11 +6,12 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterator, Sequence
 
 import pytest
 
 from pursue_runtime.model import Model
+from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.ui.promise import Objective, Promise
@@ -77,13 +78,15 @@ COVERED = """
 class Node:
     """A node that shows one state after the other."""
 
-    def __init__(self, model: Any, places: Any, ways: Any, ends: bool, promise: Promise) -> None:
+    def __init__(
+        self, model: Any, places: Any, ways: Any, ends: bool, promise: Promise, strategies: Sequence[Strategy] = ()
+    ) -> None:
         self.lock = threading.RLock()
         self.model, self.wanted = model, []
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise)
+        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies)
         self.board = ui_board.PageServer(page, self)
 
     def serve(self, port: int = 0) -> Any:
@@ -104,7 +107,9 @@ class Node:
 
     def show(self, seq: int, at: float, clock: float = 50.0, **more: Any) -> None:
         self.phase, self.shown = "running", self.clock()
+        commanded = more.pop("commanded", False)
         self.state = state(self.model, seq, 100.0 + at, dict.fromkeys(self.model.clocks, clock), **more)
+        self.state = self.state._replace(commanded=commanded)
         self.board.on_state(self.state, at)
         self.board.show()
 
@@ -122,10 +127,10 @@ def show(page: Browser) -> Iterator[Callable[..., Node]]:
 
     def start(
         *automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), ends: bool = False,
-        promise: Promise = PROMISE, **more: Any
+        promise: Promise = PROMISE, strategies: Sequence[Strategy] = (), **more: Any
     ) -> Node:
         data = {**model_data(*automata), **more}
-        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends, promise)
+        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends, promise, strategies)
         nodes.append(node)
         page.complaints.clear()
         page.screen(1100, 800)
@@ -322,6 +327,33 @@ def test_what_is_to_be_achieved_and_the_guaranteed_time_are_above_all(page: Brow
     matches(page, "#agents", r"thief at a.*may go to b now")
     node.show(4, 31.0, reachObj="win", status="won")
     says(page, "#objectives", "reached screw happens.")
+    assert page.complaints == []
+
+
+def test_what_is_next_and_why_is_what_the_strategy_says(page: Browser, show: Callable[..., Node]) -> None:
+    rows = [("a", "a", "bot_a2b", "going_a_to_b"), ("a", "b", "bot_a2c", "going_a_to_c"), ("b", "a", "catch", "b")]
+    known = [
+        {"state": {"bot": here, "thief": other},
+         "commands": [{"do": word, "agent": "bot", "from": here, "to": to, "when": ["4 < Cbot"]}]}
+        for here, other, word, to in rows
+    ]  # fmt: skip
+    robot = mover("bot", "robot", 9)
+    more = [{"from": "a", "to": "going_a_to_c", "word": "bot_a2c", "sync": "own", "controllable": True},
+            {"from": "going_a_to_c", "to": "c", "word": "bot_going_a_to_c2c", "sync": "own", "controllable": False},
+            {"from": "b", "to": "b", "word": "catch", "sync": "own", "controllable": True}]  # fmt: skip
+    robot["locations"].update({"going_a_to_c": [], "c": []})
+    robot["edges"] += more
+    strategy = Strategy({"commands_agents": ["bot"], "reaction": 0.1, "strategy": known})
+    node = show(robot, mover("thief", "agent", 20), strategies=[strategy])
+    node.clock = lambda: 0.0
+    node.show(1, 0.0, clock=0.0, event="_start_", unit=30.0)
+    matches(page, "#next", r"Next: bot is to go to b in [34]\.\d, if nobody else begins anything before\.")
+    matches(page, "#agents", r"next: go to b in [34]\.\d")
+    node.show(2, 4.1, clock=0.0, event="bot_a2b", agent="bot", bot="going_a_to_b", commanded=True, unit=30.0)
+    says(page, "#agents", "because thief is at a (if it were at b: go to c); then: do catch in 1")
+    node.show(3, 40.0, clock=0.0, bot="b", thief="b", unit=30.0)
+    says(page, "#next", "Next: what others do. Until then the strategy has no command.")
+    says(page, "#agents", "waits: nothing is planned for it until something else happens")
     assert page.complaints == []
 
 
