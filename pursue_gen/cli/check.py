@@ -60,13 +60,13 @@ def _periods(file: Path) -> List[str]:
 
 def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:
     """The findings on the map, for scenarios without errors. Raises PursueError for a map that cannot be used."""
-    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language import load
     from pursue_gen.workspace.map_check import check_spots
 
-    plan = read_floor(floor)
+    ground = read_ground(floor)
     found: List[Diagnostic] = []
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            found += check_spots(load(file), plan, spot_distance)
+            found += check_spots(load(file), ground, spot_distance)
     return found

@@ -60,6 +60,7 @@ def report(
     """
     from pursue_gen.cli.solution import naming_costs
     from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots
 
@@ -78,8 +79,8 @@ def report(
     under = None if floor is None else read_floor(floor)
     options = ReportOptions(reach_obj, runs if html else 0, under)
     read = scenario_from(scenario, request)
-    if under is not None:
-        show(check_spots(read, under, DEFAULT_DISTANCE))
+    if floor is not None:
+        show(check_spots(read, read_ground(floor), DEFAULT_DISTANCE))
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

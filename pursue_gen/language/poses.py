@@ -76,6 +76,11 @@ def robots_in(comment: str) -> List[Tuple[str, int, int]]:
     return [] if place.name else [(item.name, item.start, item.end) for item in others]
 
 
+def end_of_poses(comment: str) -> int:
+    """The offset behind the last pose of such a comment, where the pose of a further robot can be written."""
+    return list(_items(comment))[-1].end
+
+
 def _items(comment: str) -> Iterator[_Item]:
     """The lists of a comment, the place's own first, as long as each is closed and the next one follows it."""
     match = _OPENING.match(comment)

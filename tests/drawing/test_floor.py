@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.drawing.ground import read_ground
 
 GOOD = "image: floor.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
 
@@ -108,3 +109,40 @@ def test_whatever_the_files_hold_there_is_a_plan_or_a_message(
             assert problem.diagnostics[0].hint
         else:
             assert floor.width * floor.height > 0
+
+
+# The ground -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("mode", "kinds"),
+    [
+        ("mode: trinary\n", "ouuf"),
+        ("mode: scale\n", "ouuf"),
+        ("mode: raw\n", "fouu"),
+        ("", "ouuf"),
+    ],
+)
+def test_what_a_grey_means_depends_on_the_mode(tmp_path: Path, mode: str, kinds: str) -> None:
+    (tmp_path / "floor.pgm").write_bytes(b"P5 4 1 255 " + bytes([0, 100, 40 if "raw" in mode else 205, 255]))
+    (tmp_path / "map.yaml").write_text(GOOD + mode)
+    ground = read_ground(tmp_path / "map.yaml", whole=True)
+    found = [ground.at(-1 + 0.05 * (column + 0.5), 2.01) for column in range(4)]
+    assert "".join(kind[0] for kind in found) == kinds
+    assert ground.free_pixels() == bytes(kind == "f" for kind in kinds)
+
+
+def test_a_mode_that_map_server_does_not_know_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(PursueError) as problem:
+        plan(tmp_path, b"P5 1 1 255 \x07", GOOD + "mode: colour\n")
+    assert "mode" in problem.value.diagnostics[0].message and "scale" in problem.value.diagnostics[0].hint
+
+
+def test_pixels_that_are_not_known_are_free_unless_they_are_needed(tmp_path: Path) -> None:
+    palette = struct.pack(">IIBBBBB", 1, 1, 8, 3, 0, 0, 0)
+    (tmp_path / "floor.pgm").write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + palette + b"crc.")
+    (tmp_path / "map.yaml").write_text(GOOD)
+    ground = read_ground(tmp_path / "map.yaml")
+    assert ground.free_pixels() is None and ground.at(-0.99, 2.01) == "free"
+    with pytest.raises(PursueError, match="pixels cannot be read"):
+        read_ground(tmp_path / "map.yaml", whole=True)

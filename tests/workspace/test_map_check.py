@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.drawing.png_greys import greys
 from pursue_gen.language import parse
 from pursue_gen.workspace.map_check import check_spots
@@ -29,14 +29,14 @@ ROWS = [
 YAML = "image: floor.pgm\nresolution: 1.0\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
-def floor_of(folder: Path, yaml: str = YAML, rows: List[List[int]] = ROWS) -> Floor:
+def floor_of(folder: Path, yaml: str = YAML, rows: List[List[int]] = ROWS) -> Ground:
     pixels = bytes(grey for row in rows for grey in row)
     (folder / "floor.pgm").write_bytes(b"P5 %d %d 255\n" % (len(rows[0]), len(rows)) + pixels)
     (folder / "map.yaml").write_text(yaml)
-    return read_floor(folder / "map.yaml")
+    return read_ground(folder / "map.yaml")
 
 
-def told(floor: Floor, behind: str, robots: int = 1, distance: float = 1.0) -> List[str]:
+def told(floor: Ground, behind: str, robots: int = 1, distance: float = 1.0) -> List[str]:
     text = f'poi "a" {behind}\nevent "work"\n'
     text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
     found = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, distance)
