@@ -213,8 +213,8 @@ def test_what_a_workspace_holds_is_taken_by_every_machine(tmp_path: Path, name: 
     assert {"UI", "observer", "controllerObj"} < set(robot.reader.status()["packages"])
     answer = robot.order("prepare", manifest.digest, bundle)
     assert answer.ok, answer
-    files = ("observer", "model"), ("observer", "cover"), ("UI", "ui"), ("UI", "strategies"), ("observer", "controllers")
-    for package, file in files:
+    observed = [("observer", name) for name in ("model", "cover", "controllers")]
+    for package, file in [*observed, ("UI", "ui"), ("UI", "strategies")]:
         bad = {**data, f"{package}/{file}.yaml": b"format: 1\n"} if file != "ui" else {**data, "UI/ui.yaml": b"7"}
         worse = desk_bundle.make_manifest(name, "0", manifest.controllers, bad)
         answer = robot.order("prepare", worse.digest, desk_bundle.pack(worse, bad, DESK))
