@@ -14,7 +14,11 @@ from pathlib import Path
 from random import Random
 from typing import Callable, Dict, List, Optional, Tuple
 
+from pursue_gen.calibration.picture import draw
+from pursue_gen.calibration.proposal import Options, propose
+from pursue_gen.calibration.samples import Sample, Samples, Way, Work
 from pursue_gen.calibration.windows import spread_of, window_of
+from pursue_gen.language import parse
 
 NOISES: Dict[str, Callable[[Random], float]] = {
     "normal": lambda random: max(0.2, random.gauss(1.0, 0.1)),
@@ -67,13 +71,42 @@ def table(windows: int = 400, later: int = 1000, seed: int = 1) -> str:
     return "\n".join(lines) + "\n"
 
 
+FLOOR = """\
+poi "desk"
+poi "shelf"
+poi "window"
+connect desk and shelf distance 4
+connect desk and window distance 9
+event "fetch" location shelf duration 3
+agent "bot1" controllable mobile 1 location desk can_do fetch
+agent "bot2" controllable mobile 2 location desk
+reach_objective: do fetch
+"""
+
+
+def picture() -> str:
+    """An example of what calibrate draws: simulated drives, one of them with somebody in the way."""
+    random, scenario = Random("picture"), parse(FLOOR, "my_floor.pur", "my_floor")
+    kinds = [
+        (Way("bot1", "desk", "shelf"), 5.0, 18),
+        (Way("bot1", "shelf", "desk"), 5.6, 18),
+        (Way("bot1", "desk", "window"), 11.0, 40),
+        (Way("bot1", "window", "desk"), 10.0, 3),
+        (Way("bot2", "desk", "shelf"), 9.2, 12),
+        (Work("fetch"), 3.6, 15),
+    ]
+    samples = [Sample(what, usual * random.lognormvariate(0.0, 0.08)) for what, usual, n in kinds for _ in range(n)]
+    samples.append(Sample(Way("bot1", "desk", "window"), 19.0))
+    return draw(propose(scenario, Samples(tuple(samples), unit=1.0), Options()))
+
+
 def filled(page: str, text: str) -> str:
     """The page with this table."""
     return _PART.sub(lambda match: f"{match[1]}\n{text}\n{match[3]}", page)
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Prints the table, and writes it into the page."""
+    """Prints the table, and writes it into the page, with the picture."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--out", type=Path, help="the folder of calibrate.md")
     given = parser.parse_args(arguments)
@@ -83,7 +116,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
         from pursue_gen.files import write_texts
 
         page = given.out / "calibrate.md"
-        write_texts({page: filled(page.read_text(encoding="utf-8"), text)})
+        texts = {page: filled(page.read_text(encoding="utf-8"), text)}
+        write_texts({**texts, given.out / "pictures" / "measured_times.svg": picture()})
     return 0
 
 

@@ -11,6 +11,7 @@ from pursue_gen.calibration.samples import Measured, Sample, Samples, Unused, Wa
 from pursue_gen.calibration.windows import (
     COUNTED,
     FITTED,
+    GUESSED,
     SHARE,
     Spread,
     held_out,
@@ -62,8 +63,8 @@ class Finding:
 
     `present`: its window in the scenario (with slack); `proposed`: the new one, `basis` what that rests on (see
     `windows`). `early`, `late`: how many times left the present window, `most_early`, `most_late` by how much at most.
-    `held`: how many times are in the window that the other nine tenths make; `widened`: of an agent that is not
-    controlled the present window is kept, and only widened. `far`: the outliers among `samples`.
+    `held`, `tried`: how many times are in the window that the other nine tenths make, of how many; `widened`: the agent
+    is not controlled, and its present window only widened. `far`: the outliers among `samples`.
     """
 
     what: Measured
@@ -79,6 +80,7 @@ class Finding:
     most_early: float
     most_late: float
     held: int
+    tried: int
     widened: bool = False
 
     @property
@@ -135,8 +137,9 @@ class Proposal:
 
     @property
     def held(self) -> Tuple[int, int]:
-        """How many times are in windows that were made without them, and of how many."""
-        return sum(f.held for f in self.findings), sum(f.spread.count for f in self.findings if f.spread.count > 1)
+        """How many times are in windows that were made without them, and of how many; of what was not guessed."""
+        known = [finding for finding in self.findings if finding.basis != GUESSED]
+        return sum(finding.held for finding in known), sum(finding.tried for finding in known)
 
     def text(self) -> str:
         """The scenario's text with the proposed windows."""
@@ -204,7 +207,7 @@ def _finding(
     late = [time - float(present[1]) for time in times if time > present[1] + options.tolerance]
     return Finding(
         what, tuple(samples), times, spread_of(times), far, present, (low, high), window.basis, len(early), len(late),
-        max(early, default=0.0), max(late, default=0.0), held_out(used, options.share)[0], widened,
+        max(early, default=0.0), max(late, default=0.0), *held_out(used, options.share), widened,
     )  # fmt: skip
 
 

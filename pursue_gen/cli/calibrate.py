@@ -50,6 +50,9 @@ def calibrate(
     solved: bool = typer.Option(
         True, "--solve/--no-solve", help="Solve the scenario as it is and with the proposal, and compare."
     ),
+    picture: Optional[Path] = typer.Option(
+        None, "--picture", metavar="OUT", help="Draw the times: OUT.svg, or a page OUT.html with the tables too."
+    ),
     as_json_: bool = JSON,
 ) -> None:
     """Compare measured times with the scenario's windows, and propose windows that hold nearly all later times.
@@ -57,6 +60,7 @@ def calibrate(
     The times are those of movements and actions in recorded missions, and those of drives that were measured without a
     mission (rosrun UI drive_legs). Needs no ROS.
     """
+    from pursue_gen.calibration import picture as drawn
     from pursue_gen.calibration import texts
     from pursue_gen.calibration.proposal import propose
     from pursue_gen.calibration.recordings import samples_in
@@ -65,6 +69,8 @@ def calibrate(
 
     if output is not None:
         check_new(output, force)
+    if picture is not None:
+        drawn.check_name(picture)
     scenario = load_scenario(file)
     show(findings_in(file))
     options = _options(scenario, request, time_unit, step, share, outliers)
@@ -79,6 +85,9 @@ def calibrate(
         print(json.dumps(texts.as_json(proposal, verdicts), indent=1))
     elif verdicts:
         print("", *texts.changed(*verdicts), sep="\n")
+    if picture is not None:
+        drawn.write(proposal, verdicts, picture)
+        info(f"{picture} shows the times")
     if output is None:
         words = ["pursue-gen", "calibrate", str(file), *map(str, recordings), "-o", f"{file.stem}_calibrated.pur"]
         suggest(shlex.join(words))

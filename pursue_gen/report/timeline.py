@@ -141,7 +141,7 @@ def _heading(recording: Recording, title: str, description: str) -> Iterator[str
 
 def _axis(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
     """The marks of the time axis, above and below."""
-    step = _nice(_TICK / scale.unit)
+    step = nice_step(_TICK / scale.unit)
     count = int(scale.end / step + 1e-9)
     for k in range(count + 1):
         at = k * step
@@ -355,7 +355,7 @@ def event_text(step: Step, words: Words, network: Network) -> str:
     return found.get(step.event, step.event)
 
 
-def _nice(least: float) -> float:
+def nice_step(least: float) -> float:
     """The smallest of 1, 2, 5, 10, 20 … (and 0.1, 0.2, 0.5) that is not less."""
     size = 0.1
     while True:
