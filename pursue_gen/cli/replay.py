@@ -88,18 +88,21 @@ def _print(
     quiet: bool,
     as_json_: bool,
 ) -> None:
+    from pursue_gen.calibration.advice import advice_json, reaction_advice
     from pursue_gen.calibration.texts import left_most, left_most_json
     from pursue_gen.replay.summary import as_json, listed, summary, verdict
     from pursue_gen.workspace.model_file import model_data
     from pursue_runtime.model import Model
 
+    late = findings.delays, findings.reaction, proposal.options.unit
     if as_json_:
         data = {**as_json(findings, record, str(recording)), "left_most": left_most_json(proposal)}
+        data["reaction"] = advice_json(*late)
         print(json.dumps(data, indent=1))
         info(verdict(findings))
         return
     if not quiet or not findings.kept:
         model = Model(model_data(game.network, game.objective, game.scenario, Fraction(0)))
         print(*listed(findings, model, notes=not quiet), sep="\n")
-    print(*left_most(proposal), summary(findings), sep="\n")
+    print(*left_most(proposal), *([] if quiet else reaction_advice(*late)), summary(findings), sep="\n")
     print(verdict(findings))

@@ -13,8 +13,9 @@ from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import with_missing
 from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
-from pursue_gen.replay.record import MissionRecord, RecordedWord
+from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.robots import Done, check_robots
+from pursue_gen.replay.steps import ReplayedStep, aged, delays, zones_of
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 from pursue_gen.tga.network import Edge
 from pursue_runtime.locations import is_end, is_movement
@@ -22,25 +23,12 @@ from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemSt
 
 
 @dataclass(frozen=True)
-class ReplayedStep:
-    """A step from one state to the next: the move, and the word that it followed (None: an objective's own, or not
-    recorded). `since`: the first state before it of which what was decided there for the mover still stood."""
-
-    before: SystemState
-    state: SystemState
-    move: Move
-    since: SystemState
-    word: Optional[RecordedWord] = None
-
-    @property
-    def is_command(self) -> bool:
-        """True where it followed a command."""
-        return self.word is not None and self.word.seq is not None
-
-
-@dataclass(frozen=True)
 class Findings:
-    """What was found: steps in order, findings in order of their states, how it ended."""
+    """What was found: steps in order, findings in order of their states, how it ended.
+
+    `delays`: how late each command of a controller took effect, in time units since it was due; `reaction`: how late
+    the strategy allows that, 0 where it is not known.
+    """
 
     steps: Tuple[ReplayedStep, ...]
     findings: Tuple[Finding, ...]
@@ -49,6 +37,8 @@ class Findings:
     start: float
     length: float
     counts: Mapping[str, int] = field(default_factory=dict)
+    delays: Tuple[float, ...] = ()
+    reaction: float = 0.0
 
     @property
     def kept(self) -> bool:
@@ -97,7 +87,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     }
     findings.sort(key=lambda finding: finding.seq)
     length = (last.stamp - start) / last.unit
-    return Findings(tuple(steps), tuple(findings), last.status, last.reason, start, length, counts)
+    how_late = delays(steps, orders), max((known.reaction for known in orders.values()), default=0.0)
+    return Findings(tuple(steps), tuple(findings), last.status, last.reason, start, length, counts, *how_late)
 
 
 def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], List[Finding]]:
@@ -310,7 +301,7 @@ class _Checker:
         found: List[Finding] = []
         for step in steps:
             before, state = step.before, step.state
-            clocks = _aged(before, state)
+            clocks = aged(before, state)
             by, late = self.moves.untimely(step.move, place_of(before), clocks)
             own = self._is_deadline(*step.move[0])
             if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
@@ -380,24 +371,12 @@ class _Checker:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since
         something happened that it sees."""
         before, state = step.before, step.state
-        zones = [
-            zone
-            for command in orders.commands.find(place_of(before))
-            if (command.agent, command.event) == (step.move[0][0], state.event)
-            for zone in command.zones
-        ]
         back = min(orders.reaction + self._tolerance, (state.stamp - step.since.stamp) / state.unit)
-        return in_time(zones, _aged(before, state), back, self._tolerance)
+        return in_time(zones_of(orders, step), aged(before, state), back, self._tolerance)
 
     def _is_reliable(self) -> str:
         """What else could be the reason for a strategy that does not fit."""
         return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
-
-
-def _aged(before: SystemState, state: SystemState) -> Dict[str, float]:
-    """The clocks of the state before, at the moment of this one."""
-    passed = (state.stamp - before.stamp) / state.unit
-    return {clock: value + passed for clock, value in before.clocks.items()}
 
 
 def _where(state: SystemState) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Sequence, Tuple, TypeVar
+from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Optional, Sequence, Tuple, TypeVar
 
 from pursue_gen.partition import SubStrategy
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
@@ -151,7 +152,19 @@ def in_time(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, sla
     return any(_in_time(zone, clocks, back, slack) for zone in zones)
 
 
+def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float) -> Optional[float]:
+    """How many time units ago the clocks came into one of the zones, in the last `back` ones; None: they did not."""
+    found = [latest for earliest, latest in (_stay(zone, clocks, back, 0.0) for zone in zones) if earliest <= latest]
+    return max(found, default=None)
+
+
 def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> bool:
+    earliest, latest = _stay(zone, clocks, back, slack)
+    return earliest <= latest
+
+
+def _stay(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> Tuple[float, float]:
+    """How many time units ago the clocks left a zone, and came into it; the first is more where they were not in it."""
     earliest, latest = 0.0, max(0.0, back)
     for constraint in zone:
         value = clocks.get(constraint.left or "", 0.0) - clocks.get(constraint.right or "", 0.0)
@@ -161,5 +174,5 @@ def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float)
         elif constraint.left is None:  # -(clock - delay) <= bound
             latest = min(latest, -excess)
         elif excess > 0:
-            return False
-    return earliest <= latest
+            return math.inf, 0.0
+    return earliest, latest

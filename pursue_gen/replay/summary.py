@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List
 
-from pursue_gen.replay.check import Findings, ReplayedStep
+from pursue_gen.replay.check import Findings
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
 from pursue_gen.replay.record import MissionRecord
+from pursue_gen.replay.steps import ReplayedStep
 from pursue_runtime.model import Model
 from pursue_runtime.ui.phrases import sentence
 

@@ -36,6 +36,13 @@ def test_a_bag_alone_is_enough(bag: Path) -> None:
     assert "    10.40      5  bot1 arrives at b, report of simulator" in done.out
 
 
+def test_it_is_said_how_late_commands_took_effect(bag: Path) -> None:
+    done = called(bag)
+    assert "Reaction: 5 commands took effect 0.100 time units after they were due (median), 0.100 at most" in done.out
+    assert "near the limit: allow more with --reaction 0.2" in done.out
+    assert json.loads(called(bag, "--json").out)["reaction"]["commands"] == 5
+
+
 def test_the_scenario_may_be_named(bag: Path, tmp_path: Path) -> None:
     bare = write_bag(mission(), tmp_path / "bare.bag")
     assert called(bare, SCENARIO).status == 0
