@@ -11,12 +11,15 @@ from typing import Any, Callable, Dict
 import pytest
 from ros_world import Ros
 
+from pursue_gen.calibration.recordings import samples_in
+from pursue_gen.language import load
 from tests.waiting import PATIENCE
 
 Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
 
+SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
 OPTIONS = "use_sim_time:=true speed:=4 delays:=early"
 """A word that is said early in its window may take a fifth of a second, and comes at a time that the model knows."""
 
@@ -41,6 +44,10 @@ def test_a_recorded_mission_is_complete_and_kept_to_its_scenario(ros: Ros, built
     folder = tmp_path / "pursue" / "scenario_1"
     assert [path.name for path in folder.glob("*.bag*")] == ["mission.bag"], "closed, and under its name"
     told = replayed(folder / "mission.bag")
+    times, findings = samples_in([folder / "mission.bag"], load(str(SCENARIO)))
+    whats = {str(sample.what) for sample in times.measured}
+    assert whats == {"bot1 from c to b", "bot2 from c to a", "bot1_inb", "bot2_ina"} and findings == ()
+    assert told["reaction"]["commands"] == 5 and told["left_most"] == []
     assert (told["kept"], told["won"]) == (True, True), told["verdict"]
     assert told["counts"]["states"] == told["counts"]["steps"] + 2, "from the state before the start on"
     assert told["unread"] == [] and told["steps"][0]["said_by"] == "controllerObj"
