@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Collection, Dict, List, Mapping, Optional, Set, Tuple
+from typing import Any, List, Mapping, Optional, Tuple
 
-from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_under_way
-from pursue_runtime.model import Assumption, Model, Move, Position
-from pursue_runtime.observer.assumptions import Breach, breach, broken_reason, overstayed
-from pursue_runtime.observer.automata import Automata
-from pursue_runtime.observer.beginnings import Beginnings
-from pursue_runtime.observer.planning import Planning, PlanRequest, covers, stays, uncovered
-from pursue_runtime.observer.robots import Robots
-from pursue_runtime.observer.shared_ends import ALL, SharedEnds
-from pursue_runtime.observer.ways import Ways
+from pursue_runtime.model import Assumption, Move, Position
+from pursue_runtime.observer.assumptions import Breach, breach, overstayed
+from pursue_runtime.observer.mission_status import MissionStatus
+from pursue_runtime.observer.planning import stays
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.state_checks import adoptable
-from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,
@@ -33,100 +27,15 @@ from pursue_runtime.words import (
 )
 from pursue_runtime.zones import EPSILON, INFINITY, due
 
-Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
-
-COVER_GRACE = 2.0
-"""Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
-published again."""
-
 MAX_WORD_LENGTH = 1000
 """The most characters of a word; longer texts are dropped."""
 
-ACTING = ("robot", "human", "agent")
-COUNTED = ("taken", "stale", "held", "impossible", "untimely", "unreadable", "uncovered")
 
-
-class Mission:
+class Mission(MissionStatus):
     """One mission: takes words, moves the automata, and returns the states to publish.
 
-    `unit` is the length of a time unit in seconds; `tolerance`, in time units, is how far clocks may be off (a message
-    takes its time) before a deadline counts as missed or a state as not covered; `lost_after`, in time units, is how
-    late an agent may be before it counts as lost. `on_uncovered` is what follows in a state that the strategy does not
-    cover: `plan` again, `stop`, or `warn`. `controllers` are the nodes that have to acknowledge a new plan.
-    `name` is the mission's id, which its states carry. `shared_ends` (`all`, `doer`): whose reports end what several do
-    together.
+    The arguments are those of MissionState.
     """
-
-    def __init__(
-        self,
-        model: Model,
-        cover: Optional[Cover],
-        log: Log,
-        unit: float = 1.0,
-        tolerance: float = 0.1,
-        on_uncovered: str = "stop",
-        lost_after: float = 30.0,
-        controllers: Collection[str] = (),
-        name: str = "",
-        shared_ends: str = ALL,
-    ) -> None:
-        self.model, self.name = model, name
-        self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
-        self._since: Dict[Entry, int] = {}  # the number of the state in which was decided what stands (else: this one)
-        self.counts = dict.fromkeys(COUNTED, 0)
-        self.late: Set[str] = set()
-        self.lost: Dict[str, str] = {}  # and why
-        self.silent: Set[str] = set()
-        self.ways = Ways(model)
-        self.robots = Robots(model)
-        self.shared_ends = SharedEnds(model, shared_ends)
-        self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
-        self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
-        self._on_uncovered, self._lost_after = on_uncovered, lost_after
-        self._early: Dict[Word, float] = {}  # and their moments
-        self._beginnings = Beginnings()
-        self._planning = Planning(controllers)
-        self._warned = False
-        self._shown = self.robots.revision()  # in the newest state
-        self._automata = Automata(model, unit)
-        self._event = self._agent = ""
-        self._commanded = False
-        self._ended: Optional[float] = None
-
-    # State ----------------------------------------------------------------------------------------------------------
-
-    def position(self, now: float) -> Position:
-        """Return locations, variables and clocks at the time `now`, or at the end of the mission if that was before."""
-        return self._automata.position(now if self._ended is None else self._ended)
-
-    def state(self, now: float) -> SystemState:
-        """Return the state to publish."""
-        position = self.position(now)
-        late, lost = tuple(sorted(self.late)), tuple(sorted(self.lost))
-        what = self._event, self._agent, self.status, self.reason, self._unit, self.plan, lost, self.name, late
-        state = SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
-        held, displaced, returning = self.robots.revision()
-        finished = tuple(sorted(self.shared_ends.finished))
-        robots = state._replace(held=held, displaced=displaced, returning=returning)
-        return robots._replace(commanded=self._commanded, finished=finished)
-
-    @property
-    def plan_request(self) -> Optional[PlanRequest]:
-        """Return the request for a plan, None if none is needed."""
-        return self._planning.request if self.status in LIVE else None
-
-    @property
-    def proposal(self) -> Optional[Dict[str, Any]]:
-        """Return the plan to publish; it is in force once every controller has acknowledged it."""
-        proposal = self._planning.proposal
-        return proposal.data if proposal else None
-
-    def revision(self) -> Tuple[object, ...]:
-        """Return a value that a call changes if, and only if, the call has to be in the journal."""
-        people = len(self.late), len(self.lost), len(self.silent)
-        robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision()
-        return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def next_moment(self, now: float) -> Optional[float]:
         """Return when to call `on_time` if no input comes before; None: never."""
@@ -203,37 +112,6 @@ class Mission:
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
         states = self._after_losses(now)
         return states or (self._new_state(now) if has_broken else [])  # no two states have one number
-
-    def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
-        """Hold the mission until this controller, which is silent, is back."""
-        self.silent.add(node)
-        return self._status_changes(now)
-
-    def on_controller_back(self, node: str, now: float) -> List[SystemState]:
-        """Note that a controller is not silent any more."""
-        self.silent.discard(node)
-        return self._status_changes(now)
-
-    def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
-        """Take the planner's answer to the request of this number."""
-        try:
-            found = self._planning.on_plan(number, answer)
-        except (DataError, KeyError, TypeError) as problem:
-            return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
-        if found:
-            self._log("info", f"plan {number} goes to the controllers")
-        return self._put_plan_in_force(now)
-
-    def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
-        """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
-        if self._planning.on_no_plan(number, why):
-            self.ways.turns.clear()  # a plan without these robots is the next to look for
-        return self._status_changes(now)
-
-    def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
-        """Take that the planner has searched for so many seconds for the request of this number, and goes on."""
-        self._planning.on_long_search(number, seconds)
-        return self._status_changes(now)
 
     def stop(self, why: str, now: float) -> List[SystemState]:
         """Stop the mission safely: no further commands are taken."""
@@ -392,116 +270,7 @@ class Mission:
             return moves
         return None
 
-    # Holding and replanning ------------------------------------------------------------------------------------------
-
-    def _status_changes(self, now: float) -> List[SystemState]:
-        """Return a new state if the status, its reason or the waiting robots have changed without an event."""
-        if self.status not in LIVE:
-            return []
-        before = self.status, self.reason, self._shown
-        self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
-        return [] if before == (self.status, self.reason, self.robots.revision()) else self._new_state(now)
-
-    def _new_state(self, now: float) -> List[SystemState]:
-        self.seq, self._shown = self.seq + 1, self.robots.revision()
-        self._since = {}
-        self._event, self._agent, self._commanded = "", "", False
-        return [self.state(now)]
-
-    def _update_status(self, now: float, patience: float) -> None:
-        """Set the status: running where the plan in force covers the state, holding where a plan or node is missing.
-
-        `patience`: the time units for which clocks may be outside what the plan covers.
-        """
-        relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
-        trouble = self._planning.unexcused(relied_on)
-        trouble = trouble or self._planning.unavoided(self.ways.blocked)
-        trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
-        trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
-        waits = self.robots.reasons()
-        trouble = "" if waits else trouble  # another plan begins when these robots can go on
-        self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
-        if trouble and self._on_uncovered == "stop":
-            self._conclude(STOPPED, trouble, now)
-            return
-        if trouble and self._on_uncovered == "warn":
-            if not self._warned:
-                self._log("warn", trouble)
-            self._warned, trouble = True, ""
-        reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
-        if not trouble:
-            self._planning.reset()
-        elif self._request_plan(now):
-            reasons.append(f"{trouble}; {self._planning.progress()}")
-        else:
-            trouble += f"; no other plan: {self._planning.no_plan_reason}"
-            awaited = " and ".join(sorted(self.late - set(self.lost)))
-            if not awaited:
-                self._conclude(STOPPED, trouble, now)
-                return
-            reasons.append(f"waiting for {awaited}: {trouble}")
-        reason = "; ".join(reasons)
-        if reason != self.reason:
-            self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
-        self.status, self.reason = HOLDING if reasons else RUNNING, reason
-
-    def _matters(self, name: str, now: float) -> bool:
-        """Return True unless what the plan in force does in this state holds whatever the automaton does."""
-        if self._cover is None:
-            return True
-        named = self._cover.names_in(self.state(now)) or self._cover.names
-        return not named or name in named
-
-    def _still_standing(self, before: SystemState, state: SystemState) -> Dict[Entry, int]:
-        """Return where was decided what stands after a move, for each entry that applies, as controllers see it too."""
-        if self._cover is None or (before.status, state.status) != (RUNNING, RUNNING):
-            return {}
-        standing = self._cover.standing(before, state)
-        return {
-            entry: self._since.get(entry, before.seq) if entry in standing else state.seq
-            for entry in self._cover.applying(state)
-        }
-
-    @property
-    def _cover_grace(self) -> float:
-        return self._tolerance + COVER_GRACE / self._unit
-
-    def _request_plan(self, now: float) -> bool:
-        """Request another plan from here; return False if there is none."""
-        position = Model.after(tuple(self.ways.turns.values()), self.position(now))
-        gone = frozenset(self.late | set(self.lost))
-        excused = gone - set(self.ways.turns)
-        ends = [delay for name, delay in self._bounds(position) if name not in gone]
-        ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
-        return not self._planning.no_plan_reason
-
-    def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
-        self._planning.on_receipt(node, number)
-        return self._put_plan_in_force(now)
-
-    def _put_plan_in_force(self, now: float) -> List[SystemState]:
-        """Put an acknowledged plan in force with a new state, if it covers the present clocks."""
-        proposal = self._planning.acknowledged()
-        if proposal is None:
-            return []
-        turns = tuple(self.ways.turns[name] for name in proposal.request.turning)
-        start = min(now, proposal.request.stamp + proposal.request.ahead * self._unit)  # there the proof begins
-        position = Model.after(turns, self.position(start)).aged((now - start) / self._unit)
-        if not covers(proposal.cover, position, self._tolerance):
-            self._planning.expire(proposal, now)
-            return self._status_changes(now)
-        self.in_force = proposal.data
-        self.plan, self._cover = proposal.data["plan"], proposal.cover
-        self._planning.put_in_force(proposal)
-        self._automata.turn(turns, start)
-        for name, _ in turns:
-            self.late.discard(name)
-            self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
-        self.ways.turns.clear()
-        self._update_status(now, self._tolerance)
-        self._beginnings.on_moves(turns, self.seq + 1)
-        return self._new_state(now)
+    # Reports ----------------------------------------------------------------------------------------------------------
 
     def _on_robot_report(self, report: RobotReport, now: float) -> List[SystemState]:
         """Take a report about a robot (failed, held, resumes, displaced, back in place) or a way (blocked, free)."""
@@ -563,29 +332,3 @@ class Mission:
         self.lost[agent] = why
         self.robots.drop(agent)
         self._log("err", f"{agent} counts as lost: it {why}")
-
-    def _late_agents(self, position: Position) -> List[Tuple[str, float]]:
-        """Return the agents that are late but not lost, with their delays (time units; negative: overdue)."""
-        acting = self._bounds(position, *ACTING)
-        waiting = self.robots.waiting()
-        return [(name, delay) for name, delay in acting if name in self.late and name not in {*self.lost, *waiting}]
-
-    def _bounds(self, position: Position, *kinds: str) -> List[Tuple[str, float]]:
-        """Return on whom it waits that locations are left, and the time units until then (negative: overdue)."""
-        bounds = self._automata.bounds(position, *kinds)
-        return [(who, delay) for name, delay in bounds for who in self.shared_ends.awaited(name, position)]
-
-    # Ends -------------------------------------------------------------------------------------------------------------
-
-    def _end(self, status: str, reason: str, now: float) -> List[SystemState]:
-        self._event, self._agent, self._commanded = "", "", False
-        self._conclude(status, reason, now)
-        return [self.state(now)]
-
-    def _conclude(self, status: str, reason: str, now: float) -> None:
-        self.status, self.reason, self._ended = status, reason, now
-        self._log("info" if status == WON else "err", f"the mission is {status}" + (f": {reason}" if reason else ""))
-
-    def _reject(self, kind: str, message: str, level: str = "warn") -> None:
-        self.counts[kind] += 1
-        self._log(level, message)

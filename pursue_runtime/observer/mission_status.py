@@ -1,0 +1,172 @@
+"""Whether a mission runs or holds, and the plans that let it go on. Times are seconds of ROS time."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Mapping, Optional
+
+from pursue_runtime.data import DataError
+from pursue_runtime.model import Model
+from pursue_runtime.observer.assumptions import broken_reason
+from pursue_runtime.observer.mission_state import MissionState
+from pursue_runtime.observer.planning import PlanRequest, covers, uncovered
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, STOPPED, SystemState
+from pursue_runtime.strategy import Entry
+
+COVER_GRACE = 2.0
+"""Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
+published again."""
+
+
+class MissionStatus(MissionState):
+    """A mission that holds while a plan, a node or a robot is missing, and ends where there is no plan."""
+
+    @property
+    def plan_request(self) -> Optional[PlanRequest]:
+        """Return the request for a plan, None if none is needed."""
+        return self._planning.request if self.status in LIVE else None
+
+    @property
+    def proposal(self) -> Optional[Dict[str, Any]]:
+        """Return the plan to publish; it is in force once every controller has acknowledged it."""
+        proposal = self._planning.proposal
+        return proposal.data if proposal else None
+
+    # Inputs: each returns the states to publish, in order -------------------------------------------------------------
+
+    def on_controller_silent(self, node: str, now: float) -> List[SystemState]:
+        """Hold the mission until this controller, which is silent, is back."""
+        self.silent.add(node)
+        return self._status_changes(now)
+
+    def on_controller_back(self, node: str, now: float) -> List[SystemState]:
+        """Note that a controller is not silent any more."""
+        self.silent.discard(node)
+        return self._status_changes(now)
+
+    def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
+        """Take the planner's answer to the request of this number."""
+        try:
+            found = self._planning.on_plan(number, answer)
+        except (DataError, KeyError, TypeError) as problem:
+            return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
+        if found:
+            self._log("info", f"plan {number} goes to the controllers")
+        return self._put_plan_in_force(now)
+
+    def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
+        """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
+        if self._planning.on_no_plan(number, why):
+            self.ways.turns.clear()  # a plan without these robots is the next to look for
+        return self._status_changes(now)
+
+    def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
+        """Take that the planner has searched for so many seconds for the request of this number, and goes on."""
+        self._planning.on_long_search(number, seconds)
+        return self._status_changes(now)
+
+    # Whether it holds -------------------------------------------------------------------------------------------------
+
+    def _status_changes(self, now: float) -> List[SystemState]:
+        """Return a new state if the status, its reason or the waiting robots have changed without an event."""
+        if self.status not in LIVE:
+            return []
+        before = self.status, self.reason, self._shown
+        self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
+        return [] if before == (self.status, self.reason, self.robots.revision()) else self._new_state(now)
+
+    def _update_status(self, now: float, patience: float) -> None:
+        """Set the status: running where the plan in force covers the state, holding where a plan or node is missing.
+
+        `patience`: the time units for which clocks may be outside what the plan covers.
+        """
+        relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
+        trouble = self._planning.unexcused(relied_on)
+        trouble = trouble or self._planning.unavoided(self.ways.blocked)
+        trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
+        trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
+        waits = self.robots.reasons()
+        trouble = "" if waits else trouble  # another plan begins when these robots can go on
+        self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
+        if trouble and self._on_uncovered == "stop":
+            self._conclude(STOPPED, trouble, now)
+            return
+        if trouble and self._on_uncovered == "warn":
+            if not self._warned:
+                self._log("warn", trouble)
+            self._warned, trouble = True, ""
+        reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
+        if not trouble:
+            self._planning.reset()
+        elif self._request_plan(now):
+            reasons.append(f"{trouble}; {self._planning.progress()}")
+        else:
+            trouble += f"; no other plan: {self._planning.no_plan_reason}"
+            awaited = " and ".join(sorted(self.late - set(self.lost)))
+            if not awaited:
+                self._conclude(STOPPED, trouble, now)
+                return
+            reasons.append(f"waiting for {awaited}: {trouble}")
+        reason = "; ".join(reasons)
+        if reason != self.reason:
+            self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
+        self.status, self.reason = HOLDING if reasons else RUNNING, reason
+
+    def _matters(self, name: str, now: float) -> bool:
+        """Return True unless what the plan in force does in this state holds whatever the automaton does."""
+        if self._cover is None:
+            return True
+        named = self._cover.names_in(self.state(now)) or self._cover.names
+        return not named or name in named
+
+    def _still_standing(self, before: SystemState, state: SystemState) -> Dict[Entry, int]:
+        """Return where was decided what stands after a move, for each entry that applies, as controllers see it too."""
+        if self._cover is None or (before.status, state.status) != (RUNNING, RUNNING):
+            return {}
+        standing = self._cover.standing(before, state)
+        return {
+            entry: self._since.get(entry, before.seq) if entry in standing else state.seq
+            for entry in self._cover.applying(state)
+        }
+
+    @property
+    def _cover_grace(self) -> float:
+        return self._tolerance + COVER_GRACE / self._unit
+
+    # New plans --------------------------------------------------------------------------------------------------------
+
+    def _request_plan(self, now: float) -> bool:
+        """Request another plan from here; return False if there is none."""
+        position = Model.after(tuple(self.ways.turns.values()), self.position(now))
+        gone = frozenset(self.late | set(self.lost))
+        excused = gone - set(self.ways.turns)
+        ends = [delay for name, delay in self._bounds(position) if name not in gone]
+        ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
+        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
+        return not self._planning.no_plan_reason
+
+    def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
+        self._planning.on_receipt(node, number)
+        return self._put_plan_in_force(now)
+
+    def _put_plan_in_force(self, now: float) -> List[SystemState]:
+        """Put an acknowledged plan in force with a new state, if it covers the present clocks."""
+        proposal = self._planning.acknowledged()
+        if proposal is None:
+            return []
+        turns = tuple(self.ways.turns[name] for name in proposal.request.turning)
+        start = min(now, proposal.request.stamp + proposal.request.ahead * self._unit)  # there the proof begins
+        position = Model.after(turns, self.position(start)).aged((now - start) / self._unit)
+        if not covers(proposal.cover, position, self._tolerance):
+            self._planning.expire(proposal, now)
+            return self._status_changes(now)
+        self.in_force = proposal.data
+        self.plan, self._cover = proposal.data["plan"], proposal.cover
+        self._planning.put_in_force(proposal)
+        self._automata.turn(turns, start)
+        for name, _ in turns:
+            self.late.discard(name)
+            self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
+        self.ways.turns.clear()
+        self._update_status(now, self._tolerance)
+        self._beginnings.on_moves(turns, self.seq + 1)
+        return self._new_state(now)
