@@ -25,7 +25,8 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.simulation.faults import read_faults
 from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import Case, MissionRunner
 from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT

@@ -32,7 +32,7 @@ from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import listed, objective_text, periods_found, promise_words
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
-from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee

@@ -7,7 +7,8 @@ from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.record import MissionRecord
-from pursue_gen.simulation.mission import Settings, SimulatedMission
+from pursue_gen.simulation.mission import SimulatedMission
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.runs import Case
 from pursue_gen.simulation.stage import Stage, stage_of

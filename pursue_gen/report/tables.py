@@ -12,7 +12,7 @@ from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.thesis_figures import Times, thesis_times
-from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.outcome_texts import END_TEXTS
 from pursue_gen.simulation.runs import Case, Summary, case_of, simulate
 from pursue_gen.solving.solution import Solution

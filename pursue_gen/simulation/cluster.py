@@ -13,7 +13,7 @@ from typing import Any, Callable, ContextManager, Deque, Iterator, List, Protoco
 
 import pursue_runtime
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.simulation.mission import Outcome
+from pursue_gen.simulation.outcome import Outcome
 from pursue_gen.simulation.runs import SHARE, Case, MissionRunner
 
 TIMEOUT = 10.0

@@ -6,7 +6,7 @@ from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution

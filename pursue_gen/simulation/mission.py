@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass, field
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.connections import Connections
@@ -14,6 +13,7 @@ from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
+from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.simulation.planner import SimulatedPlanner
 from pursue_gen.simulation.promises import Promises
 from pursue_gen.simulation.remaining import Remaining
@@ -39,10 +39,6 @@ from pursue_runtime.words import Word, format_word, parse_word
 START = 1000.0
 """The moment at which missions start, in seconds of ROS time."""
 
-GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
-"""How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these
-STOPPED, a safe stop, and LOST, because a fault broke what the strategy was promised."""
-
 JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_plan_@1", "@@", ":_failed_")
 """Words on pursue/events that change nothing."""
 
@@ -54,44 +50,6 @@ USUAL = 1.25
 
 RETURN = 3.0
 """Reactions that pass at most from the return of a node to the effect of a command that it has delayed."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What is simulated. `until`: the time units after which a mission is over; `span`: faults begin within so many;
-    `bound`: how long it may take without faults (None: not known); `margin`: the delay of commands with which the
-    strategy is known to win, in time units."""
-
-    opponent: str = "mixed"
-    faults: Tuple[str, ...] = ()
-    until: float = 1000.0
-    span: float = 50.0
-    bound: Optional[float] = None
-    margin: float = 0.0
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """How a mission ended, after so many time units.
-
-    `lateness`: the longest time, in time units, for which a command was due; `cause`: which fault was too long for the
-    strategy, if the mission was not won; `problems`: what must never be; `happened`: how often which fault did;
-    `play`: what happened, a line for each event, where it was asked for.
-    """
-
-    seed: int
-    opponent: str
-    end: str
-    time: float
-    reason: str
-    steps: int
-    plan: int
-    off_model: int
-    lateness: float = 0.0
-    cause: str = ""
-    problems: Tuple[str, ...] = ()
-    happened: Mapping[str, int] = field(default_factory=dict)
-    play: Tuple[str, ...] = ()
 
 
 class SimulatedMission:

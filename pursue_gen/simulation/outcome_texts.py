@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Sequence
 
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome
+from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.simulation.runs import Summary
 from pursue_runtime.state import LOST, STOPPED
 

@@ -14,7 +14,8 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequ
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.margin import USUAL, strategy_margin
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, SAFE, Outcome, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.solution import Solution

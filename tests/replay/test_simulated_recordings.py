@@ -17,7 +17,8 @@ from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.journal import Journal, read_journal, reconstruct
 from pursue_gen.replay.moves import Moves
 from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
-from pursue_gen.simulation.mission import START, Outcome, Settings, SimulatedMission
+from pursue_gen.simulation.mission import START, SimulatedMission
+from pursue_gen.simulation.outcome import Outcome, Settings
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import solve_scenario

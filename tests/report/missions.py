@@ -8,7 +8,7 @@ from typing import Dict, List, Tuple
 
 from pursue_gen.language import load
 from pursue_gen.report.recording import Recording, Step, simulated
-from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import case_of
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import solve_scenario

@@ -10,7 +10,8 @@ from typing import Dict, Optional, Tuple
 from pursue_gen.language import load
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.margin import USUAL, strategy_margin
-from pursue_gen.simulation.mission import Outcome, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import Outcome, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_from
 from pursue_gen.solving.solution import Rules, Solution, solve_scenario

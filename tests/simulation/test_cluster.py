@@ -14,7 +14,7 @@ from stages import SCENARIOS, solved
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.simulation.cluster import AHEAD, cluster, outcomes_on, version
-from pursue_gen.simulation.mission import Settings
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import SHARE, Case, outcomes
 from pursue_gen.workspace import Options
 

@@ -8,7 +8,8 @@ import pytest
 
 from benchmarks.families import pass_bystanders
 from pursue_gen.language import parse
-from pursue_gen.simulation.mission import GOAL, HELD, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, HELD, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.rules import Rules

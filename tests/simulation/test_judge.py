@@ -12,7 +12,7 @@ from stages import THIEF, files, missions, sabotaged, solved, stage
 
 from pursue_gen.simulation.commands import commands_of
 from pursue_gen.simulation.judge import Judge
-from pursue_gen.simulation.mission import FAILED, Outcome, Settings
+from pursue_gen.simulation.outcome import FAILED, Outcome, Settings
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.mission import Mission

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_gen.simulation.mission import GOAL, Settings
 from pursue_gen.simulation.opponents import OPPONENTS
+from pursue_gen.simulation.outcome import GOAL, Settings
 from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.workspace import Options
 from tests.assumptions import AWAY, GOODBYE, LEAVES, MUSEUM, PLAYROOM, SPACED, TWICE, scenario, solved

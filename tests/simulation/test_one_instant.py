@@ -6,8 +6,9 @@ import pytest
 
 from pursue_gen.language import load
 from pursue_gen.simulation import connections
-from pursue_gen.simulation.mission import GOAL, Settings, SimulatedMission
+from pursue_gen.simulation.mission import SimulatedMission
 from pursue_gen.simulation.opponents import Opponent
+from pursue_gen.simulation.outcome import GOAL, Settings
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options

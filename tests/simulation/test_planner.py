@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Optional
 
 from pursue_gen.simulation.faults import Crash
-from pursue_gen.simulation.mission import GOAL, Settings, SimulatedMission
+from pursue_gen.simulation.mission import SimulatedMission
+from pursue_gen.simulation.outcome import GOAL, Settings
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.state import STOPPED
 from tests.simulation.stages import margin, stage

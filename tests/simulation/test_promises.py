@@ -8,7 +8,8 @@ from typing import List, Tuple
 import pytest
 
 from pursue_gen.language import parse
-from pursue_gen.simulation.mission import Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.promises import Promises
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT

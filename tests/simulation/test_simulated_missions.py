@@ -13,7 +13,8 @@ from stages import SCENARIOS, THESIS, THIEF, margin, missions, remaining, sabota
 from pursue_gen.language import load
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.simulation.faults import FAULTS, HARMLESS
-from pursue_gen.simulation.mission import FAILED, GOAL, HELD, LOST, SAFE, STOPPED, Settings, simulate_mission
+from pursue_gen.simulation.mission import LOST, STOPPED, simulate_mission
+from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.solution import Rules, solve_scenario

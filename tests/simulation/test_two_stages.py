@@ -8,7 +8,8 @@ from typing import Any, List
 import pytest
 
 from pursue_gen.simulation.judge import Judge
-from pursue_gen.simulation.mission import GOAL, HELD, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, HELD, Settings
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission

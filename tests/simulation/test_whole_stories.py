@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import GOAL, SAFE, Settings, SimulatedMission
+from pursue_gen.simulation.mission import SimulatedMission
+from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.options import SolveOptions

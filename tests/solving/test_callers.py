@@ -17,7 +17,8 @@ from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.partition.strategy_file import render, render_cover
 from pursue_gen.proof.checker import verify
 from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import GOAL, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, Settings
 from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.options import DEFAULT, SolveOptions

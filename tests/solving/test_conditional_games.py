@@ -8,7 +8,8 @@ from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.meaning import broken_of
-from pursue_gen.simulation.mission import GOAL, HELD, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, HELD, SAFE, Settings
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario

@@ -15,7 +15,8 @@ from pursue_gen.diagnostics import PursueError, Severity
 from pursue_gen.language import check, parse
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who, condition_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT

@@ -17,7 +17,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
 from pursue_gen.replay.game import Source, game_of
 from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.crowds import won_by_some
 from pursue_gen.solving.options import SolveOptions

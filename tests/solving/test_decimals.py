@@ -13,7 +13,7 @@ from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import worst_case
-from pursue_gen.simulation.mission import GOAL, Settings
+from pursue_gen.simulation.outcome import GOAL, Settings
 from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.least_time import fastest

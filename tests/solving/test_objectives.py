@@ -9,7 +9,8 @@ import pytest
 from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import fastest_solution, guaranteed, solve_scenario

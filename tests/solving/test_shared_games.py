@@ -10,7 +10,8 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
-from pursue_gen.simulation.mission import GOAL, HELD, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, HELD, SAFE, Settings
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solution, solve_scenario

@@ -6,7 +6,8 @@ import pytest
 
 from pursue_gen.language import parse
 from pursue_gen.report.recording import simulated
-from pursue_gen.simulation.mission import GOAL, SAFE, Settings, simulate_mission
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.simulation.runs import case_of
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT

@@ -16,7 +16,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.play.games import session_of
 from pursue_gen.play.session import opening
-from pursue_gen.simulation.mission import SAFE, Settings
+from pursue_gen.simulation.outcome import SAFE, Settings
 from pursue_gen.simulation.promises import Promises
 from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.solving.rules import Rules
