@@ -11,6 +11,7 @@ from pursue_gen import __version__
 from pursue_gen.cli.bundle import bundle
 from pursue_gen.cli.calibrate import calibrate
 from pursue_gen.cli.check import check
+from pursue_gen.cli.draw import draw
 from pursue_gen.cli.examples import examples
 from pursue_gen.cli.explain import explain
 from pursue_gen.cli.fmt import fmt
@@ -93,6 +94,7 @@ app.command(epilog="For example: pursue-gen calibrate my_floor.pur mission.bag d
 app.command(epilog="For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4")(sim)
 app.command(epilog="For example: pursue-gen fmt my_floor.pur")(fmt)
 app.command(epilog="For example: pursue-gen new my_floor --kind reach --robots 2")(new)
+app.command(epilog="For example: pursue-gen draw map.yaml my_floor.pur")(draw)
 app.command(epilog="For example: pursue-gen examples thesis/scenario_1")(examples)
 app.command(epilog="For example: pursue-gen replan < request.json")(replan)
 app.command(epilog="For example, in an editor's settings: pursue-gen lsp")(lsp)

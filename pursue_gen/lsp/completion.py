@@ -20,7 +20,7 @@ _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
 _WORD_BEFORE = re.compile(r"[\w-]*\Z")
 _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
-_HOLE = re.compile(r"\{(=?)([^}]*)\}")
+HOLE = re.compile(r"\{(=?)([^}]*)\}")
 _SPECIAL = re.compile(r"[$},|\\]")
 _MOST_CHOICES = 50
 _EXAMPLES = {"POI": "a", "event": "work", "state": "open", "agent": "bot", "rule": "order"}
@@ -222,4 +222,4 @@ def fill_in(words: str, names: Dict[str, List[str]], plain: bool = False) -> str
         turned = choices[turn:] + choices[:turn]
         return f"${{{number}|" + ",".join(_SPECIAL.sub(r"\\\g<0>", name) for name in turned) + "|}"
 
-    return _HOLE.sub(hole, words)
+    return HOLE.sub(hole, words)

@@ -115,6 +115,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
     ),
     "RULE": (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
+        Form("three events in turn", 'rule "{=order}": ({event} before {event}) before {event}'),
         Form("events in turn, for each robot", 'rule "{=order}" for each robot: {event} before {event}'),
         Form("either of two events", 'rule "{=choice}": {event} or {event}'),
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),

@@ -10,7 +10,7 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.lsp.document import Document
 
-_MOST_PLACES = 400
+MOST_PLACES = 400
 """More places cannot be read on one picture, and to lay them out takes long."""
 
 
@@ -19,23 +19,24 @@ def picture(document: Document) -> str:
 
     Raises PursueError where there is nothing to draw, or too much.
     """
-    scenario = _drawable(document.scenario)
+    scenario = drawable(document.scenario)
     if not scenario.pois:
         raise PursueError([error("LSP003", "there is no place to draw yet", hint='write one: poi "room"')])
-    if len(scenario.pois) > _MOST_PLACES:
-        message = f"the map has {len(scenario.pois)} places: the preview draws {_MOST_PLACES} at most"
+    if len(scenario.pois) > MOST_PLACES:
+        message = f"the map has {len(scenario.pois)} places: the preview draws {MOST_PLACES} at most"
         raise PursueError([error("LSP004", message, hint="pursue-gen ws draws all of them, in map.svg")])
     where, computed = poses(scenario)
     return map_svg.draw(scenario, where, computed)
 
 
-def _drawable(scenario: Scenario) -> Scenario:
+def drawable(scenario: Scenario) -> Scenario:
     """Without what an unfinished text may hold, but no picture can show."""
     pois = tuple({poi.name: poi for poi in reversed(scenario.pois)}.values())[::-1]
     names = {poi.name for poi in pois}
+    long = (way if way.distance > 0 else replace(way, distance=1) for way in scenario.connections)
     ways = {
-        way.directions[0] if way.one_way else frozenset((way.a, way.b)): replace(way, distance=max(way.distance, 1))
-        for way in scenario.connections
+        way.directions[0] if way.one_way else frozenset((way.a, way.b)): way
+        for way in long
         if way.a != way.b and {way.a, way.b} <= names
     }
     agents = tuple(agent for agent in scenario.agents if agent.location.name in names)

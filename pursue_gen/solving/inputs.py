@@ -10,7 +10,7 @@ from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
 from pursue_gen.files import read_text
 from pursue_gen.language.checks import check_reading
-from pursue_gen.language.parser import read
+from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.assumed_alone import check_assumed_alone
@@ -30,6 +30,11 @@ def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
         reading = read(read_scenario(str(file)), str(file))
     except PursueError as problem:
         return problem.diagnostics
+    return findings_of(reading)
+
+
+def findings_of(reading: Reading) -> Tuple[Diagnostic, ...]:
+    """All errors and warnings of a text that was read, in order."""
     findings = check_reading(reading)
     if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
         return findings

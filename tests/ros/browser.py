@@ -94,10 +94,32 @@ class Browser:
         for kind in ("mousePressed", "mouseReleased"):
             self._call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
-    def key(self, key: str, code: int, text: str = "") -> None:
-        """Presses a key."""
+    def key(self, key: str, code: int, text: str = "", modifiers: int = 0) -> None:
+        """Presses a key; `modifiers`: 2 for Ctrl, 8 for Shift, or their sum."""
+        more = {"windowsVirtualKeyCode": code, "text": text, "modifiers": modifiers}
         for kind in ("keyDown", "keyUp"):
-            self._call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code, text=text)
+            self._call("Input.dispatchKeyEvent", type=kind, key=key, code=key, **more)
+
+    def write(self, text: str) -> None:
+        """Types a text where the cursor is."""
+        self._call("Input.insertText", text=text)
+
+    def press(self, x: float, y: float, *to: float) -> None:
+        """Presses the left button at a point of the window; holds it while going to another one (`to`: x, y)."""
+        self._call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, button="left", clickCount=1)
+        if to:
+            for part in (0.3, 0.7, 1.0):
+                x_, y_ = x + part * (to[0] - x), y + part * (to[1] - y)
+                self._call("Input.dispatchMouseEvent", type="mouseMoved", x=x_, y=y_, button="left", buttons=1)
+        x, y = to or (x, y)
+        self._call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+
+    def touch(self, *paths: List[List[float]]) -> None:
+        """Fingers, each along a path of points [x, y] of the same length, all at once."""
+        for step in range(len(paths[0])):
+            points = [{"x": path[step][0], "y": path[step][1], "id": k} for k, path in enumerate(paths)]
+            self._call("Input.dispatchTouchEvent", type="touchMove" if step else "touchStart", touchPoints=points)
+        self._call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
     # What they see ----------------------------------------------------------------------------------------------------
 
@@ -165,6 +187,9 @@ class Browser:
                 assert "error" not in heard, (message, heard)
                 result: Dict[str, Any] = heard["result"]
                 return result
+            if heard.get("method") == "Page.javascriptDialogOpening":  # whoever leaves a page leaves it all the same
+                leave = {"id": 0, "method": "Page.handleJavaScriptDialog", "params": {"accept": True}}
+                await self._socket.write_message(json.dumps({**leave, "sessionId": self._session}))
             if heard.get("method") == "Runtime.exceptionThrown":
                 self.complaints.append(str(heard["params"]["exceptionDetails"]))
             if heard.get("method") == "Log.entryAdded" and heard["params"]["entry"]["source"] != "network":

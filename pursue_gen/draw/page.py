@@ -1,0 +1,105 @@
+"""Answers what the page asks for, without HTTP: views and changes of a text, saving, solving."""
+
+from __future__ import annotations
+
+import base64
+import threading
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, Optional
+
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.draw import storage
+from pursue_gen.draw.jobs import Jobs
+from pursue_gen.draw.operations import ANYBODY, change
+from pursue_gen.draw.view import forms, view
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.ground import Ground
+from pursue_gen.language.syntax import MOST_LETTERS
+from pursue_gen.lsp.positions import plain
+
+Answer = Dict[str, Any]
+
+
+class DrawPage:
+    """A scenario that is being drawn. Its requests may come from several threads at once."""
+
+    def __init__(
+        self, stored: storage.Stored, text: str, floor: Optional[Floor], jobs: Jobs, ground: Optional[Ground] = None
+    ) -> None:
+        """`text`: what the page begins with; `floor`: what lies under the picture; `ground`: where places can stand."""
+        self._stored, self._text, self._floor, self._ground, self.jobs = stored, text, floor, ground, jobs
+        self._lock = threading.Lock()
+
+    @property
+    def picture(self) -> Optional[bytes]:
+        """The floor plan as PNG."""
+        return None if self._floor is None else base64.b64decode(self._floor.uri.partition(",")[2])
+
+    def answer(self, request: str, body: Mapping[str, Any]) -> Answer:
+        """The answer to a request; {"refused": …} where it cannot be met, with the reason in words."""
+        known: Mapping[str, Callable[[Mapping[str, Any]], Answer]] = {
+            "open": self._open,
+            "view": lambda values: {"view": self._view(_text(values))},
+            "change": self._change,
+            "save": self._save,
+            "solve": lambda values: self.jobs.start(_text(values)),
+            "job": lambda values: self.jobs.state(),
+            "cancel": lambda values: self.jobs.cancel(),
+        }
+        try:
+            if request not in known:
+                raise _bad("this is not known here", "load the page again")
+            return known[request](body)
+        except PursueError as problem:
+            first = problem.diagnostics[0]
+            return {"refused": first.message, "hint": first.hint, "code": first.code}
+
+    def _open(self, _: Mapping[str, Any]) -> Answer:
+        """What a page that is loaded begins with: the text that was last saved or opened."""
+        with self._lock:
+            text, stored = self._text, self._stored
+        floor = self._floor
+        plan = None if floor is None else {
+            "width": floor.width * floor.resolution, "height": floor.height * floor.resolution,
+            "x": floor.x, "y": floor.y, "yaw": floor.yaw,
+        }  # fmt: skip
+        about = {"file": stored.file.name, "new": stored.content is None, "floor": plan}
+        return {"text": text, **about, "forms": forms(), "anybody": list(ANYBODY), "view": self._view(text)}
+
+    def _view(self, text: str) -> Answer:
+        return view(text, self._stored.file.name, self._ground)
+
+    def _change(self, values: Mapping[str, Any]) -> Answer:
+        """The text after an operation, and how it looks."""
+        done = change(_text(values), values.get("operation"), self._stored.file.name)
+        return {"text": done.text, "statement": done.statement, "view": self._view(done.text)}
+
+    def _save(self, values: Mapping[str, Any]) -> Answer:
+        """Saves the text; where the file has changed meanwhile, only with `overwrite`."""
+        text = _text(values)
+        with self._lock:
+            if not values.get("overwrite") and not storage.is_unchanged(self._stored):
+                hint = "save over it, or keep your text and start pursue-gen draw again, which reads the file"
+                message = f"{self._stored.file.name} has changed since it was read or saved here"
+                raise PursueError([error("DRW003", message, hint=hint)])
+            self._stored = storage.saved(self._stored, text)
+            self._text = text
+        return {"saved": self._stored.file.name}
+
+
+def _text(values: Mapping[str, Any]) -> str:
+    text = values.get("text")
+    if not isinstance(text, str) or len(text) > MOST_LETTERS + 1:
+        raise _bad(f"the page sent no text of at most {MOST_LETTERS:,} letters", "make it shorter")
+    return plain(text)
+
+
+def _bad(message: str, hint: str) -> PursueError:
+    return PursueError([error("DRW001", message, hint=hint)])
+
+
+def file_for(scenario: Optional[Path], floor: Optional[Path]) -> Path:
+    """The scenario's file, where none is named: called like the map, in the present folder."""
+    from pursue_gen.language.usable import fitting
+
+    return scenario or Path(f"{fitting(floor.stem) if floor is not None else 'my_floor'}.pur")

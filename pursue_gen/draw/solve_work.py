@@ -1,0 +1,105 @@
+"""What the process beside the page does: solves a text, and sends the verdict, then a page about it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import List, Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
+from pursue_gen.report.make import ReportOptions, lost_report, won_report
+from pursue_gen.report.whole import report_page
+from pursue_gen.solving.inputs import game_of, settled
+from pursue_gen.solving.optional import Promised, promised_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import IDEAL
+from pursue_gen.solving.solution import is_lost
+from pursue_gen.solving.solvers import solved
+from pursue_gen.synthesis.limits import Limits, Progress, is_undecided
+
+WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
+_INTERVAL = 0.3
+"""Seconds from one word on the progress to the next."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """A text to solve; `file`: what messages call it, `floor`: the map under pictures; limits in seconds and MiB."""
+
+    text: str
+    file: str
+    floor: Optional[Path]
+    seconds: float
+    memory: int
+
+
+def work(given: Work, end: Connection) -> None:
+    """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
+    try:
+        _solve(given, end)
+    except PursueError as problem:
+        end.send({"verdict": ERRORS, "lines": _sentences(problem)})
+    except BrokenPipeError:  # the page has gone
+        pass
+    except Exception as problem:  # what is wrong in the program must not look like a verdict
+        end.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
+
+
+def _solve(given: Work, end: Connection) -> None:
+    reading = read(given.text, given.file)
+    scenario = without_errors(reading.scenario, check_reading(reading))
+    floor = None if given.floor is None else read_floor(given.floor)
+    limits, start = Limits(given.seconds, given.memory), time.monotonic()
+    last = [0.0]
+
+    def progress(far: Progress) -> None:
+        if time.monotonic() - last[0] > _INTERVAL:
+            last[0] = time.monotonic()
+            end.send({"progress": f"{far.phase}: {far.states} states, {far.waiting} waiting, {far.memory} MiB"})
+
+    request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
+    scenario = settled(scenario, request, progress)
+    try:
+        found = promised_of(scenario, request, progress)
+    except PursueError as problem:
+        if not is_lost(problem) and not is_undecided(problem):
+            raise
+        end.send({"verdict": LOST if is_lost(problem) else UNDECIDED, "lines": _sentences(problem)})
+        end.send({"progress": "looking for what would change that"})
+        lost = lost_report(scenario, problem, limits.since(start), progress, floor)
+        end.send({"page": report_page(lost)})
+        return
+    end.send({"verdict": WON, "lines": _promise(found)})
+    end.send({"progress": "making the pictures"})
+    end.send({"page": _won_page(found, request, floor)})
+
+
+def _won_page(found: Promised, request: SolveRequest, floor: Optional[Floor]) -> str:
+    """The report: the strategy, a mission in time and on the map, what each controller does."""
+    ideal = solved(*game_of(found.scenario), IDEAL, replace(request.options, progress=None))
+    both = found.solution, ideal
+    report = won_report(found.scenario, both, ReportOptions(floor=floor), request.options.limits)
+    return report_page(report)
+
+
+def _promise(found: Promised) -> List[str]:
+    """What is guaranteed, in sentences."""
+    scenario: Scenario = found.scenario
+    lines = objective_words(scenario)
+    if found.solution.guarantee is not None:
+        lines += [found.solution.guarantee.in_words()]
+    lines += [*periods_found(scenario), *(f"{sentence}." for sentence in promise_words(scenario))]
+    assumed = condition_of_promise(scenario)
+    return [*lines, f"This holds {assumed}."] if assumed else lines
+
+
+def _sentences(problem: PursueError) -> List[str]:
+    return [f"{one.message} ({one.hint})" if one.hint else one.message for one in problem.diagnostics]

@@ -1,0 +1,115 @@
+// What is selected, as a form: each field that is changed changes the text.
+import { button, byId, field, html, shown, tick } from "./elements.js";
+import { change, selected, state } from "./state.js";
+
+const KINDS = [["robot", "a robot"], ["person", "a person who follows instructions"], ["free", "does as it likes"]];
+const form = byId("inspector");
+const NOUNS = { place: "POI", agent: "agent", event: "event" };
+
+export function inspect() {
+  const one = selected();
+  const focused = form.contains(document.activeElement) ? document.activeElement.id : null;
+  form.replaceChildren();
+  if (!one) return;
+  const { title, fields, more } = { place, way, agent, event, other }[one.kind](one.thing);
+  const away = button("Delete", () => change({ do: "delete", statement: one.thing.statement }), { class: "danger", id: "delete" });
+  form.append(html("h2", {}, title), html("div", { class: "fields" }, ...fields), html("p", { class: "row" }, ...more, away));
+  const again = focused && byId(focused);
+  if (again) again.focus();
+}
+
+function set(thing, name) {
+  return (value) => change({ do: "set", statement: thing.statement, fields: { [name]: value } });
+}
+
+function named(kind, thing) {
+  const rename = (value) => change({ do: "rename", kind: NOUNS[kind], name: thing.name, new: value.trim() });
+  return [
+    field("field-name", "name", thing.name, rename, { spellcheck: "false", maxlength: 60 }),
+    field("field-label", "label (what people read)", thing.label, set(thing, "label"), { maxlength: 60 }),
+  ];
+}
+
+const places = () => state.view.places.map((one) => [one.name, shown(one)]);
+const number = { type: "number", step: "any" };
+
+function place(thing) {
+  const move = (part) => (value) =>
+    change(() => {
+      const now = state.view.places.find((each) => each.name === thing.name);
+      return now && { do: "move place", name: now.name, x: now.x, y: now.y, [part]: Number(value) };
+    });
+  const fields = [
+    ...named("place", thing),
+    field("field-x", "x in metres", thing.x, move("x"), number),
+    field("field-y", "y in metres", thing.y, move("y"), number),
+    field("field-yaw", "looks to, in degrees from x", thing.yaw, move("yaw"), number),
+  ];
+  const others = places().filter(([name]) => name !== thing.name);
+  const to = field("field-to", "a way to", "", (value) => value && change({ do: "connect", a: thing.name, b: value }), {
+    options: [["", "choose …"], ...others],
+  });
+  const more = [
+    button("Agent here", () => change({ do: "add agent", location: thing.name }), { id: "agent-here" }),
+    button("Event here", () => change({ do: "add event", location: thing.name }), { id: "event-here" }),
+  ];
+  return { title: `Place ${shown(thing)}`, fields: [...fields, to], more };
+}
+
+function way(thing) {
+  const fields = [
+    field("field-distance", "distance", thing.distance, set(thing, "distance"), { inputmode: "decimal" }),
+    tick("field-one_way", `from ${thing.a} to ${thing.b} only`, thing.one_way, set(thing, "one_way")),
+    field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
+  ];
+  return { title: `Way between ${thing.a} and ${thing.b}`, fields, more: [] };
+}
+
+// Ticks for the events in one of an agent's lists; an event that is ticked comes last.
+function list(thing, name, words, events) {
+  const ticks = events.map((one) => {
+    const write = (on) =>
+      change(() => {
+        const now = state.view.agents.find((each) => each.name === thing.name);
+        const others = now && now[name].filter((each) => each !== one.name);
+        return now && { do: "set", statement: now.statement, fields: { [name]: on ? [...others, one.name] : others } };
+      });
+    return tick(`${name}-${one.name}`, shown(one), thing[name].includes(one.name), write);
+  });
+  if (!ticks.length) return [];
+  return [html("fieldset", { class: "wide row" }, html("legend", {}, words), ...ticks)];
+}
+
+function agent(thing) {
+  const fields = [
+    ...named("agent", thing),
+    field("field-kind", "is", thing.kind, set(thing, "kind"), { options: KINDS }),
+    field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
+    field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
+    ...list(thing, "can_do", "can do", state.view.events),
+    ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
+  ];
+  return { title: `Agent ${shown(thing)}`, fields, more: [] };
+}
+
+function event(thing) {
+  const fields = [
+    ...named("event", thing),
+    field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
+    field("field-duration", "duration (3, or 3 to 5; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
+    field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
+    tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
+    tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),
+    field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
+  ];
+  return { title: `Event ${shown(thing)}`, fields, more: [] };
+}
+
+function other(thing) {
+  const write = (words) => change({ do: "restate", statement: thing.statement, words });
+  const words = field("field-words", "words", thing.words, write, { wide: true, spellcheck: "false" });
+  const note = html("p", { class: "quiet wide" }, "There is a comment in it: change it in the text.");
+  return { title: "Statement", fields: [thing.single ? words : note], more: [] };
+}
+
+form.addEventListener("submit", (submitted) => submitted.preventDefault());

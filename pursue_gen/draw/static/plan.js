@@ -1,0 +1,175 @@
+// The picture: the floor plan or a grid, ways, places with who starts and what happens there.
+import { camera, corners, fit, size, toMap, toScreen } from "./camera.js";
+import { byId, shown, svg } from "./elements.js";
+import { Taken, width } from "./labels.js";
+import { isSelected, state } from "./state.js";
+
+const ROW = 17;
+const plan = byId("plan");
+export const pending = { from: null, to: null }; // a way that is being drawn: from a place to a point of the window
+let fitted = false;
+
+export function placeNamed(name) {
+  return state.view.places.find((one) => one.name === name) || null;
+}
+
+export function fitAll() {
+  const points = state.view.places.map((one) => ({ x: one.x, y: one.y }));
+  fit([...points, ...corners(state.opened.floor)]);
+  fitted = points.length > 0 || state.opened.floor !== null;
+}
+
+export function draw() {
+  if (!fitted) fitAll();
+  const focused = document.activeElement;
+  const key = plan.contains(focused) && focused !== plan ? focused.dataset.key : null;
+  const at = new Map(state.view.places.map((one) => [one.name, toScreen(one.x, one.y)]));
+  const ways = state.view.ways.filter((way) => at.has(way.a) && at.has(way.b));
+  const taken = new Taken(ways.map((way) => ({ a: at.get(way.a), b: at.get(way.b) })));
+  for (const point of at.values()) taken.add({ x: point.x - 13, y: point.y - 13, w: 26, h: 26 });
+  const names = state.view.places.map((place) => namesOf(place, at.get(place.name), taken));
+  const lengths = ways.map((way) => lengthOf(way, ends(way, at), taken));
+  plan.replaceChildren(
+    ...ground(),
+    ...ways.map((way) => drawnWay(way, ends(way, at))),
+    ...rubber(at),
+    ...state.view.places.map((place) => drawnPlace(place, at.get(place.name))),
+    ...lengths.filter((one) => one !== null),
+    ...names,
+  );
+  const again = key && plan.querySelector(`[data-key="${CSS.escape(key)}"]`);
+  if (again) again.focus();
+}
+
+// The ground -------------------------------------------------------------------------------------------------------
+
+function ground() {
+  const floor = state.opened.floor;
+  return floor ? [drawnFloor(floor)] : grid();
+}
+
+function drawnFloor(floor) {
+  const corner = toScreen(floor.x, floor.y);
+  const turn = `rotate(${(-floor.yaw * 180) / Math.PI})`;
+  const height = floor.height * camera.scale;
+  const image = { href: "floor.png", x: 0, y: -height, width: floor.width * camera.scale, height };
+  const transform = `translate(${corner.x} ${corner.y}) ${turn}`;
+  return svg("g", { transform }, svg("image", { ...image, preserveAspectRatio: "none" }));
+}
+
+function grid() {
+  const { width: across, height, left, top } = size();
+  const step = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((one) => one * camera.scale >= 40) || 1000;
+  const [low, high] = [toMap(left, top + height), toMap(left + across, top)];
+  const lines = [];
+  for (let x = Math.ceil(low.x / step) * step; x <= high.x; x += step) {
+    const at = toScreen(x, 0).x;
+    lines.push(svg("line", { class: Math.abs(x) < step / 2 ? "axis" : "grid", x1: at, x2: at, y1: 0, y2: height }));
+  }
+  for (let y = Math.ceil(low.y / step) * step; y <= high.y; y += step) {
+    const at = toScreen(0, y).y;
+    lines.push(svg("line", { class: Math.abs(y) < step / 2 ? "axis" : "grid", x1: 0, x2: across, y1: at, y2: at }));
+  }
+  const words = svg("text", { class: "small", x: 8, y: height - 10 }, `${step} m from line to line`);
+  return [...lines, words];
+}
+
+// Ways -------------------------------------------------------------------------------------------------------------
+
+// Where a way begins and ends; ways that can be taken in one direction are beside each other.
+function ends(way, at) {
+  const [a, b] = [at.get(way.a), at.get(way.b)];
+  const apart = Math.hypot(b.x - a.x, b.y - a.y);
+  if (!way.one_way || !apart) return [a, b];
+  const [dx, dy] = [(5 * (b.y - a.y)) / apart, (-5 * (b.x - a.x)) / apart];
+  return [{ x: a.x - dx, y: a.y - dy }, { x: b.x - dx, y: b.y - dy }];
+}
+
+function drawnWay(way, [a, b]) {
+  const key = `${way.a} ${way.b} ${way.one_way}`;
+  const line = { x1: a.x, y1: a.y, x2: b.x, y2: b.y };
+  const words = `way from ${way.a} to ${way.b}, ${way.distance} long${way.one_way ? ", one way" : ""}`;
+  const group = svg(
+    "g",
+    { class: `way${isSelected("way", key) ? " selected" : ""}`, "data-key": key, tabindex: 0, role: "button", "aria-label": words },
+    svg("line", { class: "hit", ...line }),
+    svg("line", { class: `line${way.only_if ? " conditional" : ""}`, ...line }),
+  );
+  if (way.one_way) group.append(arrow(a, b));
+  return group;
+}
+
+function arrow(a, b) {
+  const apart = Math.hypot(b.x - a.x, b.y - a.y) || 1;
+  const [dx, dy] = [(b.x - a.x) / apart, (b.y - a.y) / apart];
+  const tip = { x: b.x - 15 * dx, y: b.y - 15 * dy };
+  const back = { x: tip.x - 15 * dx, y: tip.y - 15 * dy };
+  const points = [tip, { x: back.x + 8 * dy, y: back.y - 8 * dx }, { x: back.x - 8 * dy, y: back.y + 8 * dx }];
+  return svg("polygon", { class: "head", points: points.map((one) => `${one.x},${one.y}`).join(" ") });
+}
+
+function lengthOf(way, [a, b], taken) {
+  const words = `${way.distance}${way.only_if ? " ?" : ""}`;
+  const box = taken.on(a, b, width(words, false) + 8, ROW);
+  return box && svg("g", { class: "label" }, halo(box), svg("text", { class: "small", x: box.x + 4, y: box.y + 13 }, words));
+}
+
+function rubber(at) {
+  const from = pending.from && at.get(pending.from);
+  if (!from || !pending.to) return [];
+  const { left, top } = size();
+  const [x2, y2] = [pending.to.x - left, pending.to.y - top];
+  return [svg("line", { class: "rubber", x1: from.x, y1: from.y, x2, y2 })];
+}
+
+// Places -----------------------------------------------------------------------------------------------------------
+
+function drawnPlace(place, at) {
+  const turn = (-place.yaw * Math.PI) / 180;
+  const look = { class: "heading", x1: at.x, y1: at.y, x2: at.x + 16 * Math.cos(turn), y2: at.y + 16 * Math.sin(turn) };
+  const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun"];
+  const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}`;
+  const spots = place.spots.map((spot) => {
+    const beside = toScreen(spot.x, spot.y);
+    return svg("circle", { class: "spot", cx: beside.x, cy: beside.y, r: 5 });
+  });
+  return svg(
+    "g",
+    { class: kinds.filter(Boolean).join(" "), "data-key": place.name, tabindex: 0, role: "button", "aria-label": words },
+    ...spots,
+    svg("circle", { class: "reach", cx: at.x, cy: at.y, r: 22 }),
+    svg("line", look),
+    svg("circle", { class: "dot", cx: at.x, cy: at.y, r: 9 }),
+  );
+}
+
+// The name of a place, under it who starts there and what happens there.
+function namesOf(place, at, taken) {
+  const agents = state.view.agents.filter((one) => one.location === place.name);
+  const events = state.view.events.filter((one) => one.location === place.name);
+  const lasts = (one) => (one.duration ? ` (${one.duration})` : "");
+  const rows = [
+    { words: shown(place), kind: "name", indent: 0 },
+    ...agents.map((one) => ({ words: shown(one), kind: "agent", indent: 18, mark: one.mark })),
+    ...events.map((one) => ({ words: `⚙ ${shown(one)}${lasts(one)}`, kind: "small", indent: 0 })),
+  ];
+  const across = Math.max(...rows.map((row) => width(row.words, row.kind === "name") + row.indent)) + 10;
+  const box = taken.beside(at.x, at.y, across, rows.length * ROW + 4, 15);
+  const group = svg("g", { class: "label" });
+  if (box.far) group.append(svg("line", { class: "leader", x1: at.x, y1: at.y, x2: box.x + box.w / 2, y2: box.y + box.h / 2 }));
+  group.append(halo(box));
+  rows.forEach((row, number) => {
+    const y = box.y + 14 + number * ROW;
+    group.append(svg("text", { class: row.kind, x: box.x + 5 + row.indent, y }, row.words));
+    if (row.mark) {
+      const mark = svg("g", { transform: `translate(${box.x + 12} ${y - 4})` });
+      mark.innerHTML = row.mark; // a shape and a colour, made by the server of nothing that a person wrote
+      group.append(mark);
+    }
+  });
+  return group;
+}
+
+function halo(box) {
+  return svg("rect", { class: "halo", x: box.x, y: box.y, width: box.w, height: box.h, rx: 4 });
+}

@@ -1,0 +1,47 @@
+// Solving: how far it is, the verdict, and the report.
+import { byId, html } from "./elements.js";
+import { ask, refusal, say, state } from "./state.js";
+
+const OUTCOMES = {
+  won: "Won: it can be met, whatever the others do. The strategy is proven.",
+  lost: "Lost: it cannot be met.",
+  undecided: "Not decided.",
+  errors: "The text has errors.",
+};
+let solved = null; // the text that the verdict is about
+let shown = 0; // the job whose report is shown
+
+export function outdated() {
+  byId("outdated").hidden = solved === null || solved === state.text;
+}
+
+export async function solve() {
+  solved = state.text;
+  byId("verdict").hidden = false;
+  byId("report").hidden = true;
+  byId("report").removeAttribute("src");
+  outdated();
+  report(await ask("solve", { text: solved }));
+  byId("verdict").scrollIntoView({ block: "nearest" });
+}
+
+export async function cancel() {
+  report(await ask("cancel"));
+}
+
+function report(answer) {
+  if (answer.refused) return say(refusal(answer), true);
+  const running = answer.state === "running";
+  byId("cancel").hidden = !running;
+  const going = running ? `${answer.progress || "solving"} … ${answer.seconds} s` : "";
+  const outcome = answer.verdict ? OUTCOMES[answer.verdict] : answer.state === "cancelled" ? "Cancelled." : "";
+  byId("outcome").textContent = [outcome, going].filter(Boolean).join(" ");
+  byId("outcome").dataset.verdict = answer.verdict || (running ? "" : answer.state);
+  byId("sentences").replaceChildren(...(answer.lines || []).map((line) => html("li", {}, line)));
+  if (answer.report && shown !== answer.job) {
+    shown = answer.job;
+    byId("report").src = `report.html?job=${answer.job}`;
+    byId("report").hidden = false;
+  }
+  if (running) setTimeout(async () => report(await ask("job")), 300);
+}

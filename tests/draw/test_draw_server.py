@@ -1,0 +1,239 @@
+"""The page's server: for this machine and this page alone, with one file; no request ends in a fault."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import socket
+import stat
+import threading
+from pathlib import Path
+from typing import Any, Dict, Iterator, Optional, Tuple
+
+import pytest
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.draw import storage
+from pursue_gen.draw.jobs import Jobs
+from pursue_gen.draw.page import DrawPage, file_for
+from pursue_gen.draw.server import MOST_BYTES, DrawServer
+from pursue_gen.drawing.floor import read_floor
+from tests.conftest import thesis_scenario
+from tests.waiting import PATIENCE, until
+
+TEXT = 'poi "a" //[0, 0, 0, 0, 0, 0, 1]\n'
+WON = """poi "a"
+poi "b"
+connect a and b distance 2
+event "work" location b
+agent "bot" controllable mobile 1 location a can_do work
+reach_objective: do work
+"""
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[DrawServer]:
+    file = tmp_path / "floor.pur"
+    file.write_text(TEXT, encoding="utf-8")
+    jobs = Jobs(file.name, None, 600, 4096)
+    stored, text = storage.opened(file)
+    with DrawServer(DrawPage(stored, text, None, jobs)) as server:
+        threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
+        yield server
+        server.shutdown()
+    jobs.close()
+
+
+def request(
+    server: DrawServer, method: str, path: str, body: Optional[bytes] = None, **headers: str
+) -> Tuple[int, Dict[str, str], bytes]:
+    """Status, headers and body of an answer; headers as from the page itself unless others are given."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=PATIENCE)
+    usual = {"Origin": f"http://{server.hosts[0]}", "Content-Type": "application/json"}
+    given = {name.replace("_", "-"): value for name, value in headers.items()}
+    connection.request(method, path, body, {name: value for name, value in {**usual, **given}.items() if value})
+    answer = connection.getresponse()
+    found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read()
+    connection.close()
+    return found
+
+
+def asked(server: DrawServer, name: str, **body: Any) -> Any:
+    status, _, answer = request(server, "POST", f"/{server.token}/{name}", json.dumps(body).encode())
+    assert status == 200, answer
+    return json.loads(answer)
+
+
+def test_the_page_needs_nothing_from_elsewhere(served: DrawServer) -> None:
+    status, headers, body = request(served, "GET", f"/{served.token}/")
+    assert status == 200 and headers["content-type"] == "text/html; charset=utf-8"
+    assert headers["content-security-policy"].startswith("default-src 'none'; script-src 'self';")
+    assert len(served.files) > 8
+    for name in served.files:
+        status, headers, body = request(served, "GET", f"/{served.token}/{name}")
+        assert status == 200 and b"https://" not in body
+        assert b"http://" not in body.replace(b"http://www.w3.org/2000/svg", b""), name
+        assert headers["x-content-type-options"] == "nosniff" and headers["cache-control"] == "no-store"
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "headers", "status"),
+    [
+        ("GET", "/", {}, 403),
+        ("GET", "/wrong/", {}, 403),
+        ("GET", "/{token}", {}, 403),
+        ("GET", "/{token}/nothing.js", {}, 404),
+        ("GET", "/{token}/../server.py", {}, 404),
+        ("GET", "/{token}/floor.png", {}, 404),
+        ("GET", "/{token}/", {"Host": "elsewhere.example:80"}, 403),
+        ("POST", "/wrong/save", {}, 403),
+        ("POST", "/{token}/save", {"Host": "elsewhere.example"}, 403),
+        ("POST", "/{token}/save", {"Origin": "http://elsewhere.example"}, 403),
+        ("POST", "/{token}/save", {"Origin": ""}, 403),
+        ("POST", "/{token}/save", {"Content_Type": "text/plain"}, 415),
+        ("POST", "/{token}/save", {"Content_Length": str(MOST_BYTES + 1)}, 413),
+        ("POST", "/{token}/save", {"Content_Length": "-1"}, 411),
+        ("POST", "/{token}/save", {"Transfer_Encoding": "chunked"}, 411),
+        ("PUT", "/{token}/save", {}, 501),
+    ],
+)
+def test_others_are_refused(served: DrawServer, method: str, path: str, headers: Dict[str, str], status: int) -> None:
+    body = b'{"text": "", "overwrite": true}' if method != "GET" else None
+    assert request(served, method, path.format(token=served.token), body, **headers)[0] == status
+    assert served.page._stored.file.read_text() == TEXT
+
+
+@pytest.mark.parametrize("body", [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"text": NaN}'])
+def test_what_cannot_be_understood_is_refused(served: DrawServer, body: bytes) -> None:
+    status, _, answer = request(served, "POST", f"/{served.token}/view", body)
+    assert status == 400 or "refused" in json.loads(answer)
+
+
+def test_what_is_missing_or_not_known_is_refused_with_a_reason(served: DrawServer) -> None:
+    assert asked(served, "fly")["code"] == "DRW001"
+    assert asked(served, "view")["refused"].startswith("the page sent no text")
+    assert asked(served, "change", text="", operation={"do": "fly"})["code"] == "DRW001"
+    assert asked(served, "change", text="poi a\n", operation={"do": "format"})["code"] == "DRW002"
+
+
+def test_a_text_is_opened_shown_and_changed(served: DrawServer) -> None:
+    opened = asked(served, "open")
+    assert (opened["text"], opened["file"], opened["new"]) == (TEXT, "floor.pur", False)
+    done = asked(served, "change", text=TEXT, operation={"do": "add place", "x": 3, "y": 4})
+    assert done["statement"] == 1 and done["view"]["places"][1]["x"] == 3
+    codes = [finding["code"] for finding in asked(served, "view", text=TEXT)["view"]["findings"]]
+    assert codes == ["PML130", "PML171"]
+
+
+def test_any_text_can_be_shown(served: DrawServer) -> None:
+    texts = ["\0", "poi", 'poi "a', "/*", "\ud800", 'poi "a" //[', "connect a and a distance 0", "agent", "\r\n"]
+    for text in [*texts, 'agent agent "x" location', "event event", "é\U0001f600" * 5 + "?"]:
+        assert "view" in asked(served, "view", text=text)
+
+
+def test_offsets_of_findings_are_those_of_javascript(served: DrawServer) -> None:
+    (finding, *_) = asked(served, "view", text="/* \U0001f600 */ poi missing\n")["view"]["findings"]
+    assert (finding["start"], finding["end"]) == (13, 20)
+
+
+def test_saving_writes_the_file_and_keeps_its_mode(served: DrawServer) -> None:
+    file = served.page._stored.file
+    file.chmod(0o640)
+    assert asked(served, "save", text=TEXT + "// é\n") == {"saved": "floor.pur"}
+    assert file.read_text(encoding="utf-8") == TEXT + "// é\n"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o640
+    assert asked(served, "save", text=TEXT) == {"saved": "floor.pur"}
+    assert asked(served, "open")["text"] == TEXT
+
+
+def test_a_file_that_has_changed_meanwhile_is_replaced_only_where_that_is_wanted(served: DrawServer) -> None:
+    file = served.page._stored.file
+    file.write_text("// another hand\n")
+    assert asked(served, "save", text="// mine\n")["code"] == "DRW003"
+    assert file.read_text() == "// another hand\n"
+    assert asked(served, "save", text="// mine\n", overwrite=True) == {"saved": "floor.pur"}
+    file.unlink()
+    assert asked(served, "save", text="// mine\n")["code"] == "DRW003"
+    assert not file.exists()
+
+
+def test_nothing_is_written_through_a_link(served: DrawServer, tmp_path: Path) -> None:
+    file, target = served.page._stored.file, tmp_path / "target.pur"
+    target.write_text(TEXT)
+    file.unlink()
+    file.symlink_to(target)
+    assert "is a link" in asked(served, "save", text="")["refused"]
+    assert target.read_text() == TEXT
+    with pytest.raises(PursueError):
+        storage.opened(file)
+
+
+def test_a_new_file_is_written_with_the_first_save(tmp_path: Path) -> None:
+    stored = storage.started(tmp_path / "new.pur", force=False)
+    page = DrawPage(stored, "", None, Jobs("new.pur", None, 600, 4096))
+    assert page.answer("open", {})["new"] is True
+    assert not stored.file.exists()
+    assert page.answer("save", {"text": TEXT}) == {"saved": "new.pur"}
+    assert stored.file.read_text() == TEXT
+
+
+def test_a_file_that_is_there_is_not_begun_anew_without_force(tmp_path: Path) -> None:
+    file = tmp_path / "map.pur"
+    file.write_text(TEXT)
+    with pytest.raises(PursueError) as caught:
+        storage.started(file, force=False)
+    assert f"pursue-gen draw {file}" in caught.value.diagnostics[0].hint
+    assert storage.started(file, force=True).content == TEXT.encode()
+
+
+def test_what_cannot_be_opened_is_named(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.pur")
+    for path in (tmp_path, tmp_path / "no" / "a.pur", tmp_path / "pipe.pur"):
+        with pytest.raises(PursueError) as caught:
+            storage.opened(path)
+        assert caught.value.exit_status == 2 and str(path) in caught.value.diagnostics[0].message
+
+
+def test_a_port_that_is_in_use_is_an_error_with_a_way_out(served: DrawServer) -> None:
+    with pytest.raises(PursueError) as caught:
+        DrawServer(served.page, served.server_address[1])
+    assert caught.value.exit_status == 2 and "--port" in caught.value.diagnostics[0].hint
+
+
+def test_a_scenario_without_a_name_is_called_like_the_map() -> None:
+    assert file_for(None, Path("maps/2nd floor.yaml")) == Path("n_2nd_floor.pur")
+    assert file_for(None, None) == Path("my_floor.pur")
+    assert file_for(Path("a.pur"), Path("map.yaml")) == Path("a.pur")
+
+
+def test_the_floor_plan_lies_under_the_picture_where_its_origin_and_its_turn_say(tmp_path: Path) -> None:
+    (tmp_path / "map.pgm").write_bytes(b"P5\n20 10\n255\n" + bytes([254]) * 200)
+    (tmp_path / "map.yaml").write_text("image: map.pgm\nresolution: 0.5\norigin: [-2, 1, 0.5]\n")
+    floor = read_floor(tmp_path / "map.yaml")
+    page = DrawPage(storage.started(tmp_path / "a.pur", False), "", floor, Jobs("a.pur", None, 600, 4096))
+    assert page.answer("open", {})["floor"] == {"width": 10, "height": 5, "x": -2, "y": 1, "yaw": 0.5}
+    assert page.picture is not None and page.picture.startswith(b"\x89PNG")
+    text = WON.replace('poi "a"', 'poi "a" //[0, 3, 0, 0, 0, 0, 1]').replace('"b"', '"b" //[99, 0, 0, 0, 0, 0, 1]')
+    found = page.answer("view", {"text": text})["view"]["findings"]
+    assert "WSP008" in [one["code"] for one in found]
+
+
+def test_a_text_is_solved_beside_the_page_and_can_be_given_up(served: DrawServer) -> None:
+    assert asked(served, "job")["state"] == "none"
+    asked(served, "solve", text=WON)
+    until(lambda: asked(served, "job").get("report"), "the report")
+    done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")
+    assert done["verdict"] == "won" and "work happens." in done["lines"]
+    status, headers, body = request(served, "GET", f"/{served.token}/report.html")
+    assert status == 200 and b"Report on floor" in body and "sandbox" in headers["content-security-policy"]
+    asked(served, "solve", text=thesis_scenario("4").read_text())
+    assert asked(served, "cancel")["state"] == "cancelled"
+    asked(served, "solve", text=WON.replace("can_do work", ""))
+    done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")
+    assert done["verdict"] == "errors" and "nobody can do work" in done["lines"][0]
+
+
+def test_a_connection_that_says_nothing_does_not_keep_others_out(served: DrawServer) -> None:
+    with socket.create_connection(("127.0.0.1", served.server_address[1]), timeout=PATIENCE):
+        assert request(served, "GET", f"/{served.token}/")[0] == 200
