@@ -45,11 +45,14 @@ def draw(
     plan, scenario = _named(files or [])
     floor, ground = (None, None) if plan is None else (read_floor(plan), read_ground(plan))
     file = file_for(scenario, plan)
-    stored, text = storage.opened(file) if scenario is not None else (storage.started(file, force), "")
+    if scenario is None:
+        storage.check_new(file, force)
+    _, version = storage.opened(file)
     jobs = Jobs(file.name, plan, limit, careful_memory())
-    with DrawServer(DrawPage(stored, text, floor, jobs, ground), port) as server:
+    with DrawServer(DrawPage(file, floor, jobs, scenario is None, ground), port) as server:
         print(server.url, flush=True)
-        info(f"{file} is drawn there{'' if text else '; Save writes it'}. Ctrl-C ends the page.")
+        begins = scenario is None or version == storage.NOTHING
+        info(f"{file} is {'begun' if begins else 'drawn'} there; Save writes it. Ctrl-C ends the page.")
         if browser:
             webbrowser.open(server.url)
         try:

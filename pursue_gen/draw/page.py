@@ -24,10 +24,11 @@ class DrawPage:
     """A scenario that is being drawn. Its requests may come from several threads at once."""
 
     def __init__(
-        self, stored: storage.Stored, text: str, floor: Optional[Floor], jobs: Jobs, ground: Optional[Ground] = None
+        self, file: Path, floor: Optional[Floor], jobs: Jobs, anew: bool = False, ground: Optional[Ground] = None
     ) -> None:
-        """`text`: what the page begins with; `floor`: what lies under the picture; `ground`: where places can stand."""
-        self._stored, self._text, self._floor, self._ground, self.jobs = stored, text, floor, ground, jobs
+        """`floor`: what lies under the picture; `anew`: until it is saved, what is in the file does not matter;
+        `ground`: where places can stand."""
+        self.file, self._floor, self.jobs, self._anew, self._ground = file, floor, jobs, anew, ground
         self._lock = threading.Lock()
 
     @property
@@ -55,36 +56,35 @@ class DrawPage:
             return {"refused": first.message, "hint": first.hint, "code": first.code}
 
     def _open(self, _: Mapping[str, Any]) -> Answer:
-        """What a page that is loaded begins with: the text that was last saved or opened."""
-        with self._lock:
-            text, stored = self._text, self._stored
-        floor = self._floor
+        """What a page that is loaded begins with: the text of the file, as it is now."""
+        text, version = storage.opened(self.file)
+        text, floor = "" if self._anew else text, self._floor
         plan = None if floor is None else {
             "width": floor.width * floor.resolution, "height": floor.height * floor.resolution,
             "x": floor.x, "y": floor.y, "yaw": floor.yaw,
         }  # fmt: skip
-        about = {"file": stored.file.name, "new": stored.content is None, "floor": plan}
+        new = self._anew or version == storage.NOTHING
+        about = {"file": self.file.name, "version": version, "new": new, "floor": plan}
         return {"text": text, **about, "forms": forms(), "anybody": list(ANYBODY), "view": self._view(text)}
 
     def _view(self, text: str) -> Answer:
-        return view(text, self._stored.file.name, self._ground)
+        return view(text, self.file.name, self._ground)
 
     def _change(self, values: Mapping[str, Any]) -> Answer:
         """The text after an operation, and how it looks."""
-        done = change(_text(values), values.get("operation"), self._stored.file.name)
+        done = change(_text(values), values.get("operation"), self.file.name)
         return {"text": done.text, "statement": done.statement, "view": self._view(done.text)}
 
     def _save(self, values: Mapping[str, Any]) -> Answer:
-        """Saves the text; where the file has changed meanwhile, only with `overwrite`."""
+        """Saves the text; with `overwrite` also where the file is not of the version any more that the page had."""
         text = _text(values)
         with self._lock:
-            if not values.get("overwrite") and not storage.is_unchanged(self._stored):
-                hint = "save over it, or keep your text and start pursue-gen draw again, which reads the file"
-                message = f"{self._stored.file.name} has changed since it was read or saved here"
+            if not values.get("overwrite") and storage.version(self.file) != values.get("version"):
+                hint = "save over it, or copy your text and load the page again, which reads the file"
+                message = f"{self.file.name} has changed since it was read or saved on this page"
                 raise PursueError([error("DRW003", message, hint=hint)])
-            self._stored = storage.saved(self._stored, text)
-            self._text = text
-        return {"saved": self._stored.file.name}
+            version, self._anew = storage.save(self.file, text), False
+        return {"saved": self.file.name, "version": version}
 
 
 def _text(values: Mapping[str, Any]) -> str:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import threading
 import time
 from dataclasses import dataclass, replace
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import List, Optional
 
@@ -43,6 +46,7 @@ class Work:
 
 def work(given: Work, end: Connection) -> None:
     """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
+    _end_with_parent()
     try:
         _solve(given, end)
     except PursueError as problem:
@@ -51,6 +55,18 @@ def work(given: Work, end: Connection) -> None:
         pass
     except Exception as problem:  # what is wrong in the program must not look like a verdict
         end.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
+
+
+def _end_with_parent() -> None:
+    """Sees to it that this process ends when the server has ended, however that came."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+
+        def watch() -> None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+        threading.Thread(target=watch, daemon=True).start()
 
 
 def _solve(given: Work, end: Connection) -> None:

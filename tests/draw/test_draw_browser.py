@@ -12,7 +12,6 @@ from typing import Any, Iterator, List, Optional
 
 import pytest
 
-from pursue_gen.draw import storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage
 from pursue_gen.draw.server import DrawServer
@@ -51,9 +50,8 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 @contextmanager
 def drawn(there: Browser, file: Path, floor: Optional[Path] = None, width: int = 1400) -> Iterator[Browser]:
     """The page of a scenario's file, open in the browser."""
-    stored, text = storage.opened(file)
     jobs = Jobs(file.name, floor, 600, 4096)
-    with DrawServer(DrawPage(stored, text, None if floor is None else read_floor(floor), jobs)) as server:
+    with DrawServer(DrawPage(file, None if floor is None else read_floor(floor), jobs)) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
         thread.start()
         there.complaints.clear()

@@ -19,7 +19,8 @@ from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage, file_for
 from pursue_gen.draw.server import MOST_BYTES, DrawServer
 from pursue_gen.drawing.floor import read_floor
-from tests.conftest import thesis_scenario
+from pursue_gen.drawing.ground import read_ground
+from tests.large_scenarios import many_walkers
 from tests.waiting import PATIENCE, until
 
 TEXT = 'poi "a" //[0, 0, 0, 0, 0, 0, 1]\n'
@@ -37,8 +38,7 @@ def served(tmp_path: Path) -> Iterator[DrawServer]:
     file = tmp_path / "floor.pur"
     file.write_text(TEXT, encoding="utf-8")
     jobs = Jobs(file.name, None, 600, 4096)
-    stored, text = storage.opened(file)
-    with DrawServer(DrawPage(stored, text, None, jobs)) as server:
+    with DrawServer(DrawPage(file, None, jobs)) as server:
         threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
         yield server
         server.shutdown()
@@ -63,6 +63,13 @@ def asked(server: DrawServer, name: str, **body: Any) -> Any:
     status, _, answer = request(server, "POST", f"/{server.token}/{name}", json.dumps(body).encode())
     assert status == 200, answer
     return json.loads(answer)
+
+
+def saved(server: DrawServer, text: str, version: str, **more: Any) -> str:
+    """The version of the file after a text was saved."""
+    answer = asked(server, "save", text=text, version=version, **more)
+    assert answer["saved"] == "floor.pur"
+    return str(answer["version"])
 
 
 def test_the_page_needs_nothing_from_elsewhere(served: DrawServer) -> None:
@@ -101,7 +108,7 @@ def test_the_page_needs_nothing_from_elsewhere(served: DrawServer) -> None:
 def test_others_are_refused(served: DrawServer, method: str, path: str, headers: Dict[str, str], status: int) -> None:
     body = b'{"text": "", "overwrite": true}' if method != "GET" else None
     assert request(served, method, path.format(token=served.token), body, **headers)[0] == status
-    assert served.page._stored.file.read_text() == TEXT
+    assert served.page.file.read_text() == TEXT
 
 
 @pytest.mark.parametrize("body", [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"text": NaN}'])
@@ -138,53 +145,67 @@ def test_offsets_of_findings_are_those_of_javascript(served: DrawServer) -> None
 
 
 def test_saving_writes_the_file_and_keeps_its_mode(served: DrawServer) -> None:
-    file = served.page._stored.file
+    file = served.page.file
     file.chmod(0o640)
-    assert asked(served, "save", text=TEXT + "// é\n") == {"saved": "floor.pur"}
+    version = saved(served, TEXT + "// é\n", asked(served, "open")["version"])
     assert file.read_text(encoding="utf-8") == TEXT + "// é\n"
     assert stat.S_IMODE(file.stat().st_mode) == 0o640
-    assert asked(served, "save", text=TEXT) == {"saved": "floor.pur"}
-    assert asked(served, "open")["text"] == TEXT
+    version = saved(served, TEXT, version)
+    assert (asked(served, "open")["text"], asked(served, "open")["version"]) == (TEXT, version)
 
 
 def test_a_file_that_has_changed_meanwhile_is_replaced_only_where_that_is_wanted(served: DrawServer) -> None:
-    file = served.page._stored.file
+    file = served.page.file
+    version = asked(served, "open")["version"]
     file.write_text("// another hand\n")
-    assert asked(served, "save", text="// mine\n")["code"] == "DRW003"
-    assert file.read_text() == "// another hand\n"
-    assert asked(served, "save", text="// mine\n", overwrite=True) == {"saved": "floor.pur"}
+    assert asked(served, "save", text="// mine\n", version=version)["code"] == "DRW003"
+    assert file.read_text() == asked(served, "open")["text"] == "// another hand\n"
+    version = saved(served, "// mine\n", version, overwrite=True)
     file.unlink()
-    assert asked(served, "save", text="// mine\n")["code"] == "DRW003"
+    assert asked(served, "save", text="// mine\n", version=version)["code"] == "DRW003"
     assert not file.exists()
+    saved(served, "// mine\n", storage.NOTHING)
+
+
+def test_two_pages_do_not_replace_what_the_other_one_has_saved(served: DrawServer) -> None:
+    version = asked(served, "open")["version"]
+    saved(served, "// one\n", version)
+    assert asked(served, "save", text="// two\n", version=version)["code"] == "DRW003"
 
 
 def test_nothing_is_written_through_a_link(served: DrawServer, tmp_path: Path) -> None:
-    file, target = served.page._stored.file, tmp_path / "target.pur"
+    file, target = served.page.file, tmp_path / "target.pur"
     target.write_text(TEXT)
     file.unlink()
     file.symlink_to(target)
-    assert "is a link" in asked(served, "save", text="")["refused"]
+    assert "is a link" in asked(served, "save", text="", overwrite=True)["refused"]
+    assert "is a link" in asked(served, "open")["refused"]
     assert target.read_text() == TEXT
     with pytest.raises(PursueError):
         storage.opened(file)
 
 
 def test_a_new_file_is_written_with_the_first_save(tmp_path: Path) -> None:
-    stored = storage.started(tmp_path / "new.pur", force=False)
-    page = DrawPage(stored, "", None, Jobs("new.pur", None, 600, 4096))
-    assert page.answer("open", {})["new"] is True
-    assert not stored.file.exists()
-    assert page.answer("save", {"text": TEXT}) == {"saved": "new.pur"}
-    assert stored.file.read_text() == TEXT
+    storage.check_new(tmp_path / "new.pur", force=False)
+    page = DrawPage(tmp_path / "new.pur", None, Jobs("new.pur", None, 600, 4096), anew=True)
+    opened = page.answer("open", {})
+    assert (opened["new"], opened["version"]) == (True, "")
+    assert not page.file.exists()
+    assert page.answer("save", {"text": TEXT, "version": ""})["saved"] == "new.pur"
+    assert page.file.read_text() == page.answer("open", {})["text"] == TEXT
 
 
 def test_a_file_that_is_there_is_not_begun_anew_without_force(tmp_path: Path) -> None:
     file = tmp_path / "map.pur"
     file.write_text(TEXT)
     with pytest.raises(PursueError) as caught:
-        storage.started(file, force=False)
+        storage.check_new(file, force=False)
     assert f"pursue-gen draw {file}" in caught.value.diagnostics[0].hint
-    assert storage.started(file, force=True).content == TEXT.encode()
+    storage.check_new(file, force=True)
+    page = DrawPage(file, None, Jobs("map.pur", None, 600, 4096), anew=True)
+    opened = page.answer("open", {})
+    assert opened["text"] == "" and page.answer("save", {"text": "// anew", "version": opened["version"]})["saved"]
+    assert page.answer("open", {})["text"] == file.read_text() == "// anew"
 
 
 def test_what_cannot_be_opened_is_named(tmp_path: Path) -> None:
@@ -211,7 +232,8 @@ def test_the_floor_plan_lies_under_the_picture_where_its_origin_and_its_turn_say
     (tmp_path / "map.pgm").write_bytes(b"P5\n20 10\n255\n" + bytes([254]) * 200)
     (tmp_path / "map.yaml").write_text("image: map.pgm\nresolution: 0.5\norigin: [-2, 1, 0.5]\n")
     floor = read_floor(tmp_path / "map.yaml")
-    page = DrawPage(storage.started(tmp_path / "a.pur", False), "", floor, Jobs("a.pur", None, 600, 4096))
+    ground = read_ground(tmp_path / "map.yaml")
+    page = DrawPage(tmp_path / "a.pur", floor, Jobs("a.pur", None, 600, 4096), ground=ground)
     assert page.answer("open", {})["floor"] == {"width": 10, "height": 5, "x": -2, "y": 1, "yaw": 0.5}
     assert page.picture is not None and page.picture.startswith(b"\x89PNG")
     text = WON.replace('poi "a"', 'poi "a" //[0, 3, 0, 0, 0, 0, 1]').replace('"b"', '"b" //[99, 0, 0, 0, 0, 0, 1]')
@@ -227,7 +249,7 @@ def test_a_text_is_solved_beside_the_page_and_can_be_given_up(served: DrawServer
     assert done["verdict"] == "won" and "work happens." in done["lines"]
     status, headers, body = request(served, "GET", f"/{served.token}/report.html")
     assert status == 200 and b"Report on floor" in body and "sandbox" in headers["content-security-policy"]
-    asked(served, "solve", text=thesis_scenario("4").read_text())
+    asked(served, "solve", text=many_walkers())
     assert asked(served, "cancel")["state"] == "cancelled"
     asked(served, "solve", text=WON.replace("can_do work", ""))
     done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")

@@ -24,7 +24,7 @@ function follow() {
 
 async function save(overwrite) {
   const text = state.text;
-  const answer = await ask("save", { text, overwrite });
+  const answer = await ask("save", { text, overwrite, version: state.opened.version });
   if (answer.code === "DRW003") {
     byId("changed-text").textContent = refusal(answer);
     byId("changed").showModal();
@@ -32,6 +32,7 @@ async function save(overwrite) {
     say(refusal(answer), true);
   } else {
     state.saved = text;
+    state.opened.version = answer.version;
     say(`Saved: ${answer.saved}`);
     follow();
   }
