@@ -34,6 +34,9 @@ def ws(
     ),
     docker: bool = typer.Option(False, "--docker", help="With Dockerfiles and a compose file: a container per node."),
     systemd: bool = typer.Option(False, "--systemd", help="With units of systemd, one per node."),
+    floor: Optional[Path] = typer.Option(
+        None, "--map", metavar="YAML", help="A floor plan of map_server, to lie under the map of the UI's page."
+    ),
     spot_distance: float = SPOT_DISTANCE,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
@@ -43,13 +46,19 @@ def ws(
     """
     from pursue_gen.cli.inputs import scenario_from
     from pursue_gen.cli.solution import solve_and_print
+    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
+    from pursue_gen.workspace.map_check import check_spots
 
+    under = None if floor is None else read_floor(floor)
     read = scenario_from(scenario, request)
+    if floor is not None:
+        show(check_spots(read, read_ground(floor), spot_distance))
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)
-    extras = Extras(machines, docker, systemd, spot_distance)
+    extras = Extras(machines, docker, systemd, spot_distance, under)
     made = make_workspace(found.scenario, found.solution, request, extras, folder, force)
     info(made.margin)
     show(made.findings)

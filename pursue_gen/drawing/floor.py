@@ -45,6 +45,11 @@ class Floor:
     occupied: float = 0.65
     free: float = 0.196
 
+    @property
+    def picture(self) -> bytes:
+        """The picture as PNG."""
+        return base64.b64decode(self.uri.partition(",")[2])
+
     def corners(self) -> Tuple[Tuple[float, float], ...]:
         """The four corners in metres."""
         across, up = self.width * self.resolution, self.height * self.resolution

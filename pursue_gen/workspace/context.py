@@ -26,6 +26,7 @@ from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen import __version__
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Kind, Objective, is_end
@@ -43,6 +44,7 @@ class Options:
     `ends` and `slack`: the rest of the rules of that game (see `solving.rules.Rules`), for new plans.
     `optimize` and `within`: what its solver was asked for (see `solving.options.SolveOptions`), to solve it again.
     `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
+    `floor`: a floor plan that lies under the map of the UI's page.
     `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
@@ -58,6 +60,7 @@ class Options:
     within: Optional[Fraction] = None
     margin: str = ""
     guarantee: Optional[Fraction] = None
+    floor: Optional[Floor] = None
     time_unit: float = 1.0
     machines: Machines = ONE_MACHINE
     docker: bool = False

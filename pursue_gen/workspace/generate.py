@@ -175,6 +175,7 @@ def _packages(
     packages.append(Package("observer", "observer", "The observer: keeps the state of the mission.", observer))
     ui = {"config/model.yaml": data["model"], "config/poses.yaml": data["poses"], **people}
     ui["config/ui.yaml"], ui["config/game.yaml"] = data["ui"], data["game"]
+    ui.update({} if options.floor is None else ui_file.floor_files(options.floor, __version__))
     ui.update({"config/strategies.yaml": data["strategies"]} if data["strategies"] else {})
     packages.append(Package(_UI, _UI, "The user's side of the mission: start and events; the simulated robots.", ui))
     packages += [Package(name, name, summary, {}) for name, summary in RECEIVING.items()]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution, guaranteed
@@ -21,13 +22,14 @@ from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
 class Extras:
     """What a workspace may have besides: a machines.yaml, and files for containers and for services.
 
-    `spot_distance`: metres between the robots at one place.
+    `spot_distance`: metres between the robots at one place. `floor`: a floor plan for the UI's page.
     """
 
     machines: Optional[Path] = None
     docker: bool = False
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
+    floor: Optional[Floor] = None
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         won.within,
         margin,
         _guarantee(won),
+        extras.floor,
         docker=extras.docker,
         systemd=extras.systemd,
         spot_distance=extras.spot_distance,

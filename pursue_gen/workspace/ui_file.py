@@ -6,6 +6,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, List, Optional, Sequence
 
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.wording import objective_sentence, objective_words
 from pursue_gen.partition import SubStrategy
@@ -64,6 +65,20 @@ def render_strategies(
     found = {sub.controller: inline(strategy_data(sub, reaction)) for sub in controllers}
     head = f"What the controllers of {scenario.name} do, written by pursue-gen {generator} for the page of the UI."
     return yaml_text({"format": 1, "strategies": found}, [head]).encode()
+
+
+def floor_files(floor: Floor, generator: str) -> Dict[str, bytes]:
+    """The floor plan in the package of the UI: its picture, and where that is on the map."""
+    data = {
+        "format": 1,
+        "width": floor.width,
+        "height": floor.height,
+        "resolution": floor.resolution,
+        "origin": inline([floor.x, floor.y, floor.yaw]),
+    }
+    head = "The floor plan under the map of the page: width and height in pixels, metres per pixel, lower left corner."
+    text = yaml_text(data, [f"{head} Written by pursue-gen {generator}."]).encode()
+    return {"map/floor.yaml": text, "map/floor.png": floor.picture}
 
 
 def _connection(way: Connection) -> List[Any]:

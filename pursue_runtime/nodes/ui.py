@@ -32,6 +32,7 @@ from pursue_runtime.nodes.node import (
     start_thread,
     subscribe,
 )
+from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.nodes.publishing import listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
@@ -397,6 +398,8 @@ def main(package: Package) -> int:
         player = make_player(options, model)
         ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))
         ui.board = open_page(model, options, settings, membership.source, ui)
+        if ui.board is not None:
+            watch_positions([robot.name for robot in model.of_kind("robot")], ending, ui.board.on_positions)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
         save_verdict(str(rospy.get_param("~verdict", "")), NOT_STARTED, str(problem))

@@ -110,6 +110,11 @@ def first_commands(steps: Sequence[Step]) -> Dict[str, Step]:
     return found
 
 
+def is_certain(steps: Sequence[Step], step: Step) -> bool:
+    """Return True if nothing has to end before a step: its moment is known then, not only the earliest one."""
+    return all(each.commanded for each in steps[: list(steps).index(step)])
+
+
 def next_command(steps: Sequence[Step]) -> Optional[Step]:
     """The first command; None where there is none."""
     return next((step for step in steps if step.commanded), None)

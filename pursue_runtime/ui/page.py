@@ -15,7 +15,8 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.course import Step, course, first_commands, next_command
+from pursue_runtime.ui.course import Step, course, first_commands, is_certain, next_command
+from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
@@ -104,9 +105,11 @@ class Page:
         statuses: Sequence[Status] = (),
         promise: Promise = NOTHING,
         strategies: Sequence[Strategy] = (),
+        floor: Optional[Floor] = None,
     ) -> None:
         """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents;
-        `promise`: what is to be achieved; `strategies`: those of all controllers, where they are known."""
+        `promise`: what is to be achieved; `strategies`: those of all controllers, where they are known; `floor`: what
+        lies under the map."""
         self._model = model
         self._statuses = statuses
         self._promise = promise
@@ -116,6 +119,7 @@ class Page:
         self._why = Why(model, statuses, strategies)
         self._steps: Tuple[Tuple[object, ...], List[Step]] = ((), [])  # of which state, and what comes after it
         self._plan = plan
+        self._floor = floor
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
@@ -129,6 +133,7 @@ class Page:
             "scenario": self._model.scenario,
             "labels": self._model.labels,
             "places": {name: list(place) for name, place in self._plan.places.items()},
+            "floor": None if self._floor is None else self._floor.scene(),
             "ways": [list(way) for way in self._plan.ways],
             "one_ways": [list(way) for way in self._plan.one_ways],
             "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
@@ -153,7 +158,7 @@ class Page:
         for agent in agents:
             step = first.get(agent["name"])
             agent["why"] = self._why.of(agent["name"])
-            agent["then"] = None if step is None else {"does": step.does, "at": _round(facts.at + step.after)}
+            agent["then"] = None if step is None else {"does": step.does, **self._due(steps, step, facts.at)}
         others = [automaton.name for automaton in self._model.automata if automaton not in self._acting]
         return {
             "phase": facts.phase, "missing": list(facts.missing), "status": state.status, "reason": state.reason,
@@ -217,7 +222,12 @@ class Page:
         step = next_command(steps)
         if step is None:
             return None
-        return {"says": f"{self._model.shown(step.agent)} is to {step.does}", "at": _round(at + step.after)}
+        return {"says": f"{self._model.shown(step.agent)} is to {step.does}", **self._due(steps, step, at)}
+
+    @staticmethod
+    def _due(steps: Sequence[Step], step: Step, at: float) -> Dict[str, Any]:
+        """When a step comes; `certain`: nothing has to end before."""
+        return {"at": _round(at + step.after), "certain": is_certain(steps, step)}
 
     # Agents -----------------------------------------------------------------------------------------------------------
 

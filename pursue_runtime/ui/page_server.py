@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from typing import Any, Dict, List, Mapping, Optional, Protocol, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.missions import Source
@@ -12,6 +12,7 @@ from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy, read_strategies
+from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
@@ -24,6 +25,10 @@ STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 
 STRATEGIES = "strategies.yaml"
 """The data file with the strategies of all controllers; missions with large ones have none."""
+
+
+FLOOR = "/floor.png"
+"""Where the page finds the picture of the floor plan."""
 
 
 class PageNode(Protocol):
@@ -44,6 +49,7 @@ class PageServer:
     def __init__(self, page: Page, node: PageNode) -> None:
         self._page, self._node = page, node
         self._shown = 0
+        self._positions: Dict[str, List[float]] = {}
         self.web: Any = None
 
     def on_state(self, state: SystemState, at: float) -> None:
@@ -58,6 +64,11 @@ class PageServer:
         except (DataError, KeyError, TypeError, ValueError):
             return  # the nodes that need it say what is wrong with it
         self._page.add_plan(plan["plan"], strategies)
+
+    def on_positions(self, positions: Mapping[str, Sequence[float]]) -> None:
+        """Show where robots really are: x and y in metres, yaw in radians."""
+        self._positions = {name: list(position) for name, position in positions.items()}
+        self.web.send({"type": "positions", "positions": self._positions})
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
         """Show the end of the mission; `verdict` is the exit status and a sentence."""
@@ -76,7 +87,8 @@ class PageServer:
         """Return the first message for a page."""
         with self._node.lock:
             view = self._page.view(self._node.facts())
-            return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log}
+            return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log,
+                    "positions": self._positions}
 
     def on_message(self, message: Any) -> str:
         """Take a message of a page. Raises ValueError where it is not a request."""
@@ -113,10 +125,13 @@ def open_page(
     poses = source.read("poses.yaml")
     people = reporters(model, options.ends, settings)
     words = read_statuses(settings), read_promise(settings)
-    board = PageServer(Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source)), node)
+    floor = read_floor(source.folder) if source.digests is None else None  # it is the workspace's, not a mission's
+    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source), floor)
+    board = PageServer(page, node)
     try:
         board.web = Web(
-            STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present
+            STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present,
+            {} if floor is None else {FLOOR: (floor.picture, "image/png")},
         )
     except WebError as problem:
         raise ParameterError(str(problem)) from None

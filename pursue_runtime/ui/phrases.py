@@ -60,7 +60,7 @@ def doing(model: Model, automaton: Automaton, location: str, place: str) -> str:
     """
     begin = begin_of(automaton, location)
     if begin is None:
-        return f"at {model.shown(place or location)}"
+        return f"is at {model.shown(place or location)}"
     if is_movement(location):
         goes = "goes" if automaton.kind != "agent" else "is on its way"
         return f"{goes} from {model.shown(begin.source)} to {model.shown(destination(automaton, location))}"

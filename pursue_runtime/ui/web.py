@@ -18,7 +18,8 @@ import re
 import secrets
 import socket
 import threading
-from typing import Any, Callable, List, Mapping, Optional, Set
+from types import MappingProxyType
+from typing import Any, Callable, List, Mapping, Optional, Set, Tuple
 from urllib.parse import urlsplit
 
 from tornado.iostream import StreamBufferFullError
@@ -84,12 +85,13 @@ class Web:
         first_message: Callable[[], Mapping[str, Any]],
         on_message: Callable[[str], str],
         present: Callable[[], Optional[float]],
+        pictures: Mapping[str, Tuple[bytes, str]] = MappingProxyType({}),
     ) -> None:
         """Binds the address (port 0: any that is free) and reads the page from `folder`; serves after `start`.
 
         `first_message` is for a page that connects, `on_message` takes its messages (ValueError: not a request) and
         returns a remark, `present` is the present time, None while the mission does not run. They are called in
-        the thread of the server. Raises WebError.
+        the thread of the server. `pictures`: what else is served, by path: the bytes, and their type. Raises WebError.
         """
         self.generated = not token and not is_loopback(host)
         self.token = secrets.token_urlsafe(16) if self.generated else token
@@ -97,6 +99,7 @@ class Web:
         self._pages: Set[PageSocket] = set()
         try:
             self._files = {path: (_read(folder, name), kind) for path, (name, kind) in FILES.items()}
+            self._files.update(pictures)
             self._sockets = bind_sockets(port, host)
         except (OSError, UnicodeError) as problem:
             hint = "choose another --port (0: any that is free) or --host"
@@ -148,7 +151,7 @@ class Web:
             self._loop.close()
 
     async def _serve(self) -> None:
-        paths: List[Any] = [(path, File, {"web": self}) for path in FILES]
+        paths: List[Any] = [(path, File, {"web": self}) for path in self._files]
         application = _Requests(
             [*paths, ("/live", PageSocket, {"web": self})],
             default_handler_class=NotFound, default_handler_args={"web": self}, log_function=lambda _: None,
@@ -252,7 +255,7 @@ class Guarded(RequestHandler):
         connect = f"'self' {live}" if re.fullmatch(r"[\w.:\[\]-]+", self.request.host, re.ASCII) else "'self'"
         self.set_header(
             "Content-Security-Policy",
-            f"default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src {connect}; "
+            f"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src {connect}; "
             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
         )
         self.set_header("X-Content-Type-Options", "nosniff")

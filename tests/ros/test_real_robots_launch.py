@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
+import json
+import math
 import os
 import re
 import time
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable, Dict
 
 import pytest
 import yaml
@@ -42,6 +45,24 @@ def documented() -> str:
     return str(line).replace("my_floor", "scenario_1")
 
 
+def next_position(address: str, robot: str, start: Any) -> Any:
+    """Where the page is said that a robot is: as soon as that is more than 0.2 m from its start."""
+    from tornado.httpclient import HTTPRequest
+    from tornado.websocket import websocket_connect
+
+    async def received() -> Any:
+        request = HTTPRequest(address.replace("http", "ws") + "live", headers={"Origin": address.rstrip("/")})
+        page = await websocket_connect(request)
+        while True:
+            message: Dict[str, Any] = json.loads(await page.read_message())
+            position = message.get("positions", {}).get(robot)
+            if position is not None and math.dist(position[:2], start) > 0.2:
+                page.close()
+                return position
+
+    return asyncio.run(asyncio.wait_for(received(), PATIENCE))
+
+
 def test_the_documented_line_wins_the_mission_on_robots_with_move_base(ros: Ros, tmp_path: Path) -> None:
     wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
     if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
@@ -56,8 +77,14 @@ def test_the_documented_line_wins_the_mission_on_robots_with_move_base(ros: Ros,
         fakes = ros.start(f"exec python3 {FAKE}", workspace, tmp_path / "robots", **there)
         cleanup.callback(end, fakes)
         log = tmp_path / "launch"
-        launch = ros.start(f"source devel/setup.bash; exec {documented()}", workspace, log, **there)
+        page = "web:=true port:=0 autostart:=true output:=screen"
+        launch = ros.start(f"source devel/setup.bash; exec {documented()} {page}", workspace, log, **there)
         cleanup.callback(end, launch)
+        until(lambda: "The page is at" in log.read_text(errors="replace"), "the page")
+        (address,) = set(re.findall(r"The page is at (http://\S+)", log.read_text(errors="replace")))
+        x, y, _ = next_position(address, "bot1", poses["c"][:2])
+        between = [sorted((poses["c"][axis], poses["b"][axis])) for axis in (0, 1)]
+        assert all(low - 0.1 <= value <= high + 0.1 for value, (low, high) in zip((x, y), between)), "on its way to b"
         assert launch.wait(2 * PATIENCE) == 0, log.read_text()[-8000:]
     assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
 

@@ -28,12 +28,15 @@ function showAgent(widget, agent, now) {
 
 function whyAndThen(agent, now) { // only what the strategy says; nothing where it is not known here
   const parts = [agent.why].filter((text) => text);
-  if (agent.then) parts.push(`${agent.awaited ? "then" : "next"}: ${agent.then.does} ${due(agent.then.at, now)}`);
+  if (agent.then) parts.push(`${agent.awaited ? "then" : "next"}: ${agent.then.does}${due(agent.then, now)}`);
   else if (view.planned && view.status === "running" && !agent.awaited && !agent.lost) parts.push("waits: nothing is planned for it until something else happens");
   return parts.join("; ");
 }
 
-const due = (at, now) => (at <= now + MARGIN ? "now" : `in ${units(at - now)}`);
+function due({ at, certain }, now) { // what waits for an end comes later, nobody knows by how much
+  if (at > now + MARGIN) return ` in ${units(at - now)}${certain ? "" : " at the earliest"}`;
+  return certain ? " now" : "";
+}
 
 const LATE = 0.2; // time units after its window at which an end is late: the observer allows for a little, too
 

@@ -28,7 +28,7 @@ function showObjectives(now) {
 
 function next(now) { // what the strategy does, as long as others begin nothing
   if (!view.next) return "Next: what others do. Until then the strategy has no command.";
-  return `Next: ${view.next.says} ${due(view.next.at, now)}, if nobody else begins anything before.`;
+  return `Next: ${view.next.says}${due(view.next, now)}, if nobody else begins anything before.`;
 }
 
 function guarantee(now) { // until when the goal is reached, whatever others do; honest about what is not known

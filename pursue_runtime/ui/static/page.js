@@ -93,12 +93,15 @@ function take(message) {
   if (message.type === "hello") {
     link("here", "connected");
     setScene(message.scene);
+    setPositions(message.positions || {});
     if (!message.log.some((entry) => entry.n === heard)) forgetLog();
     setView(message.view);
     addLog(message.log);
   } else if (message.type === "view") {
     setView(message.view);
     addLog(message.log);
+  } else if (message.type === "positions") {
+    setPositions(message.positions);
   } else if (message.type === "tick") {
     heardTime(message.now);
   } else if (message.type === "remark") {

@@ -3,7 +3,9 @@
 
 const ROW = 24; // pixels from one label to the next above it
 const POI = 14; // half the height of a point of interest
+const AROUND = 1.5; // metres of floor plan that are shown around the places
 const map = { points: new Map(), marks: new Map(), places: [], lengths: [], moving: false, last: 0, width: 0, height: 0 };
+let positions = new Map(); // robot → where it really is: x, y in metres, yaw in radians
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 function setMap() {
@@ -14,7 +16,9 @@ function setMap() {
   if (!names.length || !width) return;
   const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
   const above = 2 * POI + ROW * Math.min(3, scene.agents.length), below = 2 * POI + ROW, side = Math.min(width / 4, 16 + 4.2 * longest);
-  const xs = names.map((name) => scene.places[name][0]), ys = names.map((name) => scene.places[name][1]);
+  const room = scene.floor ? AROUND : 0;
+  const xs = names.flatMap((name) => [scene.places[name][0] - room, scene.places[name][0] + room]);
+  const ys = names.flatMap((name) => [scene.places[name][1] - room, scene.places[name][1] + room]);
   const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
   const scale = Math.min((width - 2 * side) / (across || 1e-6), 420 / (up || 1e-6), across || up ? Infinity : 1);
   const left = (width - scale * across) / 2, high = Math.max(above + below + scale * up, 200);
@@ -25,19 +29,31 @@ function setMap() {
   picture.setAttribute("role", "img");
   picture.setAttribute("aria-label", `Map of ${scene.scenario}; the list "Who does what" says the same in words`);
   $("map").replaceChildren(picture);
-  Object.assign(map, { width, height: high });
-  names.forEach((name, i) => map.points.set(name, { x: left + scale * (xs[i] - Math.min(...xs)), y: top + scale * (Math.max(...ys) - ys[i]) }));
+  const at = (x, y) => ({ x: left + scale * (x - Math.min(...xs)), y: top + scale * (Math.max(...ys) - y) });
+  Object.assign(map, { width, height: high, at });
+  for (const name of names) map.points.set(name, at(...scene.places[name]));
+  drawFloor(picture, scale);
   drawWays(picture);
   const under = draw("g", picture); // lines to labels, and points: no name is under them
   drawPlaces(picture, names, under);
   drawLengths(picture);
   for (const { name, kind } of scene.agents) {
-    const lead = draw("line", under, { class: `lead ${kind}` }), dot = draw("circle", under, { class: `dot ${kind}`, r: 4 });
+    const path = draw("line", under, { class: "path" }), lead = draw("line", under, { class: `lead ${kind}` });
+    const dot = draw("path", under, { class: `dot ${kind}` });
     const group = labelled(picture, `mark ${kind}`, shown(name), 22, 4);
     group.dataset.agent = name;
-    map.marks.set(name, { group, lead, dot, ...size(group), x: null, y: null, choice: 0 });
+    map.marks.set(name, { group, path, lead, dot, kind, ...size(group), x: null, y: null, choice: 0 });
   }
+  showReal();
   animate(performance.now());
+}
+
+function drawFloor(picture, scale) { // pale, so that what is drawn on it can be read
+  if (!scene.floor) return;
+  const { width, height, resolution, x, y, yaw } = scene.floor, corner = map.at(x, y), pixel = scale * resolution;
+  const turn = `translate(${corner.x} ${corner.y}) rotate(${-yaw * 180 / Math.PI}) translate(0 ${-height * pixel})`;
+  const inside = { href: "floor.png", width: width * pixel, height: height * pixel, preserveAspectRatio: "none" };
+  draw("image", draw("g", picture, { class: "floor", transform: turn }), inside);
 }
 
 function drawWays(picture) {
@@ -108,6 +124,52 @@ function join(lead, point, box) { // a line to a label that is not at its point
   for (const [key, value] of Object.entries({ x1: point.x, y1: point.y, x2: box.x, y2: box.y })) lead.setAttribute(key, value.toFixed(1));
 }
 
+// Where robots really are ----------------------------------------------------------------------------------------------
+
+function setPositions(fresh) {
+  positions = new Map(Object.entries(fresh)); // names may be those of any property
+  showReal();
+  if (!map.moving) animate(performance.now());
+}
+
+function showReal() { // of all others only their last place is known
+  const real = positions.size > 0;
+  $("real").hidden = !real;
+  for (const [name, mark] of map.marks) {
+    const text = mark.group.querySelector("text"), words = short(shown(name)) + (real && !positions.has(name) ? " ?" : "");
+    if (text.textContent === words) continue;
+    text.textContent = words;
+    const box = mark.group.querySelector("rect"), width = Math.max(22, text.getComputedTextLength() + 14);
+    box.setAttribute("x", -width / 2);
+    box.setAttribute("width", width);
+    mark.half = width / 2;
+  }
+}
+
+function pointOf(agent, now) { // on the picture: where it is known to be, else where the model has it
+  const real = positions.get(agent.name), from = map.points.get(agent.place), to = map.points.get(agent.to);
+  if (real) {
+    const { x, y } = map.at(real[0], real[1]);
+    return { x: Math.min(map.width, Math.max(0, x)), y: Math.min(map.height, Math.max(0, y)), yaw: real[2], away: POI };
+  }
+  if (!from) return null;
+  if (!to) return { ...from, away: 2 * POI };
+  const part = share(agent, now);
+  return { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), away: POI + 4 };
+}
+
+function showDot(mark, point, to) { // the point itself, with its heading, and what is left of its way
+  const round = "M4 0A4 4 0 1 1 -4 0A4 4 0 1 1 4 0Z", arrowed = "M10 0L-6 7L-3 0L-6 -7Z", headed = point.yaw !== undefined;
+  mark.dot.style.display = to || headed ? "" : "none";
+  mark.dot.setAttribute("d", headed ? arrowed : round);
+  const turn = headed ? ` rotate(${(-point.yaw * 180 / Math.PI).toFixed(1)})` : "";
+  mark.dot.setAttribute("transform", `translate(${point.x.toFixed(1)} ${point.y.toFixed(1)})${turn}`);
+  const ahead = to && headed && mark.kind !== "agent";
+  mark.path.style.display = ahead ? "" : "none";
+  if (!ahead) return;
+  for (const [key, value] of Object.entries({ x1: point.x, y1: point.y, x2: to.x, y2: to.y })) mark.path.setAttribute(key, value.toFixed(1));
+}
+
 // Labels -------------------------------------------------------------------------------------------------------------
 
 const covers = (a, b) => Math.abs(a.x - b.x) < a.half + b.half + 1 && Math.abs(a.y - b.y) < a.tall + b.tall + 1;
@@ -148,23 +210,21 @@ function animate(moment) {
   map.last = moment;
   let unsettled = false;
   for (const agent of view.agents) {
-    const mark = map.marks.get(agent.name), from = map.points.get(agent.place), to = map.points.get(agent.to);
+    const mark = map.marks.get(agent.name), to = map.points.get(agent.to);
     if (!mark) continue;
-    for (const part of [mark.group, mark.lead, mark.dot]) part.style.display = from ? "" : "none";
+    const point = pointOf(agent, now);
+    for (const part of [mark.group, mark.lead, mark.dot, mark.path]) part.style.display = point ? "" : "none";
     mark.group.classList.toggle("lost", agent.lost);
-    if (!from) continue;
-    const part = to ? share(agent, now) : 0;
-    const point = to ? { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) } : from;
-    const target = settle(mark, point, to ? POI + 4 : 2 * POI, taken);
+    if (!point) continue;
+    const target = settle(mark, point, taken);
     const fast = mark.x === null || calm.matches;
     mark.x = fast ? target.x : mark.x + pace * (target.x - mark.x);
     mark.y = fast ? target.y : mark.y + pace * (target.y - mark.y);
     put(mark.group, mark);
     join(mark.lead, point, mark);
-    mark.dot.style.display = to ? "" : "none";
-    mark.dot.setAttribute("cx", point.x.toFixed(1));
-    mark.dot.setAttribute("cy", point.y.toFixed(1));
-    unsettled = unsettled || Math.abs(mark.x - target.x) + Math.abs(mark.y - target.y) > 0.5 || (to && part < 1 && view.live);
+    showDot(mark, point, to);
+    const glides = to && point.yaw === undefined && share(agent, now) < 1 && view.live;
+    unsettled = unsettled || Math.abs(mark.x - target.x) + Math.abs(mark.y - target.y) > 0.5 || glides;
   }
   for (const { box, text } of map.lengths) text.style.visibility = taken.some((other) => covers(box, other)) ? "hidden" : "";
   if (unsettled && !map.moving) {
@@ -173,8 +233,8 @@ function animate(moment) {
   }
 }
 
-function settle(mark, point, away, taken) { // where a label comes to rest; what it takes is free no more
-  const { box, choice } = arranged(point, mark.half, mark.tall, around(mark.half, mark.tall, away), taken, mark.choice);
+function settle(mark, point, taken) { // where a label comes to rest; what it takes is free no more
+  const { box, choice } = arranged(point, mark.half, mark.tall, around(mark.half, mark.tall, point.away), taken, mark.choice);
   mark.choice = choice;
   taken.push(box);
   return box;

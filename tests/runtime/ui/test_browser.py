@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import struct
 import sys
 import threading
 import time
+import zlib
 from pathlib import Path
-from typing import Any, Callable, Iterator, Sequence
+from typing import Any, Callable, Iterator, Optional, Sequence
 
 import pytest
 
 from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
+from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.ui.promise import Objective, Promise
@@ -79,20 +82,23 @@ class Node:
     """A node that shows one state after the other."""
 
     def __init__(
-        self, model: Any, places: Any, ways: Any, ends: bool, promise: Promise, strategies: Sequence[Strategy] = ()
+        self, model: Any, places: Any, ways: Any, ends: bool, promise: Promise,
+        strategies: Sequence[Strategy] = (), floor: Optional[Floor] = None,
     ) -> None:
         self.lock = threading.RLock()
         self.model, self.wanted = model, []
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies)
+        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies, floor)
         self.board = ui_board.PageServer(page, self)
+        self.pictures = {} if floor is None else {ui_board.FLOOR: (floor.picture, "image/png")}
 
     def serve(self, port: int = 0) -> Any:
         board = self.board
         board.web = ui_web.Web(
-            STATIC, "127.0.0.1", port, "", board.first_message, board.on_message, board.present
+            STATIC, "127.0.0.1", port, "", board.first_message, board.on_message, board.present,
+            self.pictures,
         )
         board.web.start()
         return board.web
@@ -127,10 +133,12 @@ def show(page: Browser) -> Iterator[Callable[..., Node]]:
 
     def start(
         *automata: Any, places: Any = None, ways: Any = (("a", "b", 9.0),), ends: bool = False,
-        promise: Promise = PROMISE, strategies: Sequence[Strategy] = (), **more: Any
+        promise: Promise = PROMISE, strategies: Sequence[Strategy] = (),
+        floor: Optional[Floor] = None, **more: Any
     ) -> Node:
         data = {**model_data(*automata), **more}
-        node = Node(Model(data), places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}, ways, ends, promise, strategies)
+        there = places or {"a": (0, 0), "b": (9, 3), "s": (4, 9)}
+        node = Node(Model(data), there, ways, ends, promise, strategies, floor)
         nodes.append(node)
         page.complaints.clear()
         page.screen(1100, 800)
@@ -324,7 +332,7 @@ def test_what_is_to_be_achieved_and_the_guaranteed_time_are_above_all(page: Brow
     node.show(3, 30.0, clock=15.0, bot="going_a_to_b")
     page.wait("document.querySelector('.agent-row.late') !== null")
     matches(page, ".agent-row.late", r"is to arrive at b: [5678]\.\d late")
-    matches(page, "#agents", r"thief at a.*may go to b now")
+    matches(page, "#agents", r"thief is at a.*may go to b now")
     node.show(4, 31.0, reachObj="win", status="won")
     says(page, "#objectives", "reached screw happens.")
     assert page.complaints == []
@@ -351,6 +359,7 @@ def test_what_is_next_and_why_is_what_the_strategy_says(page: Browser, show: Cal
     matches(page, "#agents", r"next: go to b in [34]\.\d")
     node.show(2, 4.1, clock=0.0, event="bot_a2b", agent="bot", bot="going_a_to_b", commanded=True, unit=30.0)
     says(page, "#agents", "because thief is at a (if it were at b: go to c); then: do catch in 1")
+    says(page, "#agents", "at the earliest")
     node.show(3, 40.0, clock=0.0, bot="b", thief="b", unit=30.0)
     says(page, "#next", "Next: what others do. Until then the strategy has no command.")
     says(page, "#agents", "waits: nothing is planned for it until something else happens")
@@ -470,3 +479,40 @@ def test_the_end_is_reported_and_nothing_can_be_pressed(page: Browser, show: Cal
     assert page.value(enabled) == 0
     node.board.web.close()
     says(page, "#link", "the mission has ended")
+
+
+def picture() -> bytes:
+    """A floor plan of 40 by 20 pixels: a PNG, all grey."""
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = struct.pack(">IIBBBBB", 40, 20, 8, 0, 0, 0, 0)
+    rows = zlib.compress((b"\x00" + bytes([200]) * 40) * 20)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+
+
+def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser, show: Callable[..., Node]) -> None:
+    plan = Floor(picture(), 40, 20, 0.5, -4.0, -3.0, 0.1)
+    node = show(*everybody(), floor=plan)
+    node.show(2, 2.0, clock=2.0, bot="going_a_to_b")
+    page.wait("document.querySelector('#map image') !== null")
+    loaded = "fetch(document.querySelector('#map image').href.baseVal).then((answer) => answer.status)"
+    assert page.value(loaded) == 200
+    assert page.value("document.getElementById('real').hidden") is True, "nobody knows where they really are"
+    corner = page.value("(({x, y}) => [x, y])(map.at(-4, -3))")
+    box = page.value("(({x, y}) => [x, y])((() => { const i = document.querySelector('#map image'); const p = "
+                     "i.ownerSVGElement.createSVGPoint(); p.x = 0; p.y = i.height.baseVal.value; "
+                     "return p.matrixTransform(i.getCTM()); })())")  # fmt: skip
+    assert box == pytest.approx(corner, abs=0.5), "its lower left corner is at its origin"
+    node.board.on_positions({"bot": (3.0, 2.0, 1.5)})
+    page.wait("!document.getElementById('real').hidden")
+    at = page.value("(({x, y}) => `translate(${x.toFixed(1)} ${y.toFixed(1)})`)(map.at(3, 2))")
+    page.wait(f"document.querySelector('.dot.robot').getAttribute('transform').startsWith({at!r})")
+    assert page.value("document.querySelector('.path').style.display") == "", "and what is left of its way"
+    assert page.text("[data-agent=thief] text") == "thief ?" and page.text("[data-agent=bot] text") == "bot"
+    for dark in (False, True):
+        page.dark(dark)
+        assert page.value(f"{COVERED}") == []
+    node.board.on_positions({})
+    page.wait("document.getElementById('real').hidden")
+    assert page.complaints == []

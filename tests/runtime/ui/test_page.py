@@ -99,7 +99,7 @@ def test_an_action_is_reported_where_it_is_done() -> None:
 def test_whoever_stands_is_reported_with_what_may_come_and_when() -> None:
     seen = view(page(), at(1, 100.0, clock=0.0), at=0.0)
     thief = agent(seen, "thief")
-    assert (thief["doing"], thief["awaited"], thief["since"]) == ("at a", "", None)
+    assert (thief["doing"], thief["awaited"], thief["since"]) == ("is at a", "", None)
     assert [choice["may"] for choice in thief["next"]] == ["go to b"]
     assert 1.0 < thief["next"][0]["opens"] < 1.1 and thief["next"][0]["closes"] is None
     assert seen["open"]["thief_a2b"] == [thief["next"][0]["opens"], None]

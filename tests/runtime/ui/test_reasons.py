@@ -122,12 +122,13 @@ def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_fo
     page = Page(MODEL, FloorPlan({}, ()), strategies=(GOES,))
     view, bot = sight(page, state(MODEL, 1, 0.0, {}))
     assert bot["then"]["does"] == "go to b" and 2.0 < bot["then"]["at"] < 2.1 and bot["why"] == ""
+    assert bot["then"]["certain"]
     assert view["next"]["says"] == "bot is to go to b" and view["planned"]
     away = state(MODEL, 2, 3.0, {"Cbot": 0.0}, event="bot_a2b", agent="bot", bot="going_a_to_b")
     away = away._replace(commanded=True)
     view, bot = sight(page, away)
     assert bot["why"] == "because thief is at a (if it were at b: do rest)"
-    assert view["next"]["says"] == "arm is to do screw"
+    assert view["next"]["says"] == "arm is to do screw" and not view["next"]["certain"], "bot has to arrive before"
     _, bot = sight(page, away._replace(seq=3, stamp=4.0, event="thief_a2b", agent="thief", commanded=False))
     assert bot["why"], "that was the reason"
     _, bot = sight(page, state(MODEL, 4, 13.0, {}, event="bot_going_a_to_b2b", agent="bot", bot="b"))

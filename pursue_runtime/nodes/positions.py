@@ -1,0 +1,114 @@
+"""Where the robots really are, for the page: from amcl_pose or tf, as the parameters of their controllers say."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any, Callable, Dict, Iterable, Mapping, Optional
+
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+
+from pursue_runtime.controller.settings import Settings, read_settings
+from pursue_runtime.controller.whereabouts import Position, yaw_of
+from pursue_runtime.data import DataError
+from pursue_runtime.nodes.node import Ending, start_thread, subscribe
+from pursue_runtime.nodes.robot_link import needed
+
+PERIOD = 0.5
+"""Seconds of real time between two positions of a robot on the page."""
+
+STALE = 3.0
+"""Seconds of real time after which a transform that is not renewed does not say any more where a robot is."""
+
+Positions = Mapping[str, Position]
+
+
+def settings_of(robots: Iterable[str]) -> Dict[str, Settings]:
+    """How the controllers know where these robots are, of those that have a position; by the parameters that they were
+    launched with. Settings that cannot be read are the controllers' to report."""
+    found = {}
+    for robot in robots:
+        given = rospy.get_param(f"controller_{robot}", None) or rospy.get_param("controller", None)
+        try:
+            settings = read_settings(robot, given) if isinstance(given, dict) else Settings()
+        except DataError:
+            continue
+        if settings.sources and not settings.simulated:
+            found[robot] = settings
+    return found
+
+
+def watch_positions(robots: Iterable[str], ending: Ending, show: Callable[[Positions], None]) -> None:
+    """Call `show` with the positions of all robots that have one, in a thread, whenever one has changed."""
+    settings = settings_of(robots)
+    if settings:
+        watch = _Watch(settings, ending)
+        start_thread("positions", lambda: watch.run(show), ending)
+
+
+class _Watch:
+    """The topics of several robots."""
+
+    def __init__(self, settings: Mapping[str, Settings], ending: Ending) -> None:
+        self._settings, self._ending = settings, ending
+        self._poses: Dict[str, Position] = {}
+        self._renewed: Dict[str, Any] = {}  # robot → stamp of its newest transform, and when that came
+        self._frames: Any = None
+        if any("tf" in each.sources for each in settings.values()):
+            self._listen_to_tf()
+        for robot, each in settings.items():
+            if "pose" in each.sources:
+                topic = f"{robot}/amcl_pose"
+                subscribe(topic, PoseWithCovarianceStamped, self._pose, ending, robot, queue_size=1, tcp_nodelay=True)
+
+    def run(self, show: Callable[[Positions], None]) -> None:
+        """Look at the positions, until the node ends."""
+        shown: Dict[str, Position] = {}
+        while not self._ending.called:
+            positions = self._positions()
+            if positions != shown:
+                show(positions)
+                shown = positions
+            time.sleep(PERIOD)
+
+    def _listen_to_tf(self) -> None:
+        try:
+            tf = needed("tf2_ros", "tf2_ros", "a position by tf")
+        except DataError as problem:
+            rospy.logwarn("the page does not show where robots are: %s", problem)
+            return
+        self._frames, self._failed = tf.Buffer(debug=False), tf.TransformException
+        self._listener = tf.TransformListener(self._frames)
+
+    def _pose(self, message: PoseWithCovarianceStamped, robot: str) -> None:
+        if message.header.frame_id.lstrip("/") == self._settings[robot].map_frame.lstrip("/"):
+            self._poses[robot] = _position(message.pose.pose.position, message.pose.pose.orientation)
+
+    def _positions(self) -> Dict[str, Position]:
+        """Those that are known, to a centimetre: tf's first."""
+        found = {}
+        for robot, settings in self._settings.items():
+            position = self._transform(robot, settings) if "tf" in settings.sources else None
+            position = position or self._poses.get(robot)
+            if position is not None and all(map(math.isfinite, position)):
+                found[robot] = Position(*(round(number, 2) for number in position))
+        return found
+
+    def _transform(self, robot: str, settings: Settings) -> Optional[Position]:
+        if self._frames is None:
+            return None
+        try:
+            found = self._frames.lookup_transform(settings.map_frame, settings.base_frame, rospy.Time(0))
+        except self._failed:
+            return None
+        stamp, now = found.header.stamp.to_sec(), time.monotonic()
+        last, since = self._renewed.get(robot, (None, now))
+        self._renewed[robot] = (last, since) if stamp == last else (stamp, now)
+        if stamp == last and stamp > 0.0 and now > since + STALE:
+            return None
+        return _position(found.transform.translation, found.transform.rotation)
+
+
+def _position(at: Any, turn: Any) -> Position:
+    return Position(at.x, at.y, yaw_of(turn.x, turn.y, turn.z, turn.w))

@@ -1,0 +1,53 @@
+"""The floor plan under the map, where the workspace has one: map/floor.yaml beside the data, and its picture."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any, Dict, NamedTuple, Optional
+
+from pursue_runtime.data import DataError, read_data
+
+FOLDER, SETTINGS, PICTURE = "map", "floor.yaml", "floor.png"
+
+LARGEST = 10_000_000
+"""Bytes of a picture."""
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Floor(NamedTuple):
+    """A floor plan: its picture as PNG, `width` and `height` in pixels, `resolution` in metres per pixel; `x`, `y`
+    (metres) and `yaw` (radians) are the pose of its lower left corner on the map."""
+
+    picture: bytes
+    width: int
+    height: int
+    resolution: float
+    x: float
+    y: float
+    yaw: float
+
+    def scene(self) -> Dict[str, Any]:
+        """Return it for the page, which asks for the picture."""
+        return {name: value for name, value in self._asdict().items() if name != "picture"}
+
+
+def read_floor(config: str) -> Optional[Floor]:
+    """The floor plan beside the folder of a package's data; None where there is none. Raises DataError."""
+    folder = os.path.normpath(os.path.join(config, "..", FOLDER))
+    path = os.path.join(folder, SETTINGS)
+    if not os.path.isfile(path):
+        return None
+    data = read_data(path)
+    try:
+        with open(os.path.join(folder, PICTURE), "rb") as file:
+            picture = file.read(LARGEST + 1)
+        width, height, resolution = int(data["width"]), int(data["height"]), float(data["resolution"])
+        x, y, yaw = map(float, data["origin"])
+    except (OSError, KeyError, TypeError, ValueError, OverflowError) as problem:
+        raise DataError(f"{path} cannot be used: {problem!r}; generate the workspace again") from problem
+    sizes = width > 0 and height > 0 and resolution > 0 and all(map(math.isfinite, (resolution, x, y, yaw)))
+    if not sizes or not picture.startswith(_PNG) or len(picture) > LARGEST:
+        raise DataError(f"{path} does not belong to a picture in {PICTURE}; generate the workspace again")
+    return Floor(picture, width, height, resolution, x, y, yaw)
