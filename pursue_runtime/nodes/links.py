@@ -250,6 +250,15 @@ def connect_missing(publishers: Mapping[str, Iterable[str]]) -> None:
                             connect(topic, uri)
 
 
+def traffic(publisher: str, *subscriptions: rospy.Subscriber) -> Tuple[bool, int]:
+    """Return whether a connection to this publisher is open on the first of the topics, and the number of messages that
+    the present connections to it have brought on all of them."""
+    found = [[each for each in list(subscription.impl.connections) if each.callerid_pub == publisher]
+             for subscription in subscriptions if subscription.impl is not None]
+    is_open = any(connection.socket is not None for connection in found[0]) if found else False
+    return is_open, sum(connection.stat_num_msg for connections in found for connection in connections)
+
+
 def _subscriptions() -> List[Any]:
     """rospy's implementations of the topics to which this node has subscribed."""
     manager = get_topic_manager()

@@ -32,14 +32,13 @@ from pursue_runtime.nodes.node import (
     start_thread,
     subscribe,
 )
-from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.nodes.publishing import listeners
 from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.environment import make_player
 from pursue_runtime.ui.mission_view import (
-    MARGIN,
     Environment,
     MissionView,
     PossibleWord,
@@ -54,12 +53,11 @@ from pursue_runtime.ui.mission_view import (
     tasks,
 )
 from pursue_runtime.ui.options import Options, read_options
-from pursue_runtime.ui.page import Facts, PageRequest
-from pursue_runtime.ui.page_server import PageServer, open_page
+from pursue_runtime.ui.requests import numbered
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import INTERRUPTED, NOT_STARTED, Verdict, write_verdict
-from pursue_runtime.words import EVENTS, FINISH, PLAN, START, STOP
+from pursue_runtime.words import EVENTS, FINISH, PLAN, START
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 RETRY = 1.0  # real seconds until `_start_` is published again
@@ -95,8 +93,7 @@ class UI:
         self.offers: List[PossibleWord] = []
         self.given: List[Task] = []
         self.verdict: Optional[Tuple[int, str]] = None
-        self.board: Optional[PageServer] = None
-        self.gives_up = time.monotonic() + options.wait
+        self.page = UIPage(self)
         self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, ending)
@@ -106,8 +103,8 @@ class UI:
         self.states = subscribe_states(self.on_state, ending, on_malformed=membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
-        pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
-        Diagnostics(self.report, ending, Links(self.states, pulses, ending=ending, lost=self.master_lost))
+        self.pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
+        Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost))
 
     # Callbacks --------------------------------------------------------------------------------------------------------
 
@@ -122,7 +119,7 @@ class UI:
             if self.phase == GATHERING and self.connected() and not self.readiness.missing():
                 self.gathered()
             elif self.phase == GATHERING:
-                self.show()
+                self.page.show()
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """A state of the mission."""
@@ -132,8 +129,8 @@ class UI:
             self.observer = publisher
             for line in self.mission.on_state(state, rospy.get_time()):
                 self.terminal.line(line)
-            if self.board is not None and self.mission.state is state:
-                self.board.on_state(state, self.mission.elapsed(state.stamp))
+            if self.mission.state is state:
+                self.page.on_state(state, self.mission.elapsed(state.stamp))
             verdict = self.mission.verdict()
             if verdict is not None:
                 self.conclude(state.status, verdict[1])
@@ -143,7 +140,7 @@ class UI:
                     self.terminal.line(self.mission.first_line(rospy.get_time()), BOLD)
                 self.act()
                 self.offer()
-            self.show()
+            self.page.show()
 
     def on_plan(self, message: String) -> None:
         """A new plan: what people do in it."""
@@ -156,8 +153,7 @@ class UI:
         if plan.get("mission", "") not in ("", self.membership.source.mission):
             return
         with self.lock:
-            if self.board is not None:
-                self.board.on_plan(plan)
+            self.page.on_plan(plan)
             if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()
@@ -182,22 +178,8 @@ class UI:
                 if answer_text:
                     self.terminal.line(f"          {answer_text}")
                 if word:
-                    self.events.publish(word)
-
-    def on_request(self, request: PageRequest) -> str:
-        """Handle a request of the page; return what to show there, "" for nothing."""
-        self.find_offers()
-        reports = {task.word for task in self.given}
-        now = {offer.word for offer in self.offers if offer.opens <= MARGIN}
-        if request.do == "start" and self.phase == READY:
-            self.start()
-        elif request.do == "stop":
-            self.events.publish(STOP)
-        elif (request.do == "done" and request.word in reports) or (request.do == "say" and request.word in now):
-            self.events.publish(request.word)
-        else:
-            return f"{request.word or request.do} is not possible now."
-        return ""
+                    state, ends = self.mission.state, {task.word for task in self.given}
+                    self.events.publish(numbered(word, state.seq) if state is not None and word in ends else word)
 
     # What is done -----------------------------------------------------------------------------------------------------
 
@@ -205,10 +187,10 @@ class UI:
         """All nodes are ready."""
         self.phase = READY
         self.alarm.set()
-        self.show()
+        self.page.show()
         if self.options.autostart:
             self.start()
-        elif self.board is not None:
+        elif self.page.url:
             here = ", or press Enter" if self.reads() else ""
             self.terminal.line(f"All nodes are ready. Start the mission on the page{here}.", BOLD)
         elif self.reads():
@@ -227,7 +209,7 @@ class UI:
         self.tries += 1
         self.events.publish(START)
         self.alarm.set(patience=RETRY)
-        self.show()
+        self.page.show()
 
     def on_alarm(self) -> None:
         """The alarm."""
@@ -293,23 +275,18 @@ class UI:
         save_verdict(self.options.verdict, outcome, sentence)
         self.terminal.close()
         self.terminal.line(sentence, GOOD if status == 0 else BAD)
-        if self.board is not None:
-            self.board.end(self.mission.elapsed(rospy.get_time()), self.verdict)
+        self.page.end(self.mission.elapsed(rospy.get_time()), self.verdict)
         self.ending.end(status)
-
-    def show(self) -> None:
-        """Send the present view to the page."""
-        if self.board is not None:
-            self.board.show()
 
     # How it is --------------------------------------------------------------------------------------------------------
 
-    def facts(self) -> Facts:
-        """For the page."""
-        state, now = self.mission.state, self.mission.elapsed(rospy.get_time())
-        missing = self.readiness.missing() if self.phase == GATHERING else []
-        at = self.mission.elapsed(state.stamp) if state is not None else 0.0
-        return Facts(self.phase, missing, state, at, now, self.verdict)
+    def missing(self) -> List[str]:
+        """The nodes for which the start of the mission waits."""
+        return self.readiness.missing() if self.phase == GATHERING else []
+
+    def can_start(self) -> bool:
+        """True where every node is ready and the mission was not started."""
+        return self.phase == READY
 
     def connected(self) -> bool:
         """True when the observer and this node are connected both ways."""
@@ -327,7 +304,7 @@ class UI:
     def report(self) -> Report:
         """For /diagnostics."""
         with self.lock:
-            missing = self.readiness.missing() if self.phase == GATHERING else []
+            missing = self.missing()
             values: Dict[str, object] = {"phase": self.phase, "mode": self.options.mode, "missing": " ".join(missing)}
             verdict = self.mission.verdict()
             refused, trouble = self.membership.refused, self.membership.trouble
@@ -338,15 +315,14 @@ class UI:
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""
-        if self.board is not None:
-            self.terminal.line(f"The page is at {self.board.web.url}", BOLD)
+        if self.page.url:
+            self.terminal.line(f"The page is at {self.page.url}", BOLD)
         if self.reads():
             start_thread("typed", self.read, self.ending)
         status = self.ending.wait(linger=0.3)
         if self.ending.reason:
             self.master_lost(self.ending.reason)
-        if self.board is not None:
-            self.board.web.close()
+        self.page.close()
         if self.ending.renewed:
             self.terminal.close()
             restart_process()
@@ -397,9 +373,7 @@ def main(package: Package) -> int:
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
         ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))
-        ui.board = open_page(model, options, settings, membership.source, ui)
-        if ui.board is not None:
-            watch_positions([robot.name for robot in model.of_kind("robot")], ending, ui.board.on_positions)
+        ui.page.open(settings)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
         save_verdict(str(rospy.get_param("~verdict", "")), NOT_STARTED, str(problem))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
@@ -25,34 +24,7 @@ from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
-REQUESTS = {"start": False, "stop": False, "say": True, "done": True}
-"""What a page may ask for, and whether a word belongs to it."""
-
 NOTE, GOOD, BAD = "note", "good", "bad"
-
-
-class PageRequest(NamedTuple):
-    """A request from a page."""
-
-    do: str
-    word: str = ""
-
-
-def read_request(text: Any) -> PageRequest:
-    """Reads a message of the page. Raises ValueError with what was expected."""
-    try:
-        data = read_json(text)
-    except (TypeError, BadText) as problem:
-        raise ValueError(f"not JSON; {_expected()}") from problem
-    known = isinstance(data, dict) and isinstance(data.get("do"), str) and data["do"] in REQUESTS
-    word = data.get("word", "") if known else None
-    if not isinstance(word, str) or bool(word) != REQUESTS[data["do"]]:
-        raise ValueError(_expected())
-    return PageRequest(data["do"], word)
-
-
-def _expected() -> str:
-    return 'expected {"do": "start"}, {"do": "stop"}, {"do": "say", "word": …} or {"do": "done", "word": …}'
 
 
 class FloorPlan(NamedTuple):
@@ -79,7 +51,10 @@ def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> Fl
 
 
 class Facts(NamedTuple):
-    """What the node knows: its phase, who is missing, the last state and its moment, the end, and the present."""
+    """What the node knows: its phase, who is missing, the last state and its moment, the end, and the present.
+
+    `answers` is False while the observer does not answer; `received` is when the last state came (Unix time).
+    """
 
     phase: str
     missing: Sequence[str]
@@ -87,6 +62,8 @@ class Facts(NamedTuple):
     at: float
     now: float
     verdict: Optional[Tuple[int, str]] = None
+    answers: bool = True
+    received: float = 0.0
 
     @property
     def live(self) -> bool:
@@ -172,6 +149,7 @@ class Page:
             "statuses": status_texts(self._others, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
+            "answers": facts.answers, "received": _round(facts.received),
         }
 
     def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:

@@ -15,8 +15,9 @@ from pursue_runtime.strategy import Strategy, read_strategies
 from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
-from pursue_runtime.ui.page import BAD, GOOD, Facts, Page, PageRequest, read_floor_plan, read_request
+from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts, Page, read_floor_plan
 from pursue_runtime.ui.promise import read_promise
+from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
@@ -75,6 +76,12 @@ class PageServer:
         self._page.note(at, verdict[1], BAD if verdict[0] else GOOD)
         self.show()
 
+    def on_presence(self, at: float, answers: bool) -> None:
+        """Show that the observer does not answer, or does again."""
+        self._page.note(at, "the observer answers again" if answers else "the observer does not answer",
+                        NOTE if answers else BAD)
+        self.show()
+
     def show(self) -> None:
         """Send the present view to every page."""
         fresh = [entry for entry in self._page.log if entry["n"] > self._shown]
@@ -97,10 +104,10 @@ class PageServer:
             return self._node.on_request(request)
 
     def present(self) -> Optional[float]:
-        """Return the time units since the start; None while the mission does not run."""
+        """Return the time units since the start; None while the mission does not run, as far as the node knows."""
         with self._node.lock:
             facts = self._node.facts()
-        return facts.now if facts.live else None
+        return facts.now if facts.live and facts.answers else None
 
 
 def strategies_of(source: Source) -> List[Strategy]:

@@ -29,9 +29,10 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 
+SCRIPTS = ("agents", "connection", "objectives", "page", "plan")
 FILES = {
     "/": ("index.html", "text/html"),
-    **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in ("agents", "objectives", "page", "plan")},
+    **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},
     "/page.css": ("page.css", "text/css"),
 }
 TICK = 0.5  # real seconds between two words on what time it is
@@ -41,6 +42,7 @@ MAX_CONNECTIONS = 64  # of those at a time
 MAX_MESSAGE = 4096  # bytes that a page may send in a message or a request
 MAX_BACKLOG = 1 << 20  # bytes that a page may be behind
 MAX_PAGES = 50  # pages at a time
+ALIVE = "alive?"  # the message of a page to which nothing has come for a while: it is answered at once
 MAX_INVALID = 20  # messages of a page that cannot be understood until it is closed
 
 ERROR_TEXTS = {
@@ -355,6 +357,9 @@ class PageSocket(Guarded, WebSocketHandler):
 
     def on_message(self, message: Any) -> None:
         """Pass a page's message to the node, and answer with its remark."""
+        if message == ALIVE:
+            self.send_text(json.dumps({"type": "alive"}))
+            return
         try:
             remark = self.web.on_message(message)
         except ValueError as problem:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
+import signal
 import subprocess
 import time
 import zlib
 from pathlib import Path
 from typing import Callable, Iterator, Tuple
+from xmlrpc.client import ServerProxy
 
 import pytest
 from ros_world import SCENARIOS, Ros, end, lay_over
@@ -27,14 +30,14 @@ pytestmark = [
 ]
 
 Build = Callable[..., Path]
-Mission = Tuple[Browser, "subprocess.Popen[bytes]"]
+Mission = Tuple[Browser, "subprocess.Popen[bytes]", str]
 PLACE = "document.querySelector('[data-agent=polBot1]').getAttribute('transform')"
 """Where a robot is drawn on the map."""
 
 
 @contextlib.contextmanager
 def mission(ros: Ros, workspace: Path, tmp_path: Path, scenario: str, *arguments: str) -> Iterator[Mission]:
-    """Launches a mission with a page, and opens that."""
+    """Launches a mission with a page, and opens that; the page, the launch, and the address of its master."""
     log = tmp_path / "log"
     with ros.master() as there, browser(tmp_path / "profile") as page:
         for parameter in (argument for argument in arguments if argument.startswith("/")):
@@ -52,9 +55,17 @@ def mission(ros: Ros, workspace: Path, tmp_path: Path, scenario: str, *arguments
                 time.sleep(0.1)
             page.open(found.group(1))
             page.wait("!document.getElementById('main').hidden")
-            yield page, launched
+            yield page, launched, there["ROS_MASTER_URI"]
         finally:
             end(launched)
+
+
+def process_of(uri: str, node: str) -> int:
+    """The process of a node."""
+    with ServerProxy(uri) as master:
+        address = master.lookupNode("/test", f"/{node}")[2]  # type: ignore[index]
+    with ServerProxy(str(address)) as slave:
+        return int(slave.getPid("/test")[2])  # type: ignore[index,call-overload]
 
 
 def is_drawn(png: bytes) -> bool:
@@ -75,7 +86,7 @@ def fits(page: Browser) -> bool:
 
 def test_a_mission_is_started_watched_and_won_on_a_page(ros: Ros, built: Build, tmp_path: Path) -> None:
     workspace = built("thesis/catch_the_thief")
-    with mission(ros, workspace, tmp_path, "catch_the_thief", "mode:=still", "time_unit:=0.5") as (page, launched):
+    with mission(ros, workspace, tmp_path, "catch_the_thief", "mode:=still", "time_unit:=0.5") as (page, launched, _):
         page.wait("document.getElementById('status').textContent === 'ready'")
         page.screen(360, 740)
         assert fits(page)
@@ -107,7 +118,7 @@ def test_a_mission_is_started_watched_and_won_on_a_page(ros: Ros, built: Build, 
 def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros, built: Build, tmp_path: Path) -> None:
     workspace = built("thesis/catch_the_thief")
     button = "document.querySelector('[data-word=thief_c2b]')"
-    with mission(ros, workspace, tmp_path, "catch_the_thief", "mode:=still", "time_unit:=8.0") as (page, launched):
+    with mission(ros, workspace, tmp_path, "catch_the_thief", "mode:=still", "time_unit:=8.0") as (page, launched, uri):
         page.wait("document.getElementById('status').textContent === 'ready'")
         assert page.value(f"{button}.getAttribute('aria-disabled')") == "true", "not before the start"
         page.click("[data-word=thief_c2b]")
@@ -119,6 +130,11 @@ def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros
         page.wait("document.getElementById('log').textContent.includes('thief sets off from c to b')")
         assert page.text("#log").count("thief sets off") == 1, "the press before the start did nothing"
         page.wait("document.getElementById('agents').textContent.includes('from c to b')")
+        os.kill(process_of(uri, "observer"), signal.SIGKILL)
+        page.wait("document.getElementById('link').textContent.includes('the observer does not answer; this is as of')")
+        page.wait("document.getElementById('log').textContent.includes('the observer answers again')")
+        page.wait("document.getElementById('link').textContent === 'connected'")
+        assert page.text("#status") == "running" and page.text("#log").count("thief sets off") == 1
         page.click("#stop")
         page.wait("document.getElementById('sure').open")
         page.click("#stop-no")
@@ -140,7 +156,8 @@ def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path:
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, options, tmp_path / "ward")
     workspace = lay_over(ros, folder)
     planned = "document.querySelector('#tasks .task-time').textContent.match(/for ([0-9.]+) now; planned: ([0-9.]+)/)"
-    with mission(ros, workspace, tmp_path, "ward", "time_unit:=0.8", "/simulator/reports '[bot1]'") as (page, launched):
+    given = "time_unit:=0.8", "/simulator/reports '[bot1]'"
+    with mission(ros, workspace, tmp_path, "ward", *given) as (page, launched, _):
         page.wait("document.getElementById('status').textContent === 'ready'")
         page.screen(360, 740)
         page.click("#start")

@@ -10,10 +10,8 @@ const $ = (id) => document.getElementById(id);
 let scene = null; // what stays: map, agents, buttons
 let view = null; // what changes
 let clock = { now: 0, seen: 0, rate: 0 }; // time units since the start, when that was heard (ms), units per second
-let socket = null;
 let heard = 0; // number of the last entry of the log
 let following = true; // whether the end of the log is kept in sight
-let patience = 1000; // ms until the next try to connect
 const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), groups: [], clocks: new Map(), rest: new Map(), statuses: new Map() };
 
 function make(tag, kind, text) {
@@ -47,39 +45,10 @@ const shown = (name) => (Object.prototype.hasOwnProperty.call(scene.labels, name
 const short = (name) => (name.length > 24 ? name.slice(0, 23) + "…" : name);
 const units = (number) => Math.max(0, number).toFixed(1);
 
-// The connection -----------------------------------------------------------------------------------------------------
-
-function connect() {
-  const address = (location.protocol === "https:" ? "wss://" : "ws://") + location.host + "/live";
-  let opened = false;
-  socket = new WebSocket(address);
-  socket.onopen = () => { opened = true; patience = 1000; };
-  socket.onmessage = (event) => take(JSON.parse(event.data));
-  socket.onclose = () => {
-    socket = null;
-    clock = { now: present(), seen: performance.now(), rate: 0 };
-    link("away", view && view.verdict ? "the mission has ended" : "connection lost, trying again");
-    if (!opened) explain();
-    refresh();
-    setTimeout(connect, patience);
-    patience = Math.min(2 * patience, 5000);
-  };
-}
-
-async function explain() { // a WebSocket does not say why it was refused
-  try {
-    const answer = await fetch("page.css", { cache: "no-store" });
-    if (answer.status === 401 || answer.status === 403) link("away", "not allowed: open the link that the UI has printed");
-  } catch (problem) { /* there is nobody */ }
-}
-
-function link(is, text) {
-  $("link").dataset.is = is;
-  say($("link"), text);
-}
+// What is asked and received ---------------------------------------------------------------------------------------------
 
 function ask(message) {
-  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  if (isConnected()) socket.send(JSON.stringify(message));
   else remark("There is no connection: nothing was sent.");
 }
 
@@ -91,7 +60,6 @@ function remark(text) {
 
 function take(message) {
   if (message.type === "hello") {
-    link("here", "connected");
     setScene(message.scene);
     setPositions(message.positions || {});
     if (!message.log.some((entry) => entry.n === heard)) forgetLog();
@@ -120,7 +88,7 @@ function heardTime(now) { // simulated time has a pace of its own: it is measure
 }
 
 function present() {
-  return clock.now + (view && view.live ? clock.rate * Math.min(3, (performance.now() - clock.seen) / 1000) : 0);
+  return clock.now + (view && view.live && view.answers ? clock.rate * Math.min(3, (performance.now() - clock.seen) / 1000) : 0);
 }
 
 // What stays ---------------------------------------------------------------------------------------------------------
@@ -156,7 +124,7 @@ function setTaskList(section, list, agents) {
     const idle = agent.kind === "human" ? "nothing to do now" : "not under way";
     const task = { row, text, time, done, idle, word: "", pressed: "" };
     onPress(done, () => {
-      ask({ do: "done", word: task.word });
+      ask({ do: "done", word: task.word, seq: view.seq });
       task.pressed = task.word; // a second press would mean what comes next
       setTimeout(() => { task.pressed = ""; refresh(); }, 2000);
       refresh();
@@ -185,7 +153,7 @@ function setButtons() { // only those are shown that are possible where their ag
     button.dataset.word = word;
     button.setAttribute("aria-disabled", "true");
     button.append(make("span", "", label), time);
-    onPress(button, () => ask({ do: "say", word }));
+    onPress(button, () => ask({ do: "say", word, seq: view.seq }));
     known.inside.append(button);
     known.words.push(word);
     for (const place of from) known.counts.set(place, (known.counts.get(place) || 0) + 1);
@@ -218,7 +186,8 @@ function showButtons(now, here) {
 function setView(fresh) {
   const restart = !view || fresh.seq < view.seq;
   view = fresh;
-  if (!view.live) clock = { now: view.at, seen: performance.now(), rate: 0 };
+  showConnection();
+  if (!view.live || !view.answers) clock = { now: view.live ? view.now : view.at, seen: performance.now(), rate: 0 };
   else if (restart) clock = { now: view.now, seen: performance.now(), rate: 1 / view.unit };
   else heardTime(view.now);
   const early = { "waiting for the nodes": "waiting", ready: "ready", starting: "starting" };
@@ -254,10 +223,10 @@ function pairs(known, list, names) {
 
 function refresh() { // what changes while nothing happens: times, and what is possible
   if (!view) return;
-  const now = present(), here = socket !== null && socket.readyState === WebSocket.OPEN, over = view.verdict !== "";
+  const now = present(), here = isCurrent(), over = view.verdict !== "";
   say($("now"), units(now));
   enable($("start"), here && !over && view.status === "waiting" && view.phase === "ready");
-  enable($("stop"), here && !over);
+  enable($("stop"), isConnected() && !over); // it is carried out when the observer answers
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
   showButtons(now, here);
   showObjectives(now);

@@ -90,6 +90,7 @@ class Node:
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
+        self.answers, self.received = True, 0.0
         page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies, floor)
         self.board = ui_board.PageServer(page, self)
         self.pictures = {} if floor is None else {ui_board.FLOOR: (floor.picture, "image/png")}
@@ -105,7 +106,8 @@ class Node:
 
     def facts(self) -> Any:
         at = self.state.stamp - 100.0 if self.state is not None else 0.0
-        return Facts(self.phase, (), self.state, at, at + self.clock() - self.shown, self.verdict)
+        now = at + (self.clock() - self.shown if self.answers else 0.0)
+        return Facts(self.phase, (), self.state, at, now, self.verdict, self.answers, self.received)
 
     def on_request(self, request: Any) -> str:
         self.wanted.append(tuple(request))
@@ -251,6 +253,54 @@ def test_the_page_says_that_the_connection_is_lost_and_comes_back(page: Browser,
     page.wait("document.getElementById('stop').getAttribute('aria-disabled') === 'false'")
 
 
+def test_the_page_says_that_the_observer_does_not_answer_and_since_when_and_that_it_is_back(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody())
+    node.show(1, 5.0, event="_start_", nurse="doing_screw_in_s")
+    page.wait("Number(document.getElementById('now').textContent) > 5.2")
+    node.answers, node.received = False, 1.0e9
+    node.board.on_presence(5.0, False)
+    as_of = page.value("new Date(1e12).toLocaleTimeString('en-GB')")
+    says(page, "#link", f"the observer does not answer; this is as of {as_of}")
+    says(page, "#log", "the observer does not answer")
+    assert page.text("#now") == "5.0", "time stands still"
+    for button in ("[data-word=thief_a2b]", "#tasks .done"):
+        assert page.value(f"document.querySelector('{button}').getAttribute('aria-disabled')") == "true"
+    assert page.value("document.getElementById('stop').getAttribute('aria-disabled')") == "false", "it waits there"
+    node.answers = True
+    node.board.on_presence(5.0, True)
+    says(page, "#link", "connected")
+    says(page, "#log", "the observer answers again")
+    page.wait("document.querySelector('#tasks .done').getAttribute('aria-disabled') === 'false'")
+    page.wait("Number(document.getElementById('now').textContent) > 5.2")
+
+
+def test_a_phone_that_was_asleep_connects_anew(page: Browser, show: Callable[..., Node]) -> None:
+    """Its connection may be dead, and no message ever comes on it: the browser does not notice that for minutes."""
+    node = show(*everybody())
+    node.show(1, 0.0, event="_start_")
+    says(page, "#log", "the mission starts")
+    first = "socket.onmessage = null; window.first = socket; received -= 60000"
+    page.value(f"{first}; document.dispatchEvent(new Event('visibilitychange')); true")
+    page.wait("socket !== null && socket !== window.first && isConnected()")
+    says(page, "#link", "connected")
+    assert page.text("#log").count("the mission starts") == 1
+
+
+def test_all_tabs_show_the_same_also_after_a_reload(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody())
+    node.show(1, 0.0, event="_start_")
+    node.show(2, 2.0, event="thief_a2b", agent="thief", thief="going_a_to_b")
+    says(page, "#log", "thief sets off from a to b")
+    shown = "['status', 'why', 'turn', 'log', 'agents'].map((id) => document.getElementById(id).textContent).join('|')"
+    steady = f"({shown}).replace(/[0-9.]+/g, '')"
+    before = page.value(steady)
+    page.open(node.board.web.url)
+    page.wait("!document.getElementById('main').hidden")
+    assert page.value(steady) == before
+
+
 def test_nothing_jumps_while_the_mission_goes_on(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
     boxes = (
@@ -312,7 +362,7 @@ def test_the_keyboard_does_everything(page: Browser, show: Callable[..., Node]) 
     reached = tabs(page, 8)
     assert reached[0] == "stop" and {"thief_a2b", "boy:screw", "log"} <= set(reached)
     assert "thief_b2a" not in reached, "only what is possible where it is"
-    assert node.wanted == [("start", "")]
+    assert node.wanted == [("start", "", 0)]
 
 
 def test_what_is_to_be_achieved_and_the_guaranteed_time_are_above_all(page: Browser, show: Callable[..., Node]) -> None:
@@ -426,7 +476,7 @@ def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node
     page.click(".done")
     page.click(".done")
     says(page, "#remark", "as you like")
-    assert node.wanted == [("done", "nurse:screwDONE")]
+    assert node.wanted == [("done", "nurse:screwDONE", 2)]
 
 
 def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_page(
@@ -444,7 +494,7 @@ def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_p
     page.value(pressed.format(0))  # the robot stands
     page.value(pressed.format(1))
     says(page, "#remark", "as you like")
-    assert node.wanted == [("done", "thief_going_a_to_b2b")]
+    assert node.wanted == [("done", "thief_going_a_to_b2b", 2)]
 
 
 def test_with_a_simulator_only_people_report_their_ends(page: Browser, show: Callable[..., Node]) -> None:
@@ -464,7 +514,7 @@ def test_what_is_possible_in_a_while_becomes_possible(page: Browser, show: Calla
     page.wait("document.querySelector('[data-word=thief_a2b]').getAttribute('aria-disabled') === 'false'")
     page.click("[data-word=thief_a2b]")
     says(page, "#remark", "as you like")
-    assert node.wanted == [("say", "thief_a2b")]
+    assert node.wanted == [("say", "thief_a2b", 1)]
 
 
 @pytest.mark.parametrize("status", ["won", "lost", "stopped"])

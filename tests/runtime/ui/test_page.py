@@ -10,7 +10,7 @@ import pytest
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
-from pursue_runtime.ui.page import MAX_ENTRIES, Facts, FloorPlan, Page, read_floor_plan, read_request
+from pursue_runtime.ui.page import MAX_ENTRIES, Facts, FloorPlan, Page, read_floor_plan
 from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(
@@ -220,25 +220,3 @@ def test_states_of_strangers_do_no_harm() -> None:
     assert [entry["text"] for entry in shown.on_state(strange, 3.0)] == ["what"]
     hostile = SystemState(10, 1.0, {"bot": "<script>"}, {"Prule": 0}, dict.fromkeys(MODEL.clocks, 0.0))
     assert agent(view(shown, hostile), "bot")["place"] == ""
-
-
-# What it may ask for
-
-@pytest.mark.parametrize("text, request_", [
-    ('{"do": "start"}', ("start", "")),
-    ('{"do": "stop"}', ("stop", "")),
-    ('{"do": "say", "word": "thief_a2b"}', ("say", "thief_a2b")),
-    (b'{"do": "done", "word": "nurse:screwDONE"}', ("done", "nurse:screwDONE")),
-])
-def test_requests_are_read(text: Any, request_: Any) -> None:
-    assert read_request(text) == request_
-
-
-@pytest.mark.parametrize("text", [
-    "", "{", "[]", "7", "null", '"start"', "{}", '{"do": 7}', '{"do": ["start"]}', '{"do": {}}', '{"do": "kill"}',
-    '{"do": "say"}', '{"do": "say", "word": 7}', '{"do": "say", "word": ""}', '{"do": "start", "word": "x"}',
-    b"\xff\xfe", "[" * 4000, '{"do": "say", "word": null}',
-])
-def test_junk_is_refused_with_what_was_expected(text: Any) -> None:
-    with pytest.raises(ValueError, match="expected"):
-        read_request(text)

@@ -14,7 +14,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 import pytest
 
 from pursue_runtime.ui import web as ui_web
-from pursue_runtime.ui.page import read_request
+from pursue_runtime.ui.requests import read_request
 from pursue_runtime.ui.web import MAX_INVALID, MAX_MESSAGE, Web, WebError, is_loopback
 
 pytest.importorskip("tornado", reason="tornado is not installed")
@@ -32,7 +32,7 @@ class Node:
     """What the server asks: a node that remembers what was wanted of it."""
 
     def __init__(self) -> None:
-        self.asked: List[Tuple[str, str]] = []
+        self.asked: List[Tuple[str, str, int]] = []
         self.now: Optional[float] = None
 
     def welcome(self) -> Dict[str, Any]:
@@ -119,7 +119,10 @@ async def hello(there: Any) -> Any:
 
 # The page
 
-@pytest.mark.parametrize("path, kind", [("/", "text/html"), ("/page.js", "text/javascript"), ("/page.css", "text/css")])
+@pytest.mark.parametrize("path, kind", [
+    ("/", "text/html"), ("/page.js", "text/javascript"), ("/connection.js", "text/javascript"),
+    ("/page.css", "text/css"),
+])
 def test_the_page_is_served_and_may_load_nothing_but_itself(serve: Serve, path: str, kind: str) -> None:
     answer = get(serve(), path)
     assert (answer.status, answer.headers.get_content_type()) == (200, kind)
@@ -138,7 +141,7 @@ def test_the_page_names_nothing_outside_and_has_no_scripts_in_its_text() -> None
     style = Path(FOLDER, "page.css").read_text(encoding="utf-8")
     for text in (page, style, script.replace("http://www.w3.org/2000/svg", "")):
         assert "http://" not in text and "https://" not in text and "//cdn" not in text
-    assert page.count("<script") == len(scripts)
+    assert page.count("<script") == len(scripts) and {f"/{each.name}" for each in scripts} <= set(ui_web.FILES)
     assert all(f'<script src="{each.name}" defer>' in page for each in scripts)
     assert "onclick" not in page and "style=" not in page
     for danger in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function"):
@@ -235,12 +238,22 @@ def test_our_own_names_are_served_through_any_port(serve: Serve) -> None:
 def test_what_is_asked_reaches_the_node_and_remarks_come_back(serve: Serve, node: Node) -> None:
     async def script(there: Any) -> Any:
         await there.read_message()
-        await there.write_message('{"do": "say", "word": "thief_a2b"}')
-        await there.write_message('{"do": "say", "word": "later"}')
+        await there.write_message('{"do": "say", "word": "thief_a2b", "seq": 3}')
+        await there.write_message('{"do": "say", "word": "later", "seq": 4}')
         return json.loads(await there.read_message())
 
     assert talk(serve(), script) == {"type": "remark", "text": "not now"}
-    assert node.asked == [("say", "thief_a2b"), ("say", "later")]
+    assert node.asked == [("say", "thief_a2b", 3), ("say", "later", 4)]
+
+
+def test_a_page_to_which_nothing_has_come_for_a_while_is_answered_at_once(serve: Serve, node: Node) -> None:
+    async def script(there: Any) -> Any:
+        await there.read_message()
+        await there.write_message("alive?")
+        return json.loads(await there.read_message())
+
+    assert talk(serve(), script) == {"type": "alive"}
+    assert node.asked == []
 
 
 def test_junk_is_answered_and_too_much_of_it_ends_the_talk(serve: Serve, node: Node) -> None:
