@@ -30,7 +30,8 @@ PATIENCE = 1.0
 class Membership:
     """The mission whose data the node has, and what becomes of states. `trouble`: why it cannot take part, or "".
 
-    It is a witness of the mission: an observer that starts learns what this node has seen last.
+    `scenario` is that of the workspace. It is a witness of the mission: an observer that starts learns what this node
+    has seen last.
     """
 
     def __init__(self, package: Package, ending: Ending) -> None:
@@ -39,7 +40,7 @@ class Membership:
         own = own_source(package, "model.yaml", config)
         given = rospy.get_param("~", {})
         self.received, self.again = flag(given, "received"), flag(given, "again")
-        self.trouble = ""
+        self.trouble, self.scenario = "", package.scenario
         self._ending = ending
         self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")
         self.source = self._choose()
@@ -47,7 +48,8 @@ class Membership:
         self._filter = StateFilter(self.source.mission, own.mission, self.again)
         self._filter.check = lambda state: model_problem(self.model, state)
         self.count_malformed = self._filter.count_malformed
-        self._witness = Witness(lambda: self._filter.newest)
+        self._over = False
+        self._witness = Witness(lambda: None if self._over else self._filter.newest)
 
     @property
     def refused(self) -> str:
@@ -58,6 +60,15 @@ class Membership:
     def counts(self) -> Dict[str, object]:
         """Return what was refused, for /diagnostics."""
         return {"refused": self.refused, "malformed": self._filter.malformed}
+
+    @property
+    def own(self) -> Source:
+        """Return where the workspace's own data of the package are."""
+        return self._missions.own
+
+    def leave(self) -> None:
+        """Be no witness of this mission any more: it is over, and the node stays beside the next one."""
+        self._over = True
 
     def people(self) -> Optional[Strategy]:
         """Return the part of the strategy that people carry out, where there are any. Raises DataError."""

@@ -14,7 +14,21 @@ import threading
 import time
 import traceback
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
+from types import MappingProxyType
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    NamedTuple,
+    NoReturn,
+    Optional,
+    Sequence,
+    Tuple,
+    Type,
+)
 
 import rosgraph
 import rospy
@@ -325,12 +339,15 @@ ANEW = "PURSUE_ANEW"
 """In the environment of a node that has begun anew."""
 
 
-def restart_process() -> NoReturn:
-    """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended."""
+def restart_process(environment: Mapping[str, str] = MappingProxyType({})) -> NoReturn:
+    """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended.
+
+    `environment` is added to that of the process.
+    """
     for sign in (signal.SIGINT, signal.SIGTERM):
         signal.signal(sign, signal.SIG_DFL)
     sys.stdout.flush()
-    os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes"})
+    os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes", **environment})
 
 
 def init_node(name: str, **options: Any) -> None:

@@ -147,11 +147,14 @@ class Recorder:
             with self.lock:
                 self.open = False
                 self.bag.close()
+            if self.status == WAITING or (self.ending.renewed and not self.status):  # nothing has happened yet
+                os.remove(self.path + ".active")
+                rospy.loginfo("no mission began: nothing is kept of %s", self.path)
+            else:
+                os.rename(self.path + ".active", self.path)
+                rospy.loginfo("recorded %d messages in %s", self.count, self.path)
             if self.ending.renewed:
-                os.remove(self.path + ".active")  # nothing has happened yet
                 restart_process()
-            os.rename(self.path + ".active", self.path)
-            rospy.loginfo("recorded %d messages in %s", self.count, self.path)
         return status
 
 

@@ -89,7 +89,6 @@ class UI:
         self.phase = GATHERING
         self.observer = ""
         self.tries = 0
-        self.concluded = False
         self.offers: List[PossibleWord] = []
         self.given: List[Task] = []
         self.verdict: Optional[Tuple[int, str]] = None
@@ -115,7 +114,12 @@ class UI:
                 values = {value.key: value.value for value in status.values}
                 ours = values.get("mission") in (None, "", self.membership.source.mission)
                 ready = ours and values.get("ready") == "true"
-                self.readiness.update(status.hardware_id or status.name.partition(":")[0], ready)
+                node = status.hardware_id or status.name.partition(":")[0]
+                self.readiness.update(node, ready)
+                if node == "recorder" and "file" in values:
+                    self.page.on_recorder(values["file"])
+            if self.verdict is not None:
+                return
             if self.phase == GATHERING and self.connected() and not self.readiness.missing():
                 self.gathered()
             elif self.phase == GATHERING:
@@ -127,6 +131,9 @@ class UI:
             if not self.membership.takes(state):
                 return
             self.observer = publisher
+            if self.verdict is not None:
+                self.page.after_end(state)
+                return
             for line in self.mission.on_state(state, rospy.get_time()):
                 self.terminal.line(line)
             if self.mission.state is state:
@@ -168,7 +175,9 @@ class UI:
     def on_line(self, text: str) -> None:
         """The person at the terminal typed a line."""
         with self.lock:
-            if self.phase == READY and not text.strip():
+            if self.verdict is not None:
+                self.terminal.line("          the mission has ended; Ctrl-C ends the page as well")
+            elif self.phase == READY and not text.strip():
                 self.start()
             elif self.phase == RUNNING and not text.strip():
                 self.offer(again=True)
@@ -200,7 +209,7 @@ class UI:
 
     def start(self) -> None:
         """Publish `_start_`, again if no state answers it; never for a mission that has been seen under way."""
-        if self.mission.start is not None:
+        if self.mission.start is not None or self.verdict is not None:
             return
         if self.tries == TRIES:
             self.conclude(NOT_STARTED, f"The observer does not answer {START}.")
@@ -228,7 +237,7 @@ class UI:
 
     def act(self) -> None:
         """Publishes what is due, and sleeps until there is more."""
-        if self.phase != RUNNING or self.concluded:
+        if self.phase != RUNNING or self.verdict is not None:
             return
         now, real = rospy.get_time(), time.monotonic()
         if self.finish_received is not None and real >= self.finish_received + VANISHED:
@@ -276,7 +285,11 @@ class UI:
         self.terminal.close()
         self.terminal.line(sentence, GOOD if status == 0 else BAD)
         self.page.end(self.mission.elapsed(rospy.get_time()), self.verdict)
-        self.ending.end(status)
+        if self.page.stays:
+            self.membership.leave()
+            self.terminal.line(f"The page stays at {self.page.url} until it is closed there, or Ctrl-C.", PLAIN)
+        else:
+            self.ending.end(status)
 
     # How it is --------------------------------------------------------------------------------------------------------
 
@@ -300,6 +313,7 @@ class UI:
         """End the node: without a master no node can start or join."""
         with self.lock:
             self.conclude(STOPPED if self.phase == RUNNING else NOT_STARTED, f"The mission cannot go on: {why}.")
+            self.ending.end(self.verdict[0] if self.verdict is not None else 1)
 
     def report(self) -> Report:
         """For /diagnostics."""
@@ -322,15 +336,15 @@ class UI:
         status = self.ending.wait(linger=0.3)
         if self.ending.reason:
             self.master_lost(self.ending.reason)
-        self.page.close()
+        kept = self.page.close("another mission is prepared" if self.ending.renewed else "the mission has ended")
         if self.ending.renewed:
             self.terminal.close()
-            restart_process()
+            restart_process(kept)
         if self.verdict is None:  # the mission goes on without the UI, or everything ends
             save_verdict(self.options.verdict, INTERRUPTED, "The UI was interrupted before the mission ended.")
             self.terminal.close()
             return 1
-        return status
+        return max(status, self.verdict[0])
 
     def read(self) -> None:
         """Handle what is typed, until the input ends."""

@@ -1,19 +1,24 @@
-"""The page's side of the UI: what it shows, what pages ask for, and whether the observer answers."""
+"""The page's side of the UI: what it shows, what pages ask for, whether the observer answers, and what comes after the
+mission: the page stays until it is closed or the next mission of the launch is prepared.
+"""
 
 from __future__ import annotations
 
+import os
 import time
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple
 
 import rospy
 
+from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
-from pursue_runtime.state import SystemState
+from pursue_runtime.state import LIVE, WAITING, SystemState
 from pursue_runtime.ui.mission_view import MARGIN
 from pursue_runtime.ui.page import Facts
-from pursue_runtime.ui.page_server import PageServer, open_page
+from pursue_runtime.ui.page_server import ADDRESS, PageServer, format_address, open_page
+from pursue_runtime.ui.past_missions import PastMissions, shown_missions, workspace_of
 from pursue_runtime.ui.presence import LOOK, Presence
 from pursue_runtime.ui.requests import PageRequest, Presses
 from pursue_runtime.words import STOP
@@ -22,6 +27,9 @@ if TYPE_CHECKING:
     from pursue_runtime.nodes.ui import UI
 
 NO_ANSWER = "The observer does not answer"
+
+LOOKS_AT_FILES = 4
+"""So many looks at the connections go by until the next look at the files of earlier missions."""
 
 
 class UIPage:
@@ -34,6 +42,11 @@ class UIPage:
         self._presses, self._presence = Presses(), Presence()
         self._received = (0.0, 0.0)  # when the last state came: Unix time, ROS time
         self._stopping = False
+        self._next = False  # the nodes wait for the start of another mission
+        self._recording = ""  # the file that the recorder writes
+        own, scenario = ui.membership.own, ui.membership.scenario
+        folder = scenario_folder(os.environ, scenario)
+        self._past = PastMissions(folder, own.mission, workspace_of(own.folder))
 
     def open(self, settings: Mapping[str, Any]) -> None:
         """Serve the page, where one is wanted. Raises ParameterError and other DataErrors."""
@@ -42,6 +55,11 @@ class UIPage:
         if self._board is not None:
             start_thread("presence", self._watch, ui.ending)
             watch_positions([robot.name for robot in ui.model.of_kind("robot")], ui.ending, self._board.on_positions)
+
+    @property
+    def stays(self) -> bool:
+        """Return True if the page outlives the mission."""
+        return self._board is not None and self._ui.options.stay
 
     @property
     def url(self) -> str:
@@ -72,23 +90,42 @@ class UIPage:
         if self._board is not None:
             self._board.end(at, verdict)
 
-    def close(self) -> None:
-        """Serve no more."""
-        if self._board is not None:
-            self._board.web.close()
+    def after_end(self, state: SystemState) -> None:
+        """Take a state that comes after the end: the next mission waits, or somebody else has started it."""
+        if state.status in LIVE:
+            self._ui.ending.renew()
+        elif (state.status == WAITING) != self._next:
+            self._next = state.status == WAITING
+            self.show()
+
+    def on_recorder(self, file: str) -> None:
+        """Take the name of the file that the recorder writes."""
+        self._recording = file
+
+    def close(self, why: str) -> Dict[str, str]:
+        """Serve no more; return what the environment of a node that begins anew holds for its page."""
+        if self._board is None:
+            return {}
+        web = self._board.web
+        web.close(why)
+        return {ADDRESS: format_address(web.port, web.token)}
 
     # What comes from the page -----------------------------------------------------------------------------------------
 
     def facts(self) -> Facts:
         """Return what the page shows."""
-        ui, mission, answers = self._ui, self._ui.mission, self._presence.answers
+        ui, mission = self._ui, self._ui.mission
+        answers = self._presence.answers or ui.verdict is not None
         now = mission.elapsed(rospy.get_time() if answers else self._received[1])
         at = mission.elapsed(mission.state.stamp) if mission.state is not None else 0.0
-        return Facts(ui.phase, ui.missing(), mission.state, at, now, ui.verdict, answers, self._received[0])
+        known = Facts(ui.phase, ui.missing(), mission.state, at, now, ui.verdict, answers, self._received[0])
+        return known._replace(stays=self.stays, offers=self._offers())
 
     def on_request(self, request: PageRequest) -> str:
         """Carry out a request of a page; return what to show there, "" for nothing."""
         ui, state = self._ui, self._ui.mission.state
+        if request.do in self._offers():
+            return self._leave(request.do)
         if ui.verdict is not None:
             return f"{request.word or request.do} is not possible now."
         if request.do == "stop":
@@ -110,14 +147,35 @@ class UIPage:
             ui.events.publish(word)
         return remark
 
+    def _offers(self) -> Tuple[str, ...]:
+        """What a page may ask for after the mission."""
+        if not self.stays or self._ui.verdict is None:
+            return ()
+        is_over = self._ui.mission.state is not None and self._ui.mission.state.status != WAITING
+        can_close = not self._ui.membership.again  # else the launch goes on, and would open the page again
+        return (*(("next",) if self._next or not is_over else ()), *(("close",) if can_close else ()))
+
+    def _leave(self, do: str) -> str:
+        """Prepare the next mission, in a process that begins anew; or end."""
+        if do == "next":
+            self._ui.ending.renew()
+        elif self._ui.verdict is not None:
+            self._ui.ending.end(self._ui.verdict[0])
+        return ""
+
     # Whether the observer answers -------------------------------------------------------------------------------------
 
     def _watch(self) -> None:
         """Look at the connections with the observer; publish `_stop_` again until the mission has ended."""
+        looks = 0
         while not self._ui.ending.called:
-            time.sleep(LOOK)
             with self.lock:
                 self._look()
+                state, start = self._ui.mission.state, self._ui.mission.start
+            if looks % LOOKS_AT_FILES == 0 and self._board is not None and (state is None or state.status not in LIVE):
+                self._board.show_missions(shown_missions(self._past.read(self._recording), start))
+            looks += 1
+            time.sleep(LOOK)
 
     def _look(self) -> None:
         ui = self._ui

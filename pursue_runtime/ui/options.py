@@ -21,7 +21,7 @@ MIN_TOKEN_LENGTH = 8  # characters of a token
 @dataclass(frozen=True)
 class Options:
     """`wait` is in real seconds, `pace` in time units; a page for browsers on `host` and `port` if `web`;
-    the file `verdict` gets the verdict."""
+    it `stay`s after the mission; the file `verdict` gets the verdict."""
 
     mode: str
     trace: str
@@ -36,6 +36,7 @@ class Options:
     port: int = 8080
     token: str = ""
     verdict: str = ""
+    stay: bool = False
 
 
 def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: bool, nodes: Sequence[str]) -> Options:
@@ -56,11 +57,12 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
     if token and len(token) < MIN_TOKEN_LENGTH:
         hint = f"expected at least {MIN_TOKEN_LENGTH}, or no token: then one is generated"
         raise ParameterError(f"~token has {len(token)} characters; {hint}")
+    autostart = flag(found, "autostart", not terminal and not web)
     return Options(
         mode=mode,
         trace=trace,
         seed=whole(found, "seed", 0, least=None),
-        autostart=flag(found, "autostart", not terminal and not web),
+        autostart=autostart,
         wait=number(found, "wait", 30.0),
         nodes=expected(found, nodes),
         pace=number(found, "pace", 5.0, above=True),
@@ -70,6 +72,7 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
         port=whole(found, "port", 8080, most=65535),
         token=token,
         verdict=text(found, "verdict"),
+        stay=web and flag(found, "stay", terminal and not autostart),
     )
 
 
@@ -107,5 +110,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--port", metavar="N", help="of --web (default 8080; 0: any that is free)")
     parser.add_argument("--token", metavar="WORD", help="of --web: who opens the page must know it; one is made for "
                         "every address but loopback")
+    parser.add_argument("--stay", action="store_true", default=None, help="of --web: the page stays after the mission, "
+                        "until it is closed there (default on a terminal, without --autostart)")
     parser.add_argument("--verdict", metavar="FILE", help="write there how the mission ended, when it has")
     return parser

@@ -53,7 +53,8 @@ def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> Fl
 class Facts(NamedTuple):
     """What the node knows: its phase, who is missing, the last state and its moment, the end, and the present.
 
-    `answers` is False while the observer does not answer; `received` is when the last state came (Unix time).
+    `answers` is False while the observer does not answer; `received` is when the last state came (Unix time). `stays`:
+    the page outlives the mission; `offers` is what it offers then (requests without a word).
     """
 
     phase: str
@@ -64,6 +65,8 @@ class Facts(NamedTuple):
     verdict: Optional[Tuple[int, str]] = None
     answers: bool = True
     received: float = 0.0
+    stays: bool = False
+    offers: Tuple[str, ...] = ()
 
     @property
     def live(self) -> bool:
@@ -114,6 +117,7 @@ class Page:
             "ways": [list(way) for way in self._plan.ways],
             "one_ways": [list(way) for way in self._plan.one_ways],
             "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
+            "start": {automaton.name: automaton.initial for automaton in self._acting},
             "reporters": [automaton.name for automaton in self._acting if automaton.name in self._reporters],
             "buttons": [button for automaton in self._model.of_kind("agent") for button in self._buttons(automaton)],
         }
@@ -150,6 +154,7 @@ class Page:
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
             "answers": facts.answers, "received": _round(facts.received),
+            "stays": facts.stays, "offers": list(facts.offers),
         }
 
     def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:

@@ -51,6 +51,7 @@ class PageServer:
         self._page, self._node = page, node
         self._shown = 0
         self._positions: Dict[str, List[float]] = {}
+        self._missions: List[Dict[str, Any]] = []
         self.web: Any = None
 
     def on_state(self, state: SystemState, at: float) -> None:
@@ -82,6 +83,12 @@ class PageServer:
                         NOTE if answers else BAD)
         self.show()
 
+    def show_missions(self, missions: List[Dict[str, Any]]) -> None:
+        """Show the missions that were played here, where they are others than before."""
+        if missions != self._missions:
+            self._missions = missions
+            self.web.send({"type": "missions", "missions": missions})
+
     def show(self) -> None:
         """Send the present view to every page."""
         fresh = [entry for entry in self._page.log if entry["n"] > self._shown]
@@ -94,8 +101,8 @@ class PageServer:
         """Return the first message for a page."""
         with self._node.lock:
             view = self._page.view(self._node.facts())
-            return {"type": "hello", "scene": self._page.scene(), "view": view, "log": self._page.log,
-                    "positions": self._positions}
+            shown = {"scene": self._page.scene(), "view": view, "log": self._page.log, "missions": self._missions}
+            return {"type": "hello", **shown, "positions": self._positions}
 
     def on_message(self, message: Any) -> str:
         """Take a message of a page. Raises ValueError where it is not a request."""
@@ -118,12 +125,31 @@ def strategies_of(source: Source) -> List[Strategy]:
     return [*read_strategies(source.read(STRATEGIES)), *people]
 
 
+ADDRESS = "PURSUE_PAGE"
+"""In the environment of a node that has begun anew: port and token of its page, so that open pages find it again."""
+
+
+def format_address(port: int, token: str) -> str:
+    """Return what read_address reads."""
+    return f"{port} {token}"
+
+
+def read_address(text: str) -> Tuple[int, str]:
+    """Return port and token of the page before this one; 0 and "" where there was none."""
+    port, _, token = text.partition(" ")
+    return (int(port), token) if port.isdecimal() and int(port) < 2**16 else (0, "")
+
+
 def open_page(
     model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: PageNode
 ) -> Optional[PageServer]:
-    """Serves a page, where one is wanted. Raises ParameterError and other DataErrors."""
+    """Serves a page, where one is wanted, at the address of the one before if the node has begun anew. Raises
+    ParameterError and other DataErrors.
+    """
     if not options.web:
         return None
+    kept = read_address(os.environ.get(ADDRESS, ""))
+    port, token = options.port or kept[0], options.token or kept[1]
     try:
         from pursue_runtime.ui.web import Web, WebError
     except ImportError as problem:
@@ -137,10 +163,11 @@ def open_page(
     board = PageServer(page, node)
     try:
         board.web = Web(
-            STATIC, options.host, options.port, options.token, board.first_message, board.on_message, board.present,
+            STATIC, options.host, port, token, board.first_message, board.on_message, board.present,
             {} if floor is None else {FLOOR: (floor.picture, "image/png")},
         )
     except WebError as problem:
         raise ParameterError(str(problem)) from None
+    board.web.generated = bool(board.web.token) and not options.token
     board.web.start()
     return board

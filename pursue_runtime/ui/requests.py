@@ -12,7 +12,7 @@ from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.words import parse_word
 
-REQUESTS = {"start": False, "stop": False, "say": True, "done": True}
+REQUESTS = {"start": False, "stop": False, "next": False, "close": False, "say": True, "done": True}
 """What a page may ask for, and whether a word, and the number of the state that the page shows, belong to it."""
 
 ANSWERED = 2.0
@@ -45,8 +45,8 @@ def read_request(text: Any) -> PageRequest:
 
 
 def _expected() -> str:
-    number = '"word": …, "seq": <the number of the state>'
-    return f'expected {{"do": "start"}}, {{"do": "stop"}}, {{"do": "say", {number}}} or {{"do": "done", {number}}}'
+    plain, words = (" or ".join(do for do in REQUESTS if REQUESTS[do] is on) for on in (False, True))
+    return f'expected {{"do": …}} with {plain}, or {{"do": …, "word": …, "seq": <the number of a state>}} with {words}'
 
 
 class Presses:

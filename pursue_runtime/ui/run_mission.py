@@ -36,7 +36,8 @@ SIGINT and SIGTERM end the launch with all its nodes. `roslaunch --ros-args {bri
 arguments."""
 
 _ARGUMENT = re.compile(r"\w+:=.*", re.ASCII | re.DOTALL)
-_OURS = {"verdict": "it is set here", "again": "one mission is played", "required": "the launch ends with the UI"}
+_OURS = {"verdict": "it is set here", "again": "one mission is played", "stay": "the page ends with the mission",
+         "required": "the launch ends with the UI"}
 
 
 def main(package: Package) -> int:
@@ -50,7 +51,8 @@ def main(package: Package) -> int:
         return _concluded(Verdict(FAILED, problem))
     with tempfile.TemporaryDirectory(prefix="mission-") as folder:
         path = os.path.join(folder, "verdict")
-        command = ["roslaunch", "--skip-log-check", package.name, "mission.launch", *arguments, f"verdict:={path}"]
+        command = ["roslaunch", "--skip-log-check", package.name, "mission.launch", "stay:=false", *arguments]
+        command.append(f"verdict:={path}")
         try:
             status, stopped_by = play([*_tied(), *command], path)
         except OSError as failure:

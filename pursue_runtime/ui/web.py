@@ -29,11 +29,12 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 
-SCRIPTS = ("agents", "connection", "objectives", "page", "plan")
+SCRIPTS = ("agents", "connection", "missions", "objectives", "page", "plan")
 FILES = {
     "/": ("index.html", "text/html"),
     **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},
     "/page.css": ("page.css", "text/css"),
+    "/missions.css": ("missions.css", "text/css"),
 }
 TICK = 0.5  # real seconds between two words on what time it is
 REQUEST_TIMEOUT = 30.0  # real seconds that a request may take to arrive
@@ -108,7 +109,7 @@ class Web:
             raise WebError(f"cannot serve the page on {host}, port {port}: {problem}; {hint}") from problem
         self.host, self.port = host, int(self._sockets[0].getsockname()[1])
         self._loop = asyncio.new_event_loop()
-        self._closing = False
+        self._closing, self._why = False, ""
         self._closed: Optional[asyncio.Event] = None  # belongs to the loop, and is made there
         self._thread = threading.Thread(target=self._run, name="web", daemon=True)
 
@@ -136,8 +137,9 @@ class Web:
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(self._send_text, text)
 
-    def close(self) -> None:
-        """Lets what was sent go out, closes every page, and ends."""
+    def close(self, why: str = "the mission has ended") -> None:
+        """Lets what was sent go out, closes every page with this reason, and ends."""
+        self._why = why
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(self._finish)
         if self._thread.is_alive():
@@ -174,7 +176,7 @@ class Web:
                 self._send_text(json.dumps({"type": "tick", "now": now}))
         server.stop()
         for page in list(self._pages):
-            page.close(1000, "the mission has ended")
+            page.close(1000, self._why)
         await asyncio.sleep(0.2)
         await server.close_all_connections()
 

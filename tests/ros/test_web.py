@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shlex
 import signal
 import subprocess
+import sys
 import time
 import zlib
 from pathlib import Path
@@ -42,6 +44,7 @@ def mission(ros: Ros, workspace: Path, tmp_path: Path, scenario: str, *arguments
     with ros.master() as there, browser(tmp_path / "profile") as page:
         for parameter in (argument for argument in arguments if argument.startswith("/")):
             ros.run(f"rosparam set {parameter}", workspace, **there)
+        there = {**there, "ROS_HOME": str(tmp_path / "ros")}
         wanted = " ".join(argument for argument in arguments if not argument.startswith("/"))
         launch = f"roslaunch {scenario}_bringup mission.launch web:=true port:=0 output:=screen {wanted}"
         command = f"source devel/setup.bash && exec {launch}"
@@ -58,6 +61,11 @@ def mission(ros: Ros, workspace: Path, tmp_path: Path, scenario: str, *arguments
             yield page, launched, there["ROS_MASTER_URI"]
         finally:
             end(launched)
+
+
+def button(name: str) -> str:
+    """Whether a button is disabled."""
+    return f"document.getElementById('{name}').getAttribute('aria-disabled')"
 
 
 def process_of(uri: str, node: str) -> int:
@@ -110,6 +118,25 @@ def test_a_mission_is_started_watched_and_won_on_a_page(ros: Ros, built: Build, 
         page.screen(360, 740)
         assert fits(page)
         assert is_drawn(page.picture(whole=True))
+        page.open(page.value("location.href"))
+        page.wait("document.getElementById('status').textContent === 'won'")
+        assert "The goal is reached" in page.text("#why"), "the page outlives the mission"
+        command = page.wait("(document.querySelector('#recorded code') || {}).textContent")
+        name, *words = shlex.split(command)
+        done = subprocess.run([sys.executable, "-m", name.replace("-", "_"), *words], capture_output=True, text=True)
+        assert done.returncode in (0, 1) and "arrives at" in done.stdout, f"{command}: {done.stderr}"
+        page.wait(f"{button('another')} === 'false'")
+        page.click("#another")
+        page.wait("document.getElementById('status').textContent === 'ready'")
+        assert page.text("#missions-count") == "Missions played here (1)" and "won" in page.text("#missions-list")
+        page.click("#start")
+        page.wait("document.getElementById('status').textContent === 'running'")
+        page.click("#stop")
+        page.click("#stop-yes")
+        page.wait("document.getElementById('status').textContent === 'stopped'")
+        page.wait("document.querySelectorAll('#missions-list li').length === 2")
+        page.click("#close")
+        page.click("#close-yes")
         page.wait("document.getElementById('link').textContent === 'the mission has ended'")
         assert launched.wait(PATIENCE) == 0
         assert page.complaints == []
@@ -118,7 +145,8 @@ def test_a_mission_is_started_watched_and_won_on_a_page(ros: Ros, built: Build, 
 def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros, built: Build, tmp_path: Path) -> None:
     workspace = built("thesis/catch_the_thief")
     button = "document.querySelector('[data-word=thief_c2b]')"
-    with mission(ros, workspace, tmp_path, "catch_the_thief", "mode:=still", "time_unit:=8.0") as (page, launched, uri):
+    given = "mode:=still", "time_unit:=8.0", "stay:=false"
+    with mission(ros, workspace, tmp_path, "catch_the_thief", *given) as (page, launched, uri):
         page.wait("document.getElementById('status').textContent === 'ready'")
         assert page.value(f"{button}.getAttribute('aria-disabled')") == "true", "not before the start"
         page.click("[data-word=thief_c2b]")
@@ -156,7 +184,7 @@ def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path:
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, options, tmp_path / "ward")
     workspace = lay_over(ros, folder)
     planned = "document.querySelector('#tasks .task-time').textContent.match(/for ([0-9.]+) now; planned: ([0-9.]+)/)"
-    given = "time_unit:=0.8", "/simulator/reports '[bot1]'"
+    given = "time_unit:=0.8", "stay:=false", "/simulator/reports '[bot1]'"
     with mission(ros, workspace, tmp_path, "ward", *given) as (page, launched, _):
         page.wait("document.getElementById('status').textContent === 'ready'")
         page.screen(360, 740)

@@ -174,6 +174,19 @@ def test_a_robot_needs_the_packages_of_its_own_nodes_only(launch: Any, packages:
     assert found.names == ["bot1/communication_manager", "bot1/pursue_reader", "controller_bot1"]
 
 
+def test_the_page_on_which_a_mission_is_started_outlives_it_and_the_nodes_wait_for_the_next(launch: Any) -> None:
+    found = launch("mission.launch", "web:=true", "record:=true")
+    others = [node for node in found.names if node != "UI"]
+    assert (found.params["/UI/stay"], found.params["/UI/again"]) == (True, False)
+    assert all(found.params[f"/{node}/again"] is True for node in others) and "recorder" in others
+    assert found.nodes["UI"].required and "again.sh" in found.nodes["UI"].launch_prefix, "closing it ends the launch"
+    for given in (["web:=true", "autostart:=true"], ["web:=true", "stay:=false"], []):
+        found = launch("mission.launch", *given)
+        assert not any(found.params[f"/{node}/again"] for node in MISSION) and found.params["/UI/stay"] is False
+    found = launch("robot.launch", "name:=base", "nodes:=UI", "web:=true")
+    assert (found.params["/UI/stay"], found.params["/UI/again"]) == (True, True)
+
+
 def test_mission_after_mission_nothing_ends_for_good(launch: Any) -> None:
     found = launch("mission.launch", "again:=true", "received:=true")
     assert not any(node.required for node in found.nodes.values())

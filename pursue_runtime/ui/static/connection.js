@@ -7,6 +7,7 @@ let socket = null;
 let received = Date.now(); // when the last message came; a clock that runs on while a phone sleeps
 let patience = 1000; // ms until the next try to connect
 let refused = ""; // why the UI does not let this page in
+let farewell = ""; // why the UI has closed the page
 
 const isConnected = () => socket !== null && socket.readyState === WebSocket.OPEN;
 const isCurrent = () => isConnected() && (!view || view.answers); // what is shown is of now, and can be acted on
@@ -17,9 +18,10 @@ function connect() {
   const made = new WebSocket(address);
   let opened = false;
   socket = made;
-  made.onopen = () => { opened = true; refused = ""; patience = 1000; received = Date.now(); };
+  made.onopen = () => { opened = true; refused = farewell = ""; patience = 1000; received = Date.now(); };
   made.onmessage = (event) => { received = Date.now(); take(JSON.parse(event.data)); };
-  made.onclose = () => {
+  made.onclose = (event) => {
+    if (event.code === 1000) farewell = event.reason;
     if (!opened) explain();
     disconnected(patience);
     patience = Math.min(2 * patience, 5000);
@@ -56,7 +58,7 @@ async function explain() { // a WebSocket does not say why it was refused
 function showConnection() {
   const old = (moment) => (view ? `; this is as of ${clockTime(moment)}` : "");
   let text = "connected";
-  if (!isConnected()) text = view && view.verdict ? "the mission has ended" : refused || `connection lost, trying again${old(received)}`;
+  if (!isConnected()) text = (view && view.verdict && farewell) || refused || `connection lost, trying again${old(received)}`;
   else if (view && !view.answers) text = `the observer does not answer${old(1000 * view.received)}`;
   $("link").dataset.is = isCurrent() ? "here" : "away";
   say($("link"), text);

@@ -62,6 +62,7 @@ function take(message) {
   if (message.type === "hello") {
     setScene(message.scene);
     setPositions(message.positions || {});
+    setMissions(message.missions);
     if (!message.log.some((entry) => entry.n === heard)) forgetLog();
     setView(message.view);
     addLog(message.log);
@@ -70,6 +71,8 @@ function take(message) {
     addLog(message.log);
   } else if (message.type === "positions") {
     setPositions(message.positions);
+  } else if (message.type === "missions") {
+    setMissions(message.missions);
   } else if (message.type === "tick") {
     heardTime(message.now);
   } else if (message.type === "remark") {
@@ -230,6 +233,7 @@ function refresh() { // what changes while nothing happens: times, and what is p
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
   showButtons(now, here);
   showObjectives(now);
+  showAfter();
   for (const agent of view.agents) showAgent(widgets.rows.get(agent.name), agent, now);
   for (const [name, widget] of widgets.tasks) showTask(widget, name, view.tasks.find((task) => task.agent === name), now, here);
 }
@@ -287,4 +291,4 @@ window.addEventListener("resize", () => {
   follow();
 });
 setInterval(refresh, 200);
-connect();
+window.addEventListener("DOMContentLoaded", connect); // when all scripts are there

@@ -90,7 +90,7 @@ class Node:
         self.state: Any = None
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
-        self.answers, self.received = True, 0.0
+        self.answers, self.received, self.offers = True, 0.0, ()
         page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies, floor)
         self.board = ui_board.PageServer(page, self)
         self.pictures = {} if floor is None else {ui_board.FLOOR: (floor.picture, "image/png")}
@@ -107,7 +107,8 @@ class Node:
     def facts(self) -> Any:
         at = self.state.stamp - 100.0 if self.state is not None else 0.0
         now = at + (self.clock() - self.shown if self.answers else 0.0)
-        return Facts(self.phase, (), self.state, at, now, self.verdict, self.answers, self.received)
+        known = Facts(self.phase, (), self.state, at, now, self.verdict, self.answers, self.received)
+        return known._replace(stays=bool(self.offers), offers=self.offers)
 
     def on_request(self, request: Any) -> str:
         self.wanted.append(tuple(request))
@@ -330,8 +331,8 @@ def test_long_names_fit_on_a_phone(page: Browser, show: Callable[..., Node]) -> 
     node.show(1, 0.0, event=f"{LONG}_a2b", agent=LONG, reason=LONG, **{"z" + LONG: "doing_screw_in_s"})
     says(page, "#why", LONG)
     assert page.value("document.documentElement.scrollWidth") <= 360
-    heights = "[...document.querySelectorAll('main button:not([hidden])')].map((b) => b.getBoundingClientRect().height)"
-    assert min(page.value(heights)) >= 44, "buttons are for fingers"
+    there = "[...document.querySelectorAll('main button')].filter((button) => button.offsetParent !== null)"
+    assert min(page.value(f"{there}.map((button) => button.getBoundingClientRect().height)")) >= 44, "for fingers"
 
 
 def tabs(page: Browser, count: int) -> Any:
@@ -566,3 +567,39 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
     node.board.on_positions({})
     page.wait("document.getElementById('real').hidden")
     assert page.complaints == []
+
+
+def test_after_the_mission_the_page_says_how_to_replay_it_and_offers_what_there_is(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody())
+    node.verdict, node.offers = (0, "It is won."), ("close",)
+    node.show(5, 40.0, status="won")
+    command = "pursue-gen replay '/a b/mission.bag'"
+    played = {"result": "won", "why": "", "began": 1e9, "units": 12.5, "files": ["/a b/mission.bag", "/j.jsonl"]}
+    before = {**played, "result": "damaged", "why": f"its journal: {HOSTILE}", "units": None, "present": False}
+    node.board.show_missions([{**played, "replay": command, "present": True}, {**before, "replay": ""}])
+    says(page, "#recorded", f"Replay: {command}")
+    says(page, "#recorded", "Recorded: /a b/mission.bag, /j.jsonl")
+    says(page, "#missions-count", "Missions played here (2)")
+    day = page.value("dayTime(1e12)")
+    says(page, "#missions-list li", f"won {day}, 12.5 time units, this mission")
+    says(page, "#missions-list li:nth-child(2) .why", HOSTILE)
+    assert page.value("document.querySelector('#missions img')") is None and page.complaints == []
+    assert page.value("document.getElementById('another').getAttribute('aria-disabled')") == "true", "no node waits for it"
+    page.open(node.board.web.url)
+    says(page, "#status", "won")
+    says(page, "#recorded", f"Replay: {command}")
+    node.offers = ("next", "close")
+    node.board.show()
+    says(page, "#after-text", "It begins with bot at a: bring real robots there before it is started.")
+    page.click("#another")
+    page.click("#close")
+    page.wait("document.getElementById('closing').open")
+    page.click("#close-no")
+    page.click("#close")
+    page.click("#close-yes")
+    says(page, "#remark", "as you like")
+    until(lambda: node.wanted == [("next", "", 0), ("close", "", 0)], "what was asked for")
+    node.board.web.close("another mission is prepared")
+    says(page, "#link", "another mission is prepared")

@@ -51,6 +51,15 @@ def test_whoever_has_a_page_starts_the_mission_there() -> None:
     assert read(["--web", "--autostart"]).autostart is True
 
 
+def test_a_page_outlives_the_mission_where_a_person_at_a_terminal_starts_it() -> None:
+    assert read(["--web"], terminal=True).stay is True
+    assert read(["--web", "--autostart"], terminal=True).stay is False
+    assert read(["--web"]).stay is False, "a script waits for the exit status"
+    assert read(["--web", "--stay"]).stay is True
+    assert read(["--web"], {"stay": False}, terminal=True).stay is False
+    assert read(["--stay"], terminal=True).stay is False, "there is no page"
+
+
 @pytest.mark.parametrize("params, expected", [
     ({"port": 65536}, "~port is 65536; expected a whole number of at least 0, at most 65535"),
     ({"port": 80.5}, "~port is 80.5; expected a whole number"),

@@ -66,7 +66,8 @@ class Launch:
 def test_the_verdict_of_the_ui_is_printed_and_is_the_exit_status(tmp_path: Path, outcome: str) -> None:
     status, lines = Launch(tmp_path, f"write '{outcome}' 'After 3 time units.'", "mode:=still", "seed:=7").ended()
     assert (status, lines[-1]) == (STATUSES[outcome], f"{outcome}: After 3 time units.")
-    assert lines[0].startswith("roslaunch --skip-log-check demo_bringup mission.launch mode:=still seed:=7 verdict:=/")
+    command = "roslaunch --skip-log-check demo_bringup mission.launch stay:=false mode:=still seed:=7 verdict:=/"
+    assert lines[0].startswith(command)
     assert not os.path.exists(os.path.dirname(lines[0].rpartition("verdict:=")[2])), "nothing is left behind"
 
 
@@ -133,6 +134,7 @@ def gone(process: int) -> bool:
     ("mode=still", "expected NAME:=VALUE"),
     ("again:=true", "one mission is played"),
     ("required:=false", "the launch ends with the UI"),
+    ("stay:=true", "the page ends with the mission"),
     ("verdict:=/tmp/x", "it is set here"),
     ("nodes:=observer", "starts no UI"),
 ])

@@ -121,7 +121,7 @@ async def hello(there: Any) -> Any:
 
 @pytest.mark.parametrize("path, kind", [
     ("/", "text/html"), ("/page.js", "text/javascript"), ("/connection.js", "text/javascript"),
-    ("/page.css", "text/css"),
+    ("/page.css", "text/css"), ("/missions.js", "text/javascript"), ("/missions.css", "text/css"),
 ])
 def test_the_page_is_served_and_may_load_nothing_but_itself(serve: Serve, path: str, kind: str) -> None:
     answer = get(serve(), path)
