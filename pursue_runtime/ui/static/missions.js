@@ -32,7 +32,7 @@ function replayLines(mission) {
 }
 
 const two = (number) => String(number).padStart(2, "0");
-function dayTime(moment) { // 2024-05-03 14:03:12, as this browser's clock is set
+function dayTime(moment) { // the day and the time, by this browser's clock
   const day = new Date(moment);
   return `${day.getFullYear()}-${two(day.getMonth() + 1)}-${two(day.getDate())} ${clockTime(moment)}`;
 }

@@ -586,7 +586,7 @@ def test_after_the_mission_the_page_says_how_to_replay_it_and_offers_what_there_
     says(page, "#missions-list li", f"won {day}, 12.5 time units, this mission")
     says(page, "#missions-list li:nth-child(2) .why", HOSTILE)
     assert page.value("document.querySelector('#missions img')") is None and page.complaints == []
-    assert page.value("document.getElementById('another').getAttribute('aria-disabled')") == "true", "no node waits for it"
+    assert page.value("document.getElementById('another').getAttribute('aria-disabled')") == "true", "no node waits"
     page.open(node.board.web.url)
     says(page, "#status", "won")
     says(page, "#recorded", f"Replay: {command}")
