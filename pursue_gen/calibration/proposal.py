@@ -37,6 +37,9 @@ STEP = Fraction(1, 10)
 TOLERANCE = 0.1
 """Time units by which something may miss its window, as `replay` and the observer have it: messages take time."""
 
+KEPT = "kept"
+"""What the window rests on where the times are too few for a claim and keep to the present one, which stays."""
+
 _SHORTEST = Fraction(1, 1000)
 """An event with a duration takes longer than this: 0 is none."""
 
@@ -61,8 +64,8 @@ class Options:
 class Finding:
     """What was measured of a way or an event. Times are in time units.
 
-    `present`: its window in the scenario (with slack); `proposed`: the new one, `basis` what that rests on (see
-    `windows`). `early`, `late`: how many times left the present window, `most_early`, `most_late` by how much at most.
+    `present`: its window in the scenario (with slack); `proposed`: the new one, `basis` what that rests on (KEPT, or
+    as in `windows`). `early`, `late`: how many times left the present window; `most_early`, `most_late`: by how much.
     `held`, `tried`: how many times are in the window that the other nine tenths make, of how many; `widened`: the agent
     is not controlled, and its present window only widened. `far`: the outliers among `samples`.
     """
@@ -138,12 +141,17 @@ class Proposal:
     @property
     def held(self) -> Tuple[int, int]:
         """How many times are in windows that were made without them, and of how many; of what was not guessed."""
-        known = [finding for finding in self.findings if finding.basis != GUESSED]
+        known = [finding for finding in self.findings if finding.basis not in (GUESSED, KEPT)]
         return sum(finding.held for finding in known), sum(finding.tried for finding in known)
+
+    @property
+    def changes(self) -> Tuple[Finding, ...]:
+        """Those with a new window."""
+        return tuple(finding for finding in self.findings if finding.basis != KEPT)
 
     def text(self) -> str:
         """The scenario's text with the proposed windows."""
-        return with_numbers(self.scenario.text, self.scenario.file, [f.number for f in self.findings], BY)
+        return with_numbers(self.scenario.text, self.scenario.file, [each.number for each in self.changes], BY)
 
     def checked(self) -> Scenario:
         """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""
@@ -205,8 +213,11 @@ def _finding(
         low, high = min(low, present[0]), max(high, present[1])
     early = [float(present[0]) - time for time in times if time < present[0] - options.tolerance]
     late = [time - float(present[1]) for time in times if time > present[1] + options.tolerance]
+    basis = window.basis
+    if basis == GUESSED and not (early or late or options.slack):
+        low, high, basis, widened = *present, KEPT, False
     return Finding(
-        what, tuple(samples), times, spread_of(times), far, present, (low, high), window.basis, len(early), len(late),
+        what, tuple(samples), times, spread_of(times), far, present, (low, high), basis, len(early), len(late),
         max(early, default=0.0), max(late, default=0.0), *held_out(used, options.share), widened,
     )  # fmt: skip
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
-from pursue_gen.calibration.proposal import Finding, Proposal, statement, window_text
+from pursue_gen.calibration.proposal import KEPT, Finding, Proposal, statement, window_text
 from pursue_gen.calibration.samples import Unused, Way
 from pursue_gen.calibration.solved_again import Verdict
-from pursue_gen.calibration.windows import COUNTED, FITTED, times_needed
+from pursue_gen.calibration.windows import COUNTED, FITTED, GUESSED, times_needed
 from pursue_gen.diagnostics import counted
 from pursue_gen.language.scenario import Scenario
 
@@ -25,7 +25,6 @@ def report(proposal: Proposal) -> Iterator[str]:
 
 HEAD = ("what", "times", "least", "median", "95 %", "most", "deviation", "model", "early", "late", "proposal", "basis")
 
-_BASES = {COUNTED: "counted", FITTED: "fitted"}
 _MANY = 12
 """So many lines of a kind are printed."""
 
@@ -40,10 +39,9 @@ def _row(scenario: Scenario, finding: Finding) -> Tuple[str, ...]:
     figures = (spread.least, spread.median, spread.p95, spread.most, spread.deviation)
     early = f"{finding.early} by {finding.most_early:.1f}" if finding.early else "-"
     late = f"{finding.late} by {finding.most_late:.1f}" if finding.late else "-"
-    basis = _BASES.get(finding.basis, "guessed")
     return (
         shown(scenario, finding.what), str(spread.count), *(f"{figure:.2f}" for figure in figures),
-        window_text(finding.present), early, late, window_text(finding.proposed), basis,
+        window_text(finding.present), early, late, window_text(finding.proposed), finding.basis,
     )  # fmt: skip
 
 
@@ -100,7 +98,8 @@ def _bases(share: float, needed: int) -> Dict[str, str]:
         COUNTED: f"counted: holds {percent} of later times, at a confidence of 95 %, however they are distributed.",
         FITTED: f"fitted: holds {percent} of later times, at a confidence of 95 %, if their logarithms are normally "
         f"distributed; without that assumption it takes {needed} times of a kind.",
-        "guessed": "guessed: less than 5 times: from half the shortest to twice the longest. Nothing can be claimed.",
+        KEPT: "kept: less than 5 times, all of them in the present window, which stays.",
+        GUESSED: "guessed: less than 5 times: from half the shortest to twice the longest. Nothing can be claimed.",
     }
 
 
@@ -147,9 +146,9 @@ def left_most_json(proposal: Proposal) -> List[Dict[str, Any]]:
 
 def proposed(proposal: Proposal) -> Iterator[str]:
     """The statements of the proposal, each with where it comes from."""
-    lines = [statement(finding) for finding in proposal.findings]
+    lines = [statement(finding) for finding in proposal.changes]
     width = max(map(len, lines), default=0)
-    for line, finding in zip(lines, proposal.findings):
+    for line, finding in zip(lines, proposal.changes):
         yield f"{line.ljust(width)}  // {finding.source}"
 
 

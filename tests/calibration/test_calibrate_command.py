@@ -138,6 +138,13 @@ def test_an_action_that_takes_hardly_any_time_keeps_a_duration() -> None:
     assert 0 < found.proposed[0] < 0.02 < found.proposed[1]
 
 
+def test_a_few_times_that_keep_to_the_window_change_nothing() -> None:
+    found = proposal([Sample(OUT, 4.0), Sample(OUT, 4.5), Sample(BACK, 9.0)])
+    assert [(each.what, each.basis) for each in found.findings] == [(OUT, "kept"), (BACK, "guessed")]
+    assert found.findings[0].proposed == found.findings[0].present == (3, 5)
+    assert "travel bot from desk to shelf takes 3 to 5 // paced\n" in found.text() and found.held == (0, 0)
+
+
 def test_windows_are_rounded_to_the_step() -> None:
     (found,) = proposal([Sample(OUT, 5.0 + 0.1 * n) for n in range(10)], step=Fraction(1)).findings
     assert all(end == int(end) for end in found.proposed)
