@@ -27,7 +27,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import is_lost
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margins
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.tga.network import (

@@ -17,11 +17,11 @@ from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, lo
 from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import (
     Game,
     JointMove,
     State,
-    compile_game,
     initial_state,
     is_bad,
     is_goal,

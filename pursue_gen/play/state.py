@@ -14,10 +14,10 @@ from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import (
     Game,
     JointMove,
-    compile_game,
     initial_state,
     is_bad,
     is_goal,

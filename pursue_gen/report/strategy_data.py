@@ -11,7 +11,8 @@ from pursue_gen.language.scenario import Reach, Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.solving.solution import Solution
-from pursue_gen.synthesis.game import Game, State, compile_game, initial_state, is_goal, joint_moves
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import DiscreteState, Strategy, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.objectives import stated

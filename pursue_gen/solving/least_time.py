@@ -25,7 +25,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Network, Objective

@@ -8,9 +8,10 @@ from functools import partial
 from typing import Callable, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.engine import Engine
-from pursue_gen.synthesis.game import Game, RawBlock, compile_game
+from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking

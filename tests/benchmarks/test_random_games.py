@@ -11,7 +11,7 @@ from benchmarks import random_page
 from benchmarks.measure import Bounds
 from benchmarks.random_games import LEAST, Played, drawn, random_game, summary
 from pursue_gen.solving.rules import IDEAL, Rules
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.tga.network import Kind
 
 GAME = Played(7, 40, True, 0.05, True, 0.01, None)

@@ -22,7 +22,8 @@ from benchmarks.measure import Bounds, Case, game_of
 from benchmarks.tchecker import TCheckerError, explored, table
 from benchmarks.tchecker_file import written
 from pursue_gen.language import load, parse
-from pursue_gen.synthesis.game import Game, JointMove, State, compile_game, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import (
     Automaton,

@@ -13,7 +13,7 @@ from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Choice, Ref, RuleBody, Scenario
 from pursue_gen.solving.periods import with_period
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.tga import scenario_objective, translate
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "scenarios").glob("*/*.pur"))

@@ -15,7 +15,8 @@ from pursue_gen.language import parse
 from pursue_gen.solving.crowds import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.game import compile_game, initial_state, joint_moves
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import initial_state, joint_moves
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.position import Position, PositionSolver, beginning_at
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.game import compile_game, initial_state
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import initial_state
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.replanning.request import read_request
 from pursue_gen.replanning.start import network_from, region
-from pursue_gen.synthesis.game import compile_game, start_zone
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import start_zone
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, Location, Network, is_end

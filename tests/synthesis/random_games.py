@@ -10,7 +10,8 @@ from typing import List, Tuple
 
 from hypothesis import strategies as st
 
-from pursue_gen.synthesis.game import Game, compile_game
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,

@@ -17,8 +17,9 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import worst_case
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.engine import Engine, Outcome
-from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
+from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine

@@ -8,7 +8,8 @@ from typing import Optional, Tuple
 import pytest
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.synthesis.game import Game, compile_game, initial_state, invariant, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game, initial_state, invariant, is_bad, is_goal, joint_moves
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,

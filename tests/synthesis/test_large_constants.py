@@ -15,7 +15,8 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis import solve as solving
-from pursue_gen.synthesis.game import Game, compile_game
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.tga import ends_reported, scenario_objective, translate

@@ -23,7 +23,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis import limits as limits_module
-from pursue_gen.synthesis.game import compile_game
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import (
     CAREFUL,
     PROVING,
@@ -169,7 +169,7 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
         from pursue_gen.diagnostics import PursueError
         from pursue_gen.language import parse
         from pursue_gen.synthesis.native import engine as native
-        from pursue_gen.synthesis.game import compile_game
+        from pursue_gen.synthesis.compile_game import compile_game
         from pursue_gen.tga import scenario_objective, translate
         scenario = parse({many_walkers()!r}, "crowd.pur")
         game = compile_game(translate(scenario), scenario_objective(scenario))

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.language import load, parse
-from pursue_gen.synthesis.game import Game, State, compile_game, joint_moves
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.tga import ends_reported, scenario_objective, translate

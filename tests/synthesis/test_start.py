@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import worst_case
-from pursue_gen.synthesis.game import compile_game, initial_state, start_zone
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import initial_state, start_zone
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve

@@ -7,7 +7,8 @@ from typing import Tuple
 
 from hypothesis import given
 
-from pursue_gen.synthesis.game import Game, compile_game
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import Game
 from pursue_gen.synthesis.strategy import Command, Constraint, DiscreteState, Move
 from pursue_gen.synthesis.strategy_from import followed, minimal, to_strategy, zone_text
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
