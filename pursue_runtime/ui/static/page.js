@@ -250,11 +250,11 @@ function showTask(widget, name, task, now, here) {
 
 function forgetLog() {
   heard = 0;
-  $("log").replaceChildren();
+  $("entries").replaceChildren();
 }
 
 function addLog(entries) {
-  const log = $("log");
+  const log = $("entries");
   for (const { n, at, text, kind, word } of entries) {
     if (n <= heard) continue;
     heard = n;

@@ -452,6 +452,7 @@ def test_every_text_can_be_read_in_light_and_dark_colours(page: Browser, show: C
 
 def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody(), ends=True)
+    node.show(1, 0.0, event="_start_")
     node.show(2, 20.0, clock=12.0, bot="going_a_to_b", nurse="doing_screw_in_s")
     says(page, "#agents", "bot goes from a to b")
     label = "document.getElementById(e.getAttribute('aria-labelledby') || '')?.textContent"
@@ -461,6 +462,8 @@ def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[
     assert page.value("document.documentElement.lang") == "en"
     levels = page.value("[...document.querySelectorAll('h1, h2, h3')].map((e) => e.tagName)")
     assert levels[0] == "H1" and set(levels[1:]) == {"H2"}
+    lists = "[...document.querySelectorAll('li')].every((e) => e.parentElement.matches('ul:not([role]), ol:not([role])'))"
+    assert page.value(lists) is True
     ids = page.value("[...document.querySelectorAll('[id]')].map((e) => e.id)")
     assert len(set(ids)) == len(ids)
     read_aloud = "[...document.querySelectorAll('[aria-live], [role=status], [role=alert], [role=log]')]"
