@@ -566,7 +566,7 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
     assert page.text("[data-agent=thief] text") == "thief ?" and page.text("[data-agent=bot] text") == "bot"
     for dark in (False, True):
         page.dark(dark)
-        assert page.value(f"{COVERED}") == []
+        page.wait(f"{COVERED}.length === 0")
     node.board.on_positions({})
     page.wait("document.getElementById('real').hidden")
     assert page.complaints == []
