@@ -17,6 +17,7 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.draw.page import DrawPage
+from pursue_runtime.bounded import BadText, read_json
 
 HOST = "127.0.0.1"
 MOST_BYTES = 8 << 20
@@ -142,8 +143,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._refuse(415, "A request is JSON.")
             return None
         try:
-            body = json.loads(self.rfile.read(int(length)))
-        except (ValueError, RecursionError):
+            body = read_json(self.rfile.read(int(length)))
+        except BadText:
             body = None
         if not isinstance(body, dict):
             self._refuse(400, "This request cannot be understood.")
