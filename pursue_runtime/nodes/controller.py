@@ -26,6 +26,7 @@ from pursue_runtime.parameters import flag, text
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
+from pursue_runtime.troubles import trouble_values
 from pursue_runtime.words import PLAN, format_word
 
 
@@ -174,7 +175,9 @@ class Controller:
         if state.status in (LOST, STOPPED):
             return Report(True, ERROR, state.status, values)
         troubles = self.exegg.troubles()
-        return Report(True, WARN if troubles else OK, "; ".join([state.status, *troubles]), values)
+        sentences = [f"{robot} {text}" for robot, text in troubles.items()]
+        values.update(trouble_values(troubles))
+        return Report(True, WARN if troubles else OK, "; ".join([state.status, *sentences]), values)
 
     def run(self) -> int:
         """Run until the mission ends; return the exit status."""

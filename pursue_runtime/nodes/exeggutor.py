@@ -129,10 +129,10 @@ class Exeggutor:
             robot = self._robots.get(name)
             return robot is None or robot.is_placed(rospy.get_time())
 
-    def troubles(self) -> List[str]:
-        """Return what an operator should know about the robots."""
+    def troubles(self) -> Dict[str, str]:
+        """Return what an operator should know about robots, by their names."""
         with self._lock:
-            return [f"{name} {robot.trouble}" for name, robot in self._robots.items() if robot.trouble]
+            return {name: robot.trouble for name, robot in self._robots.items() if robot.trouble}
 
     def _exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
         """Take that the agent begins `trigger`, from `origin` to `target`, as an order for its robot."""

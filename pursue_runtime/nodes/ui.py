@@ -116,6 +116,8 @@ class UI:
                 ready = ours and values.get("ready") == "true"
                 node = status.hardware_id or status.name.partition(":")[0]
                 self.readiness.update(node, ready)
+                if ours:
+                    self.page.on_robots(node, values)
                 if node == "recorder" and "file" in values:
                     self.page.on_recorder(values["file"])
             if self.verdict is not None:

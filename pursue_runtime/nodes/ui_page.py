@@ -15,6 +15,7 @@ from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.state import LIVE, WAITING, SystemState
+from pursue_runtime.troubles import Troubles
 from pursue_runtime.ui.mission_view import MARGIN
 from pursue_runtime.ui.page import Facts
 from pursue_runtime.ui.page_server import ADDRESS, PageServer, format_address, open_page
@@ -39,7 +40,7 @@ class UIPage:
         self.lock = ui.lock
         self._ui = ui
         self._board: Optional[PageServer] = None
-        self._presses, self._presence = Presses(), Presence()
+        self._presses, self._presence, self._troubles = Presses(), Presence(), Troubles()
         self._received = (0.0, 0.0)  # when the last state came: Unix time, ROS time
         self._stopping = False
         self._next = False  # the nodes wait for the start of another mission
@@ -97,6 +98,14 @@ class UIPage:
         elif (state.status == WAITING) != self._next:
             self._next = state.status == WAITING
             self.show()
+
+    def on_robots(self, node: str, values: Mapping[str, str]) -> None:
+        """Show what is wrong with robots: `values` are those of a node's /diagnostics."""
+        ui = self._ui
+        state = ui.mission.state
+        for text in self._troubles.take(node, values, state.reason if state is not None else ""):
+            if self._board is not None and ui.verdict is None:
+                self._board.on_trouble(ui.mission.elapsed(rospy.get_time()), text)
 
     def on_recorder(self, file: str) -> None:
         """Take the name of the file that the recorder writes."""

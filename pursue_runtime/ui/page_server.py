@@ -77,6 +77,11 @@ class PageServer:
         self._page.note(at, verdict[1], BAD if verdict[0] else GOOD)
         self.show()
 
+    def on_trouble(self, at: float, text: str) -> None:
+        """Show what is wrong with a robot."""
+        self._page.note(at, text, BAD)
+        self.show()
+
     def on_presence(self, at: float, answers: bool) -> None:
         """Show that the observer does not answer, or does again."""
         self._page.note(at, "the observer answers again" if answers else "the observer does not answer",
