@@ -7,12 +7,14 @@ from fractions import Fraction
 from typing import Any, Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import guaranteed, is_lost
+from pursue_gen.solving.verdict import margin_text, margins, periods_json
 from pursue_gen.synthesis.limits import Listener, is_undecided
 from pursue_gen.tga.network import Kind
 
@@ -22,13 +24,16 @@ WON, LOST, UNDECIDED = "won", "lost", "not decided"
 @dataclass(frozen=True)
 class Verdict:
     """WON, LOST or UNDECIDED, with the reason for the last two; `takes`: time units to the goal at worst, None where
-    there is no goal or it was not found out; `given_up`: the numbers of the optional objectives that are not promised.
+    there is no goal or it was not found out; `period`: what was found for patrols that name none; `margin`: how late
+    commands may be, in a sentence; `given_up`: the numbers of the optional objectives that are not promised.
     """
 
     verdict: str
     reason: str = ""
     takes: Optional[Fraction] = None
     has_goal: bool = False
+    period: Optional[Number] = None
+    margin: str = ""
     given_up: Tuple[int, ...] = ()
 
     @property
@@ -38,6 +43,8 @@ class Verdict:
         if self.verdict == WON and self.has_goal:
             worst = "not found out" if self.takes is None else f"at most {decimal(self.takes)} time units"
             text += f", to the goal {worst}"
+        if self.period is not None:
+            text += f", patrols every {self.period}"
         if self.given_up:
             text += f", without optional {', '.join(map(str, self.given_up))}"
         return text
@@ -45,7 +52,9 @@ class Verdict:
     def as_json(self) -> Dict[str, Any]:
         """For programs."""
         takes = None if self.takes is None else float(self.takes)
-        return {"verdict": self.verdict, "reason": self.reason, "takes": takes, "given_up": list(self.given_up)}
+        data = {"verdict": self.verdict, "reason": self.reason, "takes": takes, "margin": self.margin}
+        period = None if self.period is None else float(self.period)
+        return {**data, "period": period, "given_up": list(self.given_up)}
 
 
 def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Verdict:
@@ -62,7 +71,9 @@ def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Lis
     if has_goal and takes is None:
         takes = guaranteed(won, limits=request.options.limits).worst
     given_up = tuple(sorted({each.objective.optional for each in found.scenario.given_up}))
-    return Verdict(WON, "", takes, has_goal, given_up)
+    margin = margin_text(won, *margins(won, False, request.options.limits))
+    period = periods_json(found.scenario).get("period", {}).get("every")
+    return Verdict(WON, "", takes, has_goal, period, margin, given_up)
 
 
 def compared(

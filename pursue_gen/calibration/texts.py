@@ -156,6 +156,8 @@ def changed(before: Verdict, after: Verdict) -> Iterator[str]:
     """What the proposal changes."""
     yield f"as it is:          {before.words}"
     yield f"with the proposal: {after.words}"
+    if after.margin:
+        yield after.margin
     for verdict in (before, after):
         if verdict.reason:
             yield f"  {verdict.reason}"

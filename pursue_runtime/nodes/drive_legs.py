@@ -68,7 +68,8 @@ class DriveLegs:
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
         self._done: List[Session] = []
-        self._next_look = 0.0
+        self._next_look = 0.0  # on the monotonic clock
+        self._count = 0  # drives in the bag
         subscribe(EVENTS, String, lambda message: self._take("on_word", message.data), self.ending, queue_size=100)
         subscribe(STATE, rospy.AnyMsg, self._on_mission, self.ending)
         rospy.on_shutdown(self._stop)
@@ -85,11 +86,19 @@ class DriveLegs:
                 if self._bag is not None:
                     self._bag.close()
                     self._bag = None
-                    os.rename(self.path + ".active", self.path)
-            for session in self._done:
-                for text in session.summary():
-                    rospy.loginfo("%s", text)
-            rospy.loginfo("the drives are in %s: pursue-gen calibrate SCENARIO.pur %s", self.path, self.path)
+                    self._keep()
+
+    def _keep(self) -> None:
+        """Gives the bag its name, and logs what is in it; a bag without drives is removed."""
+        if not self._count:
+            os.remove(self.path + ".active")
+            rospy.logwarn("nothing was measured")
+            return
+        os.rename(self.path + ".active", self.path)
+        for session in self._done:
+            for text in session.summary():
+                rospy.loginfo("%s", text)
+        rospy.loginfo("%d drives are in %s: pursue-gen calibrate SCENARIO.pur %s", self._count, self.path, self.path)
 
     # One robot after the other ----------------------------------------------------------------------------------------
 
@@ -156,6 +165,7 @@ class DriveLegs:
         message = String(format_drive(drive))
         if self._bag is not None:
             self._bag.write(rospy.resolve_name(DRIVES), message, stamp())
+            self._count += 1
         with contextlib.suppress(rospy.ROSException):  # the node is going down
             self._drives.publish(message)
 
@@ -200,7 +210,10 @@ def check_no_mission() -> None:
     publishers: Dict[str, List[str]] = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
     if publishers.get(topic):
         nodes = ", ".join(publishers[topic])
-        raise DataError(f"{nodes} runs, and its mission commands the same robots: end its launch first")
+        raise DataError(
+            f"{nodes} runs, and its mission commands the same robots: end its launch first"
+            " (if it was killed, the master forgets it with: rosnode cleanup)"
+        )
 
 
 def _package_folder(package: str) -> Optional[str]:

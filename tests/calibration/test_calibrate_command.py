@@ -73,6 +73,16 @@ def test_a_proposal_with_which_the_objective_is_lost_says_so(folder: Path, tmp_p
     assert "with the proposal: lost" in done.out and "cannot be met" in done.out
 
 
+def test_a_longer_period_of_a_patrol_is_a_change_too(folder: Path, tmp_path: Path) -> None:
+    patrol = tmp_path / "patrol.pur"
+    patrol.write_text(FLOOR.replace("reach_objective: do fetch within 20", "objective: patrol desk, shelf by bot"))
+    done = called(patrol, folder / "drives.bag", "-o", tmp_path / "copy.pur")
+    lines = [line for line in done.out.splitlines() if "patrols every" in line]
+    before, after = (int(line.rpartition(" ")[2]) for line in lines)
+    assert before < after
+    assert "patrol desk, shelf by bot\n" in (tmp_path / "copy.pur").read_text(encoding="utf-8")
+
+
 def test_a_program_gets_the_same_as_numbers(folder: Path) -> None:
     data = json.loads(called(folder / "floor.pur", folder / "drives.bag", "--json", "--time-unit", 2).out)
     first, second = data["times"]

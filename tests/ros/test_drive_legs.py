@@ -15,6 +15,9 @@ from pursue_gen.language import load
 pytestmark = pytest.mark.ros
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
+PUBLISHES = "rostopic pub -l pursue/state pursue_msgs/SystemState '{}'"
+"""What a mission's observer does, as far as other nodes notice."""
+
 WAYS = ["bot1 from a to c", "bot1 from b to c", "bot1 from c to a", "bot1 from c to b"]
 
 
@@ -23,8 +26,17 @@ def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_mea
 ) -> None:
     workspace = robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
     log, bag = tmp_path / "log", tmp_path / "drives.bag"
+    log.touch()
     command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _pause:=0.05 _file:={bag}"
     with ros.master() as there:
+        mission = ros.start("source devel/setup.bash; exec " + PUBLISHES, workspace, tmp_path / "mission", **there)
+        try:
+            named = "rostopic list -p | grep -qx /pursue/state"
+            wait_for(lambda: not ros.run(named, workspace, **there).returncode, log, "no state is published")
+            refused = ros.run(command, workspace, **there)
+            assert refused.returncode == 3 and "end its launch first" in refused.stdout, refused.stdout
+        finally:
+            end(mission)
         robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3}, bot2={"plays": ["never"]})
         try:
             drives = ros.start(command, workspace, log, **there)
@@ -41,5 +53,5 @@ def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_mea
     found, findings = samples_in([bag], load(str(SCENARIO)))
     assert sorted(str(sample.what) for sample in found.measured) == WAYS and findings == ()
     assert all(sample.seconds > 0.29 for sample in found.measured)
-    assert not bag.with_suffix(".bag.active").exists()
+    assert not list(tmp_path.glob("*.active"))
     assert "bot1 from c to b: 1 of 1 drives" in log.read_text()
