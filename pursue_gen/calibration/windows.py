@@ -4,8 +4,8 @@ With many times nothing is assumed of how they are distributed: between the k-th
 at least the share p of all later ones, with a probability that follows from n, k and p alone (Wilks 1941). With fewer,
 the logarithms of the times are taken to be normally distributed, and the window is their tolerance interval (Howe
 1969, with the chi-square quantile of Wilson and Hilferty): a factor on both sides of the mean that grows as there are
-fewer times. It is never smaller than what was measured. With less than FEW times the window is a margin around them,
-and no share can be claimed.
+fewer times. It reaches at least SLIGHT beyond what was measured: times of one day may be more alike than those of
+several. With less than FEW times the window is a margin around them, and no share can be claimed.
 """
 
 from __future__ import annotations
@@ -23,6 +23,9 @@ FEW = 5
 """With less times there is a margin only: from half the shortest to twice the longest."""
 
 MARGIN = 2.0
+
+SLIGHT = 0.05
+"""By this part of the shortest and of the longest time a window that is fitted reaches beyond them at least."""
 
 COUNTED, FITTED, GUESSED = "counted", "fitted", "guessed"
 """What a window rests on: order alone; times with a normally distributed logarithm; a margin."""
@@ -71,7 +74,7 @@ def window_of(times: Sequence[float], share: float = SHARE, confidence: float = 
     logs = [log(time) for time in ordered]
     reach = tolerance_factor(len(logs), share, confidence) * stdev(logs)
     low, high = exp(fmean(logs) - reach), exp(fmean(logs) + reach)
-    return Window(min(low, ordered[0]), max(high, ordered[-1]), FITTED)
+    return Window(min(low, (1 - SLIGHT) * ordered[0]), max(high, (1 + SLIGHT) * ordered[-1]), FITTED)
 
 
 def spread_of(times: Sequence[float]) -> Spread:

@@ -38,6 +38,11 @@ def test_a_window_holds_all_that_was_measured_where_times_are_few(times: List[fl
     assert window.basis == (GUESSED if len(times) < FEW else FITTED)
 
 
+def test_times_that_are_all_alike_still_get_a_window() -> None:
+    window = window_of([13.2, 13.25, 13.3, 13.25, 13.2])
+    assert (window.low, window.high) == pytest.approx((0.95 * 13.2, 1.05 * 13.3), rel=0.01)
+
+
 @given(TIMES, st.randoms())
 def test_the_order_of_times_does_not_matter(times: List[float], random: Random) -> None:
     mixed = random.sample(times, len(times))
