@@ -71,8 +71,8 @@ def with_numbers(text: str, file: str, numbers: Sequence[NewNumber], by: str) ->
                          f" // {_note(by, number.source)}")  # fmt: skip
             continue
         edits += [Edit(old[0].start_pos or 0, end_of(old[1]), _value(number)), _noted(document, part, by, number)]
-    if added:
-        edits += inserted(document, "\n".join(added))
+    if added:  # first, as of edits at one place the first one stands last: a note comes before a new line
+        edits = [*inserted(document, "\n".join(added)), *edits]
     return applied(document.text, tuple(edits))
 
 

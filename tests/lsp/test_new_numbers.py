@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
+from typing import List
 
 import pytest
 
 from pursue_gen.language import parse
-from pursue_gen.lsp.new_numbers import Distance, Duration, TravelTime, with_numbers
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.numbers import exact
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.new_numbers import Distance, Duration, NewNumber, TravelTime, with_numbers
+
+SCENARIOS = sorted((Path(__file__).resolve().parents[2] / "scenarios").rglob("*.pur"))
 
 TEXT = """\
 poi "a" //[1, 2, 3, 0, 0, 0, 1]
@@ -40,6 +47,14 @@ def test_travel_times_that_are_new_stand_behind_the_others_in_order() -> None:
         "travel bot from b to c takes 1 to 2 // calibrate: 1 drive",
     ]
     assert [line for line in lines if line not in lines[7:9]] == TEXT.splitlines()
+
+
+def test_a_new_travel_time_does_not_take_the_note_of_the_one_before_it() -> None:
+    both = [TravelTime("bot", "a", "b", 4, 6, "18 drives"), TravelTime("bot", "b", "a", 4, 7, "3 drives")]
+    assert written(*both).splitlines()[6:8] == [
+        'travel "bot" from a to b takes 4 to 6 // calibrate: 18 drives',
+        "travel bot from b to a takes 4 to 7 // calibrate: 3 drives",
+    ]
 
 
 def test_durations_and_distances_are_replaced_and_comments_stay() -> None:
@@ -76,3 +91,29 @@ def test_line_ends_of_another_system_are_read() -> None:
 def test_what_has_no_number_cannot_get_one(number: object) -> None:
     with pytest.raises(ValueError, match=r"nothing in floor\.pur"):
         written(number)
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=lambda file: file.stem)
+def test_in_the_scenarios_that_come_with_it_windows_are_all_that_changes(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    scenario = parse(text, str(file))
+    numbers: List[NewNumber] = [
+        TravelTime(agent.name, *way, low, exact(high + 1), "a test")
+        for agent in scenario.agents
+        for way, (low, high) in scenario.movements(agent).items()
+    ]
+    numbers += [Duration(each.name, each.window[0], exact(each.window[1] + 1), "a test")
+                for each in scenario.events if each.window is not None]  # fmt: skip
+    found = with_numbers(text, str(file), numbers, "calibrate")
+    changed = parse(found, str(file))
+    for agent in scenario.agents:
+        wider = {way: (low, high + 1) for way, (low, high) in scenario.movements(agent).items()}
+        assert changed.movements(agent) == wider
+    assert [each.window for each in changed.events] == [
+        None if each.window is None else (each.window[0], each.window[1] + 1) for each in scenario.events
+    ]
+    assert found.count("calibrate: a test") == len(numbers)
+    comments = [str(token) for token in Document.of(text, str(file)).comments]
+    assert [each for each in comments if each not in found] == []
+    assert with_numbers(found, str(file), numbers, "calibrate") == found
+    assert format_text(found, str(file)).count("calibrate: a test") == len(numbers)
