@@ -38,18 +38,15 @@ def draw(
     from pursue_gen.draw.jobs import Jobs
     from pursue_gen.draw.page import DrawPage, file_for
     from pursue_gen.draw.server import DrawServer
-    from pursue_gen.drawing.floor import read_floor
-    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.synthesis.limits import careful_memory
 
     plan, scenario = _named(files or [])
-    floor, ground = (None, None) if plan is None else (read_floor(plan), read_ground(plan))
     file = file_for(scenario, plan)
     if scenario is None:
         storage.check_new(file, force)
     _, version = storage.opened(file)
     jobs = Jobs(file.name, plan, limit, careful_memory())
-    with DrawServer(DrawPage(file, floor, jobs, scenario is None, ground), port) as server:
+    with DrawServer(DrawPage(file, plan, jobs, anew=scenario is None), port) as server:
         print(server.url, flush=True)
         begins = scenario is None or version == storage.NOTHING
         info(f"{file} is {'begun' if begins else 'drawn'} there; Save writes it. Ctrl-C ends the page.")
@@ -60,7 +57,7 @@ def draw(
         except KeyboardInterrupt:  # which is how it ends
             info("")
         finally:
-            jobs.close()
+            jobs.end()
     suggest(f"pursue-gen check {shell_quoted(file)}")
 
 

@@ -1,4 +1,4 @@
-"""Solving beside the page: one text at a time, in a process of its own that can be ended at any moment."""
+"""Solving and playing beside the page: one text at a time, in a process of its own that can be ended at any moment."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import time
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Callable, Dict, Optional
 
-from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.draw.solve_work import Work, work
+from pursue_gen.draw.fields import refused
+from pursue_gen.draw.play_work import play
+from pursue_gen.draw.solve_work import UNDECIDED, Work, solve
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
+_DIED = "the process has ended without an answer; perhaps the machine has too little memory"
 
 
 class Jobs:
@@ -28,6 +30,7 @@ class Jobs:
         self._state: Dict[str, Any] = {"state": NONE}
         self._report = ""
         self._process: Any = None
+        self._pipe: Optional[Connection] = None
         self._start = 0.0
 
     @property
@@ -36,25 +39,25 @@ class Jobs:
         with self._lock:
             return self._report
 
-    def start(self, text: str) -> Dict[str, Any]:
-        """Solves a text, instead of what is being solved; the state."""
+    def solve(self, text: str) -> Dict[str, Any]:
+        """Solves a text, instead of what is under way; the state."""
         with self._lock:
-            self._end()
-            self._number += 1
-            self._state, self._report, self._start = {"state": RUNNING}, "", time.monotonic()
-            context = multiprocessing.get_context("spawn")
-            resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
-            ours, theirs = context.Pipe(duplex=False)
-            given = Work(text, self._file, self._floor, self._seconds, self._memory)
-            self._process = context.Process(target=work, args=(given, theirs), daemon=True)
-            # Ctrl-C is for the server; the process has that blocked from its birth.
-            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            try:
-                self._process.start()
-            finally:
-                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-            theirs.close()
-            threading.Thread(target=self._receive, args=(self._number, ours, self._process), daemon=True).start()
+            self._launch(solve, text)
+            self._report = ""
+        return self.state()
+
+    def play(self, text: str) -> Dict[str, Any]:
+        """Begins a game of a text, instead of what is under way; the state."""
+        with self._lock:
+            self._launch(play, text)
+        return self.state()
+
+    def say(self, line: str) -> Dict[str, Any]:
+        """Passes on what the person types in a game; the state. Raises PursueError where no game is under way."""
+        with self._lock:
+            if self._state["state"] != RUNNING or "game" not in self._state or self._pipe is None:
+                raise refused("no game is under way", "press Play to begin one")
+            self._pipe.send(line)
         return self.state()
 
     def state(self) -> Dict[str, Any]:
@@ -67,42 +70,49 @@ class Jobs:
         """Ends the job, if there is one."""
         with self._lock:
             if self._state["state"] == RUNNING:
-                self._end()
-                self._state = {"state": CANCELLED}
+                self.end()
+                self._state = {**self._state, "state": CANCELLED}
         return self.state()
 
-    def close(self) -> None:
-        """Ends what is under way."""
-        with self._lock:
-            self._end()
-
-    def _end(self) -> None:
+    def end(self) -> None:
+        """Ends the process that is under way, if there is one."""
         if self._process is not None:
             self._process.kill()
             self._process.join()
             self._process = None
 
-    def _receive(self, number: int, end: Connection, process: Any) -> None:
+    def _launch(self, target: Callable[[Work, Connection], None], text: str) -> None:
+        self.end()
+        self._number += 1
+        self._state, self._start = {"state": RUNNING}, time.monotonic()
+        context = multiprocessing.get_context("spawn")
+        resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
+        self._pipe, theirs = context.Pipe()
+        given = Work(text, self._file, self._floor, self._seconds, self._memory)
+        self._process = context.Process(target=target, args=(given, theirs), daemon=True)
+        # Ctrl-C is for the server; the process has that blocked from its birth.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            self._process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        theirs.close()
+        threading.Thread(target=self._receive, args=(self._number, self._pipe, self._process), daemon=True).start()
+
+    def _receive(self, number: int, pipe: Connection, process: Any) -> None:
         """Takes what the process sends, as long as its job is the present one."""
         while True:
             try:
-                found: Any = end.recv()
+                found: Any = pipe.recv()
             except (EOFError, OSError):
                 found = None
             with self._lock:
                 if number != self._number or self._state["state"] != RUNNING:
                     break
                 if found is None:  # it has ended
-                    problem = _died()
-                    lost = {} if "verdict" in self._state else {"verdict": "undecided", "lines": [problem]}
+                    lost = {} if "verdict" in self._state else {"verdict": UNDECIDED, "lines": [_DIED]}
                     self._state = {**self._state, **lost, "state": ENDED}
                     break
                 self._report = found.pop("page", self._report)
                 self._state.update(found)
-        end.close()
         process.join()
-
-
-def _died() -> str:
-    problem = PursueError([error("SYN010", "the process that solves has ended without a verdict")], 5)
-    return str(problem)

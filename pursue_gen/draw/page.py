@@ -9,11 +9,12 @@ from typing import Any, Callable, Dict, Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.draw import storage
+from pursue_gen.draw.fields import text_of
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.operations import ANYBODY, change
 from pursue_gen.draw.view import forms, view
-from pursue_gen.drawing.floor import Floor
-from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.floor import read_floor
+from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.syntax import MOST_LETTERS
 from pursue_gen.lsp.positions import plain
 
@@ -23,12 +24,13 @@ Answer = Dict[str, Any]
 class DrawPage:
     """A scenario that is being drawn. Its requests may come from several threads at once."""
 
-    def __init__(
-        self, file: Path, floor: Optional[Floor], jobs: Jobs, anew: bool = False, ground: Optional[Ground] = None
-    ) -> None:
-        """`floor`: what lies under the picture; `anew`: until it is saved, what is in the file does not matter;
-        `ground`: where places can stand."""
-        self.file, self._floor, self.jobs, self._anew, self._ground = file, floor, jobs, anew, ground
+    def __init__(self, file: Path, plan: Optional[Path], jobs: Jobs, anew: bool = False) -> None:
+        """`plan`: the yaml file of the map under the picture; `anew`: until it is saved, what is in the file does not
+        matter. Raises PursueError (exit status 2) for a map that cannot be used.
+        """
+        self.file, self.jobs, self._anew = file, jobs, anew
+        self._floor = None if plan is None else read_floor(plan)
+        self._ground = None if plan is None else read_ground(plan)
         self._lock = threading.Lock()
 
     @property
@@ -43,7 +45,9 @@ class DrawPage:
             "view": lambda values: {"view": self._view(_text(values))},
             "change": self._change,
             "save": self._save,
-            "solve": lambda values: self.jobs.start(_text(values)),
+            "solve": lambda values: self.jobs.solve(_text(values)),
+            "play": lambda values: self.jobs.play(_text(values)),
+            "say": lambda values: self.jobs.say(text_of(values, "line")),
             "job": lambda values: self.jobs.state(),
             "cancel": lambda values: self.jobs.cancel(),
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import threading
@@ -9,7 +10,7 @@ import time
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import List, Optional
+from typing import Iterator, List, Optional
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor, read_floor
@@ -44,17 +45,44 @@ class Work:
     memory: int
 
 
-def work(given: Work, end: Connection) -> None:
-    """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
+class Progressing:
+    """A listener that sends {"progress": …} now and then."""
+
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe, self._last = pipe, 0.0
+
+    def __call__(self, far: Progress) -> None:
+        """As listeners are called."""
+        if time.monotonic() - self._last > _INTERVAL:
+            self._last = time.monotonic()
+            self._pipe.send({"progress": f"{far.phase}: {far.states} states, {far.waiting} waiting, {far.memory} MiB"})
+
+
+@contextlib.contextmanager
+def working(pipe: Connection) -> Iterator[None]:
+    """Ends this process with the server; an error of the program is sent, and never looks like a verdict."""
     _end_with_parent()
     try:
-        _solve(given, end)
-    except PursueError as problem:
-        end.send({"verdict": ERRORS, "lines": _sentences(problem)})
-    except BrokenPipeError:  # the page has gone
+        yield
+    except (BrokenPipeError, EOFError):  # the server has gone
         pass
-    except Exception as problem:  # what is wrong in the program must not look like a verdict
-        end.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
+    except Exception as problem:
+        pipe.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
+
+
+def solve(given: Work, pipe: Connection) -> None:
+    """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
+    with working(pipe):
+        try:
+            _solve(given, pipe)
+        except PursueError as problem:
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem)})
+
+
+def scenario_of(given: Work) -> Scenario:
+    """The scenario in the text. Raises PursueError with its errors."""
+    reading = read(given.text, given.file)
+    return without_errors(reading.scenario, check_reading(reading))
 
 
 def _end_with_parent() -> None:
@@ -69,33 +97,25 @@ def _end_with_parent() -> None:
         threading.Thread(target=watch, daemon=True).start()
 
 
-def _solve(given: Work, end: Connection) -> None:
-    reading = read(given.text, given.file)
-    scenario = without_errors(reading.scenario, check_reading(reading))
+def _solve(given: Work, pipe: Connection) -> None:
     floor = None if given.floor is None else read_floor(given.floor)
     limits, start = Limits(given.seconds, given.memory), time.monotonic()
-    last = [0.0]
-
-    def progress(far: Progress) -> None:
-        if time.monotonic() - last[0] > _INTERVAL:
-            last[0] = time.monotonic()
-            end.send({"progress": f"{far.phase}: {far.states} states, {far.waiting} waiting, {far.memory} MiB"})
-
+    progress = Progressing(pipe)
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
-    scenario = settled(scenario, request, progress)
+    scenario = settled(scenario_of(given), request, progress)
     try:
         found = promised_of(scenario, request, progress)
     except PursueError as problem:
         if not is_lost(problem) and not is_undecided(problem):
             raise
-        end.send({"verdict": LOST if is_lost(problem) else UNDECIDED, "lines": _sentences(problem)})
-        end.send({"progress": "looking for what would change that"})
+        pipe.send({"verdict": LOST if is_lost(problem) else UNDECIDED, "lines": sentences(problem)})
+        pipe.send({"progress": "looking for what would change that"})
         lost = lost_report(scenario, problem, limits.since(start), progress, floor)
-        end.send({"page": report_page(lost)})
+        pipe.send({"page": report_page(lost)})
         return
-    end.send({"verdict": WON, "lines": _promise(found)})
-    end.send({"progress": "making the pictures"})
-    end.send({"page": _won_page(found, request, floor)})
+    pipe.send({"verdict": WON, "lines": _promise(found)})
+    pipe.send({"progress": "making the pictures"})
+    pipe.send({"page": _won_page(found, request, floor)})
 
 
 def _won_page(found: Promised, request: SolveRequest, floor: Optional[Floor]) -> str:
@@ -117,5 +137,6 @@ def _promise(found: Promised) -> List[str]:
     return [*lines, f"This holds {assumed}."] if assumed else lines
 
 
-def _sentences(problem: PursueError) -> List[str]:
+def sentences(problem: PursueError) -> List[str]:
+    """What went wrong, a sentence for each finding."""
     return [f"{one.message} ({one.hint})" if one.hint else one.message for one in problem.diagnostics]

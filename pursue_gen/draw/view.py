@@ -62,7 +62,7 @@ def forms() -> List[Dict[str, Any]]:
 
 
 def _findings(document: Document, ground: Optional[Ground]) -> Tuple[Diagnostic, ...]:
-    """What `pursue-gen check` reports, with --map where there is a ground."""
+    """What `pursue-gen check` reports, with --map where there is a map."""
     found = findings_of(document.reading)
     if ground is None or any(one.severity is Severity.ERROR for one in found):
         return found

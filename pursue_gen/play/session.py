@@ -104,12 +104,16 @@ def shown(session: Session) -> Tuple[str, ...]:
     if isinstance(session.game, StrategyPlay):
         lines.append(_intention(session, session.game))
     lines += _planned(session)
-    offers = session.game.offers(play)
-    lines.append("You can do:" if offers else "There is nothing for you to do here but to wait.")
-    said = [_offered(session, offer) for offer in offers]
+    said = choices(session)
+    lines.append("You can do:" if said else "There is nothing for you to do here but to wait.")
     widest = max((len(what) for what, _ in said), default=0)
     lines += [f"  {number:>2}  {what:<{widest}}  {when}" for number, (what, when) in enumerate(said, start=1)]
     return tuple(lines)
+
+
+def choices(session: Session) -> Tuple[Tuple[str, str], ...]:
+    """What the person can do, in the order of its numbers: what, and when that is possible."""
+    return tuple(_offered(session, offer) for offer in session.game.offers(session.play))
 
 
 def _offered(session: Session, offer: Offer) -> Tuple[str, str]:

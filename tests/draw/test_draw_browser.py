@@ -15,7 +15,6 @@ import pytest
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage
 from pursue_gen.draw.server import DrawServer
-from pursue_gen.drawing.floor import read_floor
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.parser import parse
 from tests.conftest import ROOT
@@ -51,7 +50,7 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 def drawn(there: Browser, file: Path, floor: Optional[Path] = None, width: int = 1400) -> Iterator[Browser]:
     """The page of a scenario's file, open in the browser."""
     jobs = Jobs(file.name, floor, 600, 4096)
-    with DrawServer(DrawPage(file, None if floor is None else read_floor(floor), jobs)) as server:
+    with DrawServer(DrawPage(file, floor, jobs)) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
         thread.start()
         there.complaints.clear()
@@ -61,7 +60,7 @@ def drawn(there: Browser, file: Path, floor: Optional[Path] = None, width: int =
         try:
             yield there
         finally:
-            jobs.close()
+            jobs.end()
             there.open("about:blank")
             server.shutdown()
             thread.join()
@@ -206,7 +205,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         assert there.complaints == []
 
 
-def test_keys_move_delete_and_take_back_and_findings_lead_into_the_text(there: Browser, tmp_path: Path) -> None:
+def test_it_is_solved_and_played_and_keys_move_delete_and_take_back(there: Browser, tmp_path: Path) -> None:
     file = tmp_path / "small.pur"
     file.write_text(SMALL, encoding="utf-8")
     with drawn(there, file):
@@ -214,6 +213,13 @@ def test_keys_move_delete_and_take_back_and_findings_lead_into_the_text(there: B
         there.click("#solve")
         there.wait("!document.getElementById('report').hidden")
         assert there.value("document.getElementById('outcome').dataset.verdict") == "won"
+        there.click("#play")
+        there.wait("document.getElementById('game-lines').textContent.includes('The strategy: bot sets off from')")
+        there.click("button[data-line=wait]")
+        there.wait("document.querySelector('#plan > g.mark title')?.textContent === 'bot'")
+        there.click("#choices button")
+        there.wait("document.getElementById('game-lines').textContent.includes('bot arrives at b')")
+        there.click("#end")
         there.value("document.querySelector('.place[data-key=b]').focus()")
         there.key("ArrowRight", ARROW_RIGHT)
         there.key("ArrowRight", ARROW_RIGHT, modifiers=8)

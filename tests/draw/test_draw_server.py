@@ -18,8 +18,6 @@ from pursue_gen.draw import storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage, file_for
 from pursue_gen.draw.server import MOST_BYTES, DrawServer
-from pursue_gen.drawing.floor import read_floor
-from pursue_gen.drawing.ground import read_ground
 from tests.large_scenarios import many_walkers
 from tests.waiting import PATIENCE, until
 
@@ -42,7 +40,7 @@ def served(tmp_path: Path) -> Iterator[DrawServer]:
         threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
         yield server
         server.shutdown()
-    jobs.close()
+    jobs.end()
 
 
 def request(
@@ -231,9 +229,7 @@ def test_a_scenario_without_a_name_is_called_like_the_map() -> None:
 def test_the_floor_plan_lies_under_the_picture_where_its_origin_and_its_turn_say(tmp_path: Path) -> None:
     (tmp_path / "map.pgm").write_bytes(b"P5\n20 10\n255\n" + bytes([254]) * 200)
     (tmp_path / "map.yaml").write_text("image: map.pgm\nresolution: 0.5\norigin: [-2, 1, 0.5]\n")
-    floor = read_floor(tmp_path / "map.yaml")
-    ground = read_ground(tmp_path / "map.yaml")
-    page = DrawPage(tmp_path / "a.pur", floor, Jobs("a.pur", None, 600, 4096), ground=ground)
+    page = DrawPage(tmp_path / "a.pur", tmp_path / "map.yaml", Jobs("a.pur", None, 600, 4096))
     assert page.answer("open", {})["floor"] == {"width": 10, "height": 5, "x": -2, "y": 1, "yaw": 0.5}
     assert page.picture is not None and page.picture.startswith(b"\x89PNG")
     text = WON.replace('poi "a"', 'poi "a" //[0, 3, 0, 0, 0, 0, 1]').replace('"b"', '"b" //[99, 0, 0, 0, 0, 0, 1]')
@@ -254,6 +250,29 @@ def test_a_text_is_solved_beside_the_page_and_can_be_given_up(served: DrawServer
     asked(served, "solve", text=WON.replace("can_do work", ""))
     done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")
     assert done["verdict"] == "errors" and "nobody can do work" in done["lines"][0]
+
+
+def test_a_game_is_played_beside_the_page_and_writes_nothing(served: DrawServer, tmp_path: Path) -> None:
+    assert asked(served, "say", line="wait")["code"] == "DRW001"
+    asked(served, "play", text=WON)
+
+    def turn(number: int) -> Any:
+        return until(lambda: asked(served, "job").get("game", {}).get("turn") == number and asked(served, "job"), "it")
+
+    first = turn(1)["game"]
+    assert first["at"] == {"bot": ["a"]} and "The robots can see to it, whatever others do." in first["lines"]
+    asked(served, "say", line="wait")
+    second = turn(2)["game"]
+    assert second["at"] == {"bot": ["a", "b"]} and second["choices"][0][0] == "bot: arrive at b"
+    asked(served, "say", line=f"save {tmp_path / 'game.yaml'}")
+    assert "not saved" in turn(3)["game"]["lines"][0] and not (tmp_path / "game.yaml").exists()
+    asked(served, "say", line="1")
+    asked(served, "say", line="wait")
+    assert turn(5)["game"]["over"] is True
+    assert asked(served, "cancel")["state"] == "cancelled"
+    asked(served, "play", text="poi")
+    done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")
+    assert done["verdict"] == "errors"
 
 
 def test_a_connection_that_says_nothing_does_not_keep_others_out(served: DrawServer) -> None:

@@ -1,6 +1,7 @@
 // Begins with what the server has, and connects the parts of the page.
 import * as editor from "./editor.js";
 import { byId } from "./elements.js";
+import * as game from "./game.js";
 import { inspect } from "./inspector.js";
 import { list } from "./lists.js";
 import { draw } from "./plan.js";
@@ -59,10 +60,12 @@ async function begin() {
   for (const listener of [draw, inspect, list, editor.write, follow]) onShow(listener);
   pointer.listen();
   editor.listen();
+  game.listen();
   press("undo", undo);
   press("redo", redo);
   press("save", () => save(false));
   press("solve", solve);
+  press("play", game.play);
   press("cancel", cancel);
   press("format", () => change({ do: "format" }));
   press("overwrite", () => { byId("changed").close(); save(true); });

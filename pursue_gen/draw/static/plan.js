@@ -36,6 +36,7 @@ export function draw() {
     ...state.view.places.map((place) => drawnPlace(place, at.get(place.name))),
     ...lengths.filter((one) => one !== null),
     ...names,
+    ...travellers(ways, at),
   );
   const again = key && plan.querySelector(`[data-key="${CSS.escape(key)}"]`);
   if (again) again.focus();
@@ -122,6 +123,28 @@ function rubber(at) {
   return [svg("line", { class: "rubber", x1: from.x, y1: from.y, x2, y2 })];
 }
 
+// Who is on a way in a game, in its middle: marks beside each other.
+function travellers(ways, at) {
+  const playing = state.playing || {};
+  const found = [];
+  for (const way of ways) {
+    const [a, b] = ends(way, at);
+    const on = state.view.agents.filter((one) => {
+      const where = playing[one.name] || [];
+      return where.length === 2 && where.includes(way.a) && where.includes(way.b);
+    });
+    on.forEach((one, number) => {
+      const to = playing[one.name][1] === way.b ? b : a;
+      const from = to === b ? a : b;
+      const [x, y] = [from.x + 0.62 * (to.x - from.x) + 16 * number, from.y + 0.62 * (to.y - from.y)];
+      const mark = marked(one.mark, x, y);
+      mark.append(svg("title", {}, shown(one)));
+      found.push(mark);
+    });
+  }
+  return found;
+}
+
 // Places -----------------------------------------------------------------------------------------------------------
 
 function drawnPlace(place, at) {
@@ -143,9 +166,15 @@ function drawnPlace(place, at) {
   );
 }
 
+// Does an agent start there, or in a game: is it there?
+function isAt(agent, place) {
+  const where = state.playing && state.playing[agent.name];
+  return where ? where.length === 1 && where[0] === place : agent.location === place;
+}
+
 // The name of a place, under it who starts there and what happens there.
 function namesOf(place, at, taken) {
-  const agents = state.view.agents.filter((one) => one.location === place.name);
+  const agents = state.view.agents.filter((one) => isAt(one, place.name));
   const events = state.view.events.filter((one) => one.location === place.name);
   const lasts = (one) => (one.duration ? ` (${one.duration})` : "");
   const rows = [
@@ -161,13 +190,15 @@ function namesOf(place, at, taken) {
   rows.forEach((row, number) => {
     const y = box.y + 14 + number * ROW;
     group.append(svg("text", { class: row.kind, x: box.x + 5 + row.indent, y }, row.words));
-    if (row.mark) {
-      const mark = svg("g", { transform: `translate(${box.x + 12} ${y - 4})` });
-      mark.innerHTML = row.mark; // a shape and a colour, made by the server of nothing that a person wrote
-      group.append(mark);
-    }
+    if (row.mark) group.append(marked(row.mark, box.x + 12, y - 4));
   });
   return group;
+}
+
+function marked(shape, x, y) {
+  const mark = svg("g", { class: "mark", transform: `translate(${x} ${y})` });
+  mark.innerHTML = shape; // a shape and a colour, made by the server of nothing that a person wrote
+  return mark;
 }
 
 function halo(box) {

@@ -1,7 +1,8 @@
 // The text and what is seen of it: the text is what counts, the picture follows it.
 import { byId } from "./elements.js";
 
-export const state = { text: "", view: null, selected: null, saved: "", past: [], future: [], opened: null };
+export const state = { text: "", view: null, selected: null, saved: "", playing: null, past: [], future: [], opened: null };
+// `playing`: in a game, where everybody is: agent → [place], or [from, to].
 const listeners = [];
 let queue = Promise.resolve(); // changes are made one after the other
 let typed = 0; // when the text was last typed in

@@ -1,5 +1,6 @@
 // Solving: how far it is, the verdict, and the report.
 import { byId, html } from "./elements.js";
+import { endGame } from "./game.js";
 import { ask, refusal, say, state } from "./state.js";
 
 const OUTCOMES = {
@@ -9,6 +10,7 @@ const OUTCOMES = {
   errors: "The text has errors.",
 };
 let solved = null; // the text that the verdict is about
+let mine = 0; // the number of the last job that solved
 let shown = 0; // the job whose report is shown
 
 export function outdated() {
@@ -16,6 +18,7 @@ export function outdated() {
 }
 
 export async function solve() {
+  endGame();
   solved = state.text;
   byId("verdict").hidden = false;
   byId("report").hidden = true;
@@ -31,6 +34,8 @@ export async function cancel() {
 
 function report(answer) {
   if (answer.refused) return say(refusal(answer), true);
+  if (answer.game || answer.job < mine) return;
+  mine = answer.job;
   const running = answer.state === "running";
   byId("cancel").hidden = !running;
   const going = running ? `${answer.progress || "solving"} … ${answer.seconds} s` : "";
