@@ -14,7 +14,16 @@ from pursue_gen.draw import fields
 from pursue_gen.draw.fields import Values, refused
 from pursue_gen.draw.places import lengths_per_metre, positions, with_all_positions
 from pursue_gen.draw.poses import metres, with_position
-from pursue_gen.draw.statement_edits import PARTS, added, changed, parts_of, restated, with_part, without
+from pursue_gen.draw.statement_edits import (
+    PARTS,
+    added,
+    changed,
+    parts_of,
+    restated,
+    with_part,
+    without,
+    without_remark,
+)
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.names import KINDS
@@ -155,6 +164,8 @@ def _set(document: Document, values: Values) -> Done:
     for field in wanted:
         for part, words in known[field](wanted, field).items():
             document = with_part(document, number, part, words)
+            if part in ("DISTANCE", "DURATION"):
+                document = without_remark(document, number)
     return document, number
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Dict, List, Mapping, Optional, Tuple
 
 from lark import Token
@@ -20,6 +21,9 @@ PARTS: Mapping[str, Tuple[str, ...]] = {
 """The parts of a statement by the word that begins each, in the order in which they stand."""
 
 Part = Tuple[Token, ...]
+
+_REMARK = re.compile(r"(?://|/\*)[ \t]*(?:survey|calibrate): ")
+"""As `language.rewriting` writes them, of the commands that measure."""
 
 
 def parts_of(statement: Statement) -> Dict[str, Part]:
@@ -69,6 +73,17 @@ def _break(document: Document, at: int) -> str:
     """A line end where a pose, which goes on to the end of its line, would otherwise swallow the begin of a block."""
     rest = document.text[at : document.positions.line_end(document.positions.line_of(at))].strip()
     return "" if not rest or rest.startswith("//") else "\n"
+
+
+def without_remark(document: Document, number: int) -> Document:
+    """The text without the remark behind a statement that says which command its number comes from: a person has
+    written another one.
+    """
+    end = document.statements[number].end
+    line = document.positions.line_end(document.positions.line_of(end))
+    behind = (comment for comment in document.comments if end <= (comment.start_pos or 0) < line)
+    remarks = [comment for comment in behind if _REMARK.match(comment)]
+    return changed(document, *(Edit(one.start_pos or 0, end_of(one), "") for one in remarks))
 
 
 def restated(document: Document, number: int, words: str) -> Document:

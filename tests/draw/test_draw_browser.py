@@ -205,7 +205,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         assert there.complaints == []
 
 
-def test_it_is_solved_and_played_and_keys_move_delete_and_take_back(there: Browser, tmp_path: Path) -> None:
+def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser, tmp_path: Path) -> None:
     file = tmp_path / "small.pur"
     file.write_text(SMALL, encoding="utf-8")
     with drawn(there, file):
@@ -220,6 +220,23 @@ def test_it_is_solved_and_played_and_keys_move_delete_and_take_back(there: Brows
         there.click("#choices button")
         there.wait("document.getElementById('game-lines').textContent.includes('bot arrives at b')")
         there.click("#end")
+        there.value("document.querySelector('input[value=place]').focus()")
+        there.key(" ", 32, " ")
+        there.value("document.getElementById('plan').focus()")
+        there.key("Enter", ENTER, "\r")
+        named(there, "place1", "hall")
+        there.value("document.querySelector('input[value=way]').focus()")
+        there.key(" ", 32, " ")
+        for place in ("hall", "b"):
+            there.value(f"document.querySelector('.place[data-key={place}]').focus()")
+            there.key("Enter", ENTER, "\r")
+        says(there, "connect hall and b distance 2\n")
+        there.key("z", 90, modifiers=CTRL)
+        there.key("z", 90, modifiers=CTRL)
+        there.key("z", 90, modifiers=CTRL)
+        there.wait(f"document.getElementById('text').value === {SMALL!r}")
+        there.wait("document.querySelector('.place[data-key=hall]') === null")
+        there.click("input[value=select]")
         there.value("document.querySelector('.place[data-key=b]').focus()")
         there.key("ArrowRight", ARROW_RIGHT)
         there.key("ArrowRight", ARROW_RIGHT, modifiers=8)

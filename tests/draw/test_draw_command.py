@@ -13,7 +13,9 @@ from typing import List
 from urllib.parse import urlsplit
 
 import pytest
+import typer
 
+from pursue_gen.cli.draw import draw
 from tests.conftest import ROOT
 from tests.large_scenarios import many_walkers
 from tests.waiting import PATIENCE, until
@@ -85,9 +87,14 @@ def test_what_solves_ends_with_the_server_even_if_that_is_killed(tmp_path: Path)
         (["latin.pur"], "not text in UTF-8"),
     ],
 )
-def test_what_it_cannot_begin_with_is_named(tmp_path: Path, arguments: List[str], words: str) -> None:
+def test_what_it_cannot_begin_with_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], arguments: List[str],
+    words: str,
+) -> None:
     (tmp_path / "my_floor.pur").write_text("")
     (tmp_path / "latin.pur").write_bytes(b"// \xe9\n")
-    with started(tmp_path, *arguments) as program:
-        out, said = program.communicate(timeout=PATIENCE)
-    assert (program.returncode, out) == (2, "") and words in said and "help:" in said
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(typer.Exit) as caught:
+        draw([Path(name) for name in arguments], port=0, browser=False, limit=10.0, force=False)
+    out, said = capsys.readouterr()
+    assert (caught.value.exit_code, out) == (2, "") and words in said and "help:" in said

@@ -151,6 +151,14 @@ def test_parts_are_set_and_left_out() -> None:
     assert 'event "fetch" at_most 3 times only_if nurse at room // slow' in after
 
 
+def test_a_number_that_a_person_writes_has_no_remark_on_where_it_comes_from() -> None:
+    text = 'poi "a"\npoi "b"\nconnect a and b distance 4.2 // survey: 4.16 m on map.yaml\n'
+    after = done(text, "set", statement=2, fields={"distance": "5"})
+    assert after.endswith("connect a and b distance 5\n")
+    after = done(text.replace("survey", "note"), "set", statement=2, fields={"distance": "5"})
+    assert after.endswith("connect a and b distance 5 // note: 4.16 m on map.yaml\n")
+
+
 def test_a_place_goes_with_its_ways_and_an_agent_with_its_battery() -> None:
     text = 'poi "a" poi "b" connect a and b distance 1 agent "bot" controllable location b battery bot capacity 9'
     text = done(text + " uses 1 per unit // 9\ntravel bot from a to b takes 3", "delete", statement=0)

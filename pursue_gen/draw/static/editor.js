@@ -1,6 +1,6 @@
 // The text with its line numbers, and the findings beneath it.
 import { byId, html } from "./elements.js";
-import { state, type } from "./state.js";
+import { all, isSelected, select, selected, state, type } from "./state.js";
 
 const text = byId("text");
 const lines = byId("lines");
@@ -19,11 +19,22 @@ export function write() {
   byId("findings").replaceChildren(...state.view.findings.map(finding));
 }
 
+// The numbers of the lines, those of what is selected marked.
 function number() {
+  const one = selected();
+  const [from, to] = one ? [one.thing.from, one.thing.to] : [0, 0];
+  const some = (first, last) => Array.from({ length: Math.max(0, last - first + 1) }, (_, line) => first + line).join("\n");
   const count = state.text.split("\n").length;
-  const wanted = Array.from({ length: count }, (_, line) => line + 1).join("\n");
-  if (lines.textContent !== wanted) lines.textContent = wanted;
+  const parts = from ? [`${some(1, from - 1)}\n`, html("b", {}, some(from, to)), some(to + 1, count)] : [some(1, count)];
+  lines.replaceChildren(...(from === 1 ? parts.slice(1) : parts));
   lines.scrollTop = text.scrollTop;
+}
+
+// Selects what the cursor is in.
+function follow() {
+  const line = text.value.slice(0, text.selectionStart).split("\n").length;
+  const one = all(state.view).find(({ thing }) => thing.from <= line && line <= thing.to);
+  if (one && state.text === text.value && !isSelected(one.kind, one.key)) select(one);
 }
 
 function finding(one) {
@@ -51,5 +62,6 @@ export function listen() {
     type(text.value);
     number();
   });
+  for (const moved of ["click", "keyup"]) text.addEventListener(moved, follow);
   text.addEventListener("scroll", () => (lines.scrollTop = text.scrollTop));
 }
