@@ -26,6 +26,7 @@ from pursue_gen.cli.report import report
 from pursue_gen.cli.send import send
 from pursue_gen.cli.sim import sim
 from pursue_gen.cli.solve import solve
+from pursue_gen.cli.survey import survey
 from pursue_gen.cli.tga import tga
 from pursue_gen.cli.verify import verify
 from pursue_gen.cli.ws import ws
@@ -77,6 +78,7 @@ def _options(
 
 
 app.command(epilog="For example: pursue-gen check my_floor.pur")(check)
+app.command(epilog="For example: pursue-gen survey map.yaml my_floor.pur --radius 0.25 --speed bot1=0.4")(survey)
 app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")(tga)
 app.command(
     epilog="For example: pursue-gen solve my_floor.pur -o plan.txt; "

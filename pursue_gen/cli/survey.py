@@ -1,0 +1,146 @@
+"""The command `survey`."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
+
+import typer
+
+from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.options import SCENARIO
+from pursue_gen.diagnostics import PursueError, as_json, error, usage_error
+from pursue_gen.files import shell_quoted, write_bytes
+
+if TYPE_CHECKING:
+    from pursue_gen.survey.make import Options, Survey
+
+
+@guarded
+def survey(
+    floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server: its yaml file."),
+    scenario: Path = SCENARIO,
+    radius: float = typer.Option(0.3, metavar="METRES", help="The radius of the largest robot."),
+    clearance: float = typer.Option(0.2, metavar="METRES", help="How far two robots that stand stay from each other."),
+    speed: List[str] = typer.Option(
+        [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
+    ),
+    time_unit: float = typer.Option(1.0, metavar="SECONDS", help="A time unit of the mission (~time_unit)."),
+    turning: float = typer.Option(0.5, metavar="RAD/S", help="How fast robots turn on the spot."),
+    start: float = typer.Option(2.0, metavar="SECONDS", help="What a movement takes to be planned, to start, to stop."),
+    reserve: float = typer.Option(25.0, metavar="PERCENT", help="How much longer than computed a movement may take."),
+    tolerance: float = typer.Option(
+        0.4, metavar="METRES", help="How far from the pose a robot has arrived (~end_tolerance)."
+    ),
+    unit: float = typer.Option(1.0, metavar="METRES", help="How long a unit of distance is."),
+    ways: bool = typer.Option(False, "--ways", help="Write the ways that are missing into the copy, too."),
+    keep: List[str] = typer.Option([], metavar="PLACE,PLACE", help="Keep the distance of this way; repeatable."),
+    output: Optional[Path] = typer.Option(
+        None, "-o", "--output", metavar="FILE", help="The copy; SCENARIO_surveyed.pur beside it by default."
+    ),
+    force: bool = typer.Option(False, "--force", help="Replace a file that is there already."),
+    dry_run: bool = typer.Option(False, "--dry-run", help="Write no copy."),
+    as_json_: bool = typer.Option(False, "--json", help="Print JSON on stdout."),
+) -> None:
+    """Measure a scenario's ways on a map of the building, and write them into a copy of the scenario.
+
+    Reports places in obstacles, places that cannot be reached, places that are too near each other for two robots, and
+    ways that lead through a third place; proposes the ways that are missing, and a spot for each robot at each place.
+    """
+    target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
+    if not dry_run and target.exists() and not force:
+        raise usage_error(f"{target} is there already", "name another file with -o, or replace it with --force")
+    for name, value, least in (
+        ("--radius", radius, 0.0),
+        ("--clearance", clearance, 0.0),
+        ("--time-unit", time_unit, 0.001),
+        ("--turning", turning, 0.001),
+        ("--start", start, 0.0),
+        ("--reserve", reserve, 0.0),
+        ("--tolerance", tolerance, 0.0),
+        ("--unit", unit, 0.001),
+    ):
+        _check_number(name, value, least)
+    _check_packages()
+    from pursue_gen.survey.make import Options
+    from pursue_gen.survey.times import Drive
+
+    drive = Drive({}, time_unit, turning, start, reserve / 100, tolerance)
+    options = Options(radius, clearance, unit, ways, tuple(map(_pair, keep)), drive)
+    content, found = _surveyed(floor, scenario, speed, options)
+    if not dry_run:
+        write_bytes({target: content})
+    _print(found, as_json_)
+    if not dry_run:
+        info(f"wrote {target}")
+        suggest(f"pursue-gen solve {shell_quoted(target)}")
+
+
+def _check_packages() -> None:
+    """Raises PursueError (exit status 6) where what a survey needs is not installed."""
+    try:
+        import numpy
+        import scipy
+    except ImportError as problem:
+        message = f"survey needs the Python packages numpy and scipy, which are not installed here ({problem})"
+        hint = "install them: pip install 'pursue-gen[survey]'"
+        raise PursueError([error("MAP002", message, hint=hint)], 6) from None
+    del numpy, scipy
+
+
+def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tuple[bytes, Survey]:
+    """The copy and the survey."""
+    from pursue_gen.drawing.ground import read_ground
+    from pursue_gen.language.parser import read_text
+    from pursue_gen.survey.make import read_scenario, surveyed
+
+    text = read_text(str(file))
+    scenario = read_scenario(text, str(file))
+    robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
+    driven = replace(options, drive=replace(options.drive, speeds=_speeds(speed, robots)))
+    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven)
+    copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
+    return copy.encode("utf-8"), found
+
+
+def _print(found: Survey, as_json_: bool) -> None:
+    from pursue_gen.survey.texts import as_data, table
+
+    if as_json_:
+        findings = [as_json(finding) for finding in found.findings]
+        print(json.dumps({**as_data(found), "findings": findings}, indent=1))
+        return
+    show(found.findings)
+    for line in table(found):
+        print(line)
+
+
+def _check_number(name: str, value: float, least: float) -> None:
+    if not least <= value <= 1000:
+        raise usage_error(f"{name} is {value:g}", f"expected a number from {least:g} to 1000")
+
+
+def _pair(text: str) -> Tuple[str, str]:
+    """The two places of a way."""
+    places = tuple(name.strip() for name in text.split(","))
+    if len(places) != 2:
+        raise usage_error(f"--keep {text} is no way", "expected two places, such as desk,shelf")
+    return places[0], places[1]
+
+
+def _speeds(texts: List[str], robots: List[str]) -> Dict[str, float]:
+    """The speed of each robot for which there is one; one of its own goes before that of all."""
+    found: Dict[str, float] = {}
+    for text in sorted(texts, key=lambda one: "=" in one):
+        name, _, number = text.rpartition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if not 0.001 <= value <= 1000:
+            raise usage_error(f"--speed {text} is no speed", "expected metres per second, such as bot1=0.4")
+        found.update({robot: value for robot in ([name] if name else robots)})
+    return found

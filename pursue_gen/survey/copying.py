@@ -1,0 +1,74 @@
+"""The copy of a scenario: distances, travel times, spots and ways of the survey written into its text."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.language.numbers import Number, exact, is_fine
+from pursue_gen.language.rewriting import Edit, Rewriting, edited
+from pursue_gen.language.scenario import Connection, Pose, Scenario
+
+SURVEY = "survey"
+"""The word that begins the remarks of this command."""
+
+Movement = Tuple[str, str, str]
+"""Agent, from, to."""
+
+
+def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
+    """A length in units of distance (`unit`: metres), to a tenth; to a whole number where a tenth is too fine.
+
+    Too fine is a distance that takes one of the agents (`speeds`: their `mobile`) a time of more than three decimals.
+    It is never 0.
+    """
+    for step in (Fraction(1, 10), Fraction(1)):
+        found = max(step, round(Fraction(metres / unit) / step) * step)
+        if all(is_fine(found * Fraction(one)) for one in speeds):
+            break
+    return exact(found)
+
+
+def with_ways(scenario: Scenario, ways: Sequence[Tuple[str, str, Number, str]]) -> str:
+    """The text with further ways: from, to, distance, remark."""
+    lines = [f"connect {a} and {b} distance {distance} // {remark}" for a, b, distance, remark in ways]
+    return edited(scenario.text, Rewriting(scenario).statements(("connection", "poi"), lines))
+
+
+def written(
+    scenario: Scenario,
+    distances: Mapping[Connection, Tuple[Number, str]],
+    windows: Mapping[Movement, Tuple[int, int, str]],
+    spots: Mapping[str, Sequence[Tuple[str, Optional[Pose]]]],
+    map_name: str,
+) -> str:
+    """The text with distances of ways, windows of movements and spots, each with a remark (`survey: …`).
+
+    Windows of movements that have a `travel` replace it. `map_name`: the map's file, for the remarks of spots.
+    """
+    rewriting = Rewriting(scenario)
+    edits: List[Edit] = []
+    for way, (distance, remark) in distances.items():
+        edits += rewriting.distance(way, distance, remark)
+    travels = {(travel.agent.name, *travel.way): travel for travel in scenario.travels}
+    lines = []
+    for movement, (low, high, remark) in windows.items():
+        if movement in travels:
+            edits += rewriting.travel(travels[movement], low, high, remark)
+        else:
+            agent, a, b = movement
+            lines.append(f"travel {agent} from {a} to {b} takes {low} to {high} // {remark}")
+    edits += rewriting.statements(("travel", "agent"), lines)
+    for poi in scenario.pois:
+        found = [(robot, pose) for robot, pose in spots.get(poi.name, ()) if pose is not None]
+        if found:
+            names = " and ".join(robot for robot, _ in found)
+            edits += rewriting.spots(poi, found, f"{SURVEY}: {names} beside it on {map_name}")
+    return edited(scenario.text, edits)
+
+
+def others_windows(scenario: Scenario) -> FrozenSet[Movement]:
+    """The movements whose window was not written by a survey: it is a person's, or has been measured."""
+    rewriting = Rewriting(scenario)
+    others = [travel for travel in scenario.travels if rewriting.written_by(travel.span) != SURVEY]
+    return frozenset((travel.agent.name, *travel.way) for travel in others)

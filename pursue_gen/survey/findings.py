@@ -1,0 +1,110 @@
+"""What a survey finds wrong, in words."""
+
+from __future__ import annotations
+
+from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, Span, warning
+from pursue_gen.drawing.ground import FREE, Ground
+from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.scenario import Connection, Pose, Scenario
+from pursue_gen.survey.copying import Movement
+from pursue_gen.survey.grid import Grid
+from pursue_gen.survey.plan import Plan
+
+_SOME = 8  # places that a message lists
+
+
+def too_narrow(scenario: Scenario, ground: Ground, grid: Grid, radius: float) -> Iterator[Diagnostic]:
+    """Poses and spots on free ground that are too near an obstacle for the robot."""
+    for what, pose, span in _poses(scenario):
+        if ground.at(pose.x, pose.y) == FREE and not grid.is_free(grid.cell(pose.x, pose.y)):
+            message = f"{what} ({pose.x:g}, {pose.y:g}) is nearer than {radius:g} m, the robots' radius, to an obstacle"
+            hint = "move it away from the obstacle; if the robot is smaller, say so: --radius METRES"
+            yield warning("MAP003", message, span, hint)
+
+
+def apart(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
+    """Ways whose ends cannot be reached from each other, and places that cannot be reached from most others."""
+    spans = {poi.name: poi.span for poi in scenario.pois}
+    hint = "look for a door that is closed or narrow on the map, clean the map, or try a smaller --radius"
+    named = set()
+    for way in scenario.connections:
+        if {way.a, way.b} <= set(plan.places) and plan.route(way.a, way.b) is None:
+            named |= {way.a, way.b}
+            yield warning("MAP004", f"on the map a robot cannot get from {way.a} to {way.b}", way.span, hint)
+    first, *others = plan.parts() or [[]]
+    for part in others:
+        if not named.intersection(part):
+            message = f"on the map a robot cannot get from {_listed(first)} to {_listed(part)}"
+            yield warning("MAP004", message, spans[part[0]], hint)
+
+
+def too_near(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
+    """Places at which two robots cannot stand at the same time."""
+    spans = {poi.name: poi.span for poi in scenario.pois}
+    hint = "move one of them, or keep robots from being at both at once (objective: avoid …)"
+    for a, b, metres in plan.too_near():
+        message = f"{b} is {metres:.2f} m from {a}: two robots need {plan.room:g} m"
+        yield warning("MAP005", message, spans[b], hint)
+
+
+def crossing(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
+    """Ways that lead through third places."""
+    for way in scenario.connections:
+        places = plan.crossed(way.a, way.b) if {way.a, way.b} <= set(plan.places) else []
+        if places:
+            message = f"the way from {way.a} to {way.b} leads through {_listed(places)}, where a robot may stand"
+            stops = [way.a, *places, way.b]
+            instead = ", ".join(f"{a} and {b}" for a, b in zip(stops, stops[1:]))
+            yield warning("MAP006", message, way.span, f"connect {instead} instead, or move the place aside")
+
+
+def without_room(scenario: Scenario, spots: Mapping[str, Sequence[Tuple[str, Optional[Pose]]]]) -> Iterator[Diagnostic]:
+    """Robots for which there is no spot at a place."""
+    spans = {poi.name: poi.span for poi in scenario.pois}
+    for place, found in spots.items():
+        names = [robot for robot, pose in found if pose is None]
+        if names:
+            hint = "move the place to where there is more room, or keep robots apart: objective: … never_with … at …"
+            yield warning("MAP007", f"there is no room for {_listed(names)} beside {place}", spans[place], hint)
+
+
+def other_unit(
+    scenario: Scenario, measured: Mapping[Connection, float], timed: AbstractSet[Movement], unit: float
+) -> Iterator[Diagnostic]:
+    """Distances that are not of the unit in which they are written now, where times depend on them.
+
+    `measured`: the lengths (metres) of ways whose distances change; `timed`: movements that have windows in the copy.
+    """
+    ratios = sorted((metres / unit / float(way.distance), way.span) for way, metres in measured.items())
+    movers = [
+        agent.name
+        for agent in scenario.agents
+        if agent.mobile is not None
+        and any((agent.name, *ends) not in timed for way in measured for ends in way.directions)
+    ]
+    if not ratios or not movers:
+        return
+    ratio, span = ratios[len(ratios) // 2]
+    if not 2 / 3 <= ratio <= 1.5:
+        message = f"ways are {ratio:.1f} times as long as written, so with the same mobile {_listed(movers)} "
+        hint = f"say what a unit of distance is: --unit {ratio * unit:.2g}; or change mobile, or give robots a --speed"
+        yield warning("MAP008", message + f"will take {ratio:.1f} times as long", span, hint)
+
+
+def _poses(scenario: Scenario) -> Iterator[Tuple[str, Pose, Span]]:
+    present = robots_at(scenario)
+    for poi in scenario.pois:
+        own = {spot.robot.name for spot in poi.spots}
+        if poi.pose is not None and not own.issuperset(present[poi.name] or {""}):
+            yield f"the pose of {poi.name}", poi.pose, poi.span
+        for spot in poi.spots:
+            yield f"the spot of {spot.robot.name} at {poi.name}", spot.pose, spot.robot.span
+
+
+def _listed(names: Iterable[str]) -> str:
+    """`a, b and c`, cut where there are many."""
+    known: List[str] = list(names)
+    shown = known[:_SOME] + (["…"] if len(known) > _SOME else [])
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

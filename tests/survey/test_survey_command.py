@@ -1,0 +1,249 @@
+"""pursue-gen survey: the copy with what was measured, what is reported, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pursue_gen.language import check, load
+from tests.authoring.commands import Outcome, pursue
+from tests.conftest import ROOT
+from tests.survey.maps import three_rooms, write
+
+TEXT = """// three rooms
+poi "desk" //[1.0, 1.0, 0, 0, 0, 0, 1] by the window
+poi "hall" //[6.0, 3.0, 0, 0, 0, 0, 1]
+poi "shelf" //[11.0, 5.0, 0, 0, 0, 0.7071068, 0.7071068]
+
+connect desk and hall distance 6 // through the door
+connect hall and shelf distance 5.8
+
+event "fetch" location shelf duration 3
+event "drop" location desk
+rule "order": fetch before drop
+agent "bot1" controllable mobile 2.5 location desk can_do fetch, drop
+agent "bot2" controllable mobile 2.5 location hall can_do fetch, drop // the old one
+travel bot2 from hall to desk takes 9 to 30 // my watch
+reach_objective: do drop
+"""
+
+
+CELL = 0.1  # metres: a coarse map is surveyed quickly
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, three_rooms(resolution=CELL), CELL)
+    Path("rooms.pur").write_text(TEXT)
+    return tmp_path
+
+
+def surveyed(*options: object, text: str = TEXT, status: int = 0) -> Outcome:
+    Path("rooms.pur").write_text(text)
+    done = pursue("survey", "map.yaml", "rooms.pur", "--force", *options)
+    assert done.status == status, done.err
+    return done
+
+
+def copied() -> str:
+    return Path("rooms_surveyed.pur").read_text()
+
+
+def codes(done: Outcome) -> Any:
+    return re.findall(r"(?:warning|error) ([A-Z]{3}\d{3})", done.err)
+
+
+def test_the_copy_has_what_was_measured_and_all_else_as_it_was() -> None:
+    done = surveyed("--speed", "bot1=0.4", "--speed", "0.5")
+    assert Path("rooms.pur").read_text() == TEXT
+    way = r"connect desk and hall distance 6\.\d /\* survey: (6\.\d\d) m on map\.yaml \*/ // through the door"
+    metres = re.search(way, copied())
+    assert metres and 6.4 < float(metres[1]) < 7
+    assert f"desk - hall     {metres[1]}  6 -> 6." in done.out
+    assert "\ntravel bot2 from hall to desk takes 9 to 30 // my watch\n" in copied()
+    assert re.search(
+        r"\ntravel bot1 from desk to hall takes 1\d to \d+ // survey: at 0\.4 m/s on map\.yaml\n", copied()
+    )
+    assert copied().count("travel bot2") == 4 and "survey: at 0.5 m/s" in copied()
+    assert re.search(r"0, 1\] bot2 \[[-\d., ]+\] by the window; survey: bot2 beside it on map\.yaml\n", copied())
+    left = re.sub(r" bot2 \[[^\]]*\]|;? survey: bot2[^\n]*| ?(//|/\*) survey: [^*\n]*( \*/)?", "", copied())
+    left = re.sub(r"travel bot\d from \w+ to \w+ takes \d+ to \d+\n(?=travel|reach)", "", left)
+    words, theirs = re.sub(r"distance \S+", "", left).split(), re.sub(r"distance \S+", "", TEXT).split()
+    assert words == theirs
+    assert check(load("rooms_surveyed.pur")) == ()
+
+
+def test_the_copy_of_a_copy_is_the_copy() -> None:
+    surveyed("--speed", "0.5", "--ways")
+    first = copied()
+    again = pursue("survey", "map.yaml", "rooms_surveyed.pur", "--speed", "0.5", "--ways", "-o", "again.pur")
+    assert again.status == 0 and Path("again.pur").read_text() == first
+    slower = pursue("survey", "map.yaml", "rooms_surveyed.pur", "--speed", "0.25", "-o", "slower.pur")
+    assert slower.status == 0 and "0.5 m/s" not in Path("slower.pur").read_text()
+
+
+def test_a_map_that_is_turned_gives_the_same_lengths(folder: Path) -> None:
+    first = json.loads(surveyed("--json").out)["ways"]
+    write(
+        folder, three_rooms(resolution=CELL), CELL, f"[6.0, 0.0, {math.pi / 2!r}]"
+    )  # (x, y) of the image is at (6 - y, x)
+    turned = re.sub(r"//\[([\d.]+), ([\d.]+),", lambda at: f"//[{6 - float(at[2])}, {at[1]},", TEXT)
+    second = json.loads(surveyed("--json", text=turned).out)["ways"]
+    assert [way["metres"] for way in second] == pytest.approx([way["metres"] for way in first], rel=0.01)
+
+
+def test_places_in_walls_and_too_near_to_them_keep_their_distances() -> None:
+    text = TEXT.replace("//[6.0, 3.0", "//[4.0, 1.0").replace("//[11.0, 5.0", "//[11.75, 5.0")
+    done = surveyed("--dry-run", text=text)
+    assert codes(done) == ["WSP008", "MAP003"]
+    assert "rooms.pur:3:5: warning WSP008: the pose of hall (4, 1) is in an obstacle" in done.err
+    assert "rooms.pur:4:5: warning MAP003: the pose of shelf (11.75, 5) is nearer than 0.3 m" in done.err
+    assert "6 stays: hall is not on free ground" in done.out
+    assert not Path("rooms_surveyed.pur").exists()
+
+
+def test_a_door_that_is_too_narrow_is_reported_with_the_way(folder: Path) -> None:
+    write(folder, three_rooms(0.6, CELL), CELL)
+    done = surveyed()
+    assert codes(done) == ["MAP004", "MAP004"] and "a robot cannot get from desk to hall" in done.err
+    assert "6 stays: the map has no path" in done.out and "distance 6 // through" in copied()
+    assert codes(surveyed("--radius", "0.2")) == []
+
+
+def test_places_too_near_for_two_robots_and_ways_through_third_places_are_reported() -> None:
+    near = TEXT.replace('poi "shelf"', 'poi "sofa" //[6.0, 3.5, 0, 0, 0, 0, 1]\npoi "shelf"')
+    near = near.replace("connect hall and shelf distance 5.8", "connect desk and shelf distance 12")
+    done = surveyed(text=near + "")
+    assert codes(done).count("MAP005") == 1 and "sofa is 0.50 m from hall: two robots need 0.8 m" in done.err
+    assert "MAP006" in codes(done) and re.search("from desk to shelf leads through .*hall, where", done.err)
+    assert re.search("connect desk and .*hall and shelf instead", done.err)
+    assert "MAP005" not in codes(surveyed("--radius", "0.15", text=near))
+
+
+def test_missing_ways_are_proposed_and_written_on_demand() -> None:
+    text = TEXT.replace("connect hall and shelf distance 5.8\n", "connect desk and shelf distance 12\n")
+    assert "hall - shelf" in surveyed(text=text).out and "connect hall and shelf" not in copied()
+    surveyed("--ways", text=text)
+    assert re.search(r"distance 1[23]\S* // survey: .*\nconnect hall and shelf distance \S+ // survey: ", copied())
+
+
+def test_a_scenario_without_ways_gets_them() -> None:
+    surveyed("--speed", "0.5", text=re.sub(r"connect.*\n|travel.*\n", "", TEXT))
+    assert len(load("rooms_surveyed.pur").connections) == 2 and len(load("rooms_surveyed.pur").travels) == 8
+    assert check(load("rooms_surveyed.pur")) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "reason"),
+    [
+        (TEXT.replace("//[6.0, 3.0, 0, 0, 0, 0, 1]", ""), [], "hall has no pose"),
+        (TEXT.replace("//[6.0, 3.0, 0", "//[6.0, 3.0, 3"), [], "its places are on different floors"),
+        (TEXT, ["--keep", "hall,desk"], "--keep"),
+        (
+            TEXT.replace("distance 6", "distance 6 one_way connect hall and desk distance 9 one_way"),
+            [],
+            "each direction has its own",
+        ),
+    ],
+)
+def test_a_distance_stays_where_there_is_a_reason(text: str, options: Any, reason: str) -> None:
+    assert f"6 stays: {reason}" in surveyed(*options, text=text).out
+    assert "connect desk and hall distance 6 " in copied()
+
+
+def test_distances_are_of_the_unit_and_as_fine_as_the_times_allow() -> None:
+    done = surveyed("--unit", "2")
+    assert re.search(r"distance 3\.\d /\* survey: 6\.\d\d m on map\.yaml, 2 m per unit \*/", copied())
+    surveyed(text=TEXT.replace("mobile 2.5", "mobile 2.125", 1))
+    assert "connect desk and hall distance 7 /*" in copied()
+    done = surveyed(text=TEXT.replace("distance 6", "distance 1").replace("5.8", "1"))
+    assert codes(done) == ["MAP008"] and "bot1 and bot2 will take" in done.err
+    assert codes(surveyed("--speed", "1", text=TEXT.replace("distance 6", "distance 1").replace("5.8", "1"))) == []
+
+
+def test_line_ends_stay_as_they_are() -> None:
+    Path("rooms.pur").write_bytes(TEXT.replace("\n", "\r\n").encode())
+    assert pursue("survey", "map.yaml", "rooms.pur").status == 0
+    copy = Path("rooms_surveyed.pur").read_bytes()
+    assert copy.count(b"\r\n") == copy.count(b"\n") > 10
+
+
+def test_nothing_is_replaced_without_force_and_never_through_a_link() -> None:
+    Path("rooms_surveyed.pur").write_text("mine")
+    done = pursue("survey", "map.yaml", "rooms.pur")
+    assert done.status == 2 and "--force" in done.err and copied() == "mine"
+    same = pursue("survey", "map.yaml", "rooms.pur", "-o", "rooms.pur")
+    assert same.status == 2 and Path("rooms.pur").read_text() == TEXT
+    Path("rooms_surveyed.pur").unlink()
+    Path("rooms_surveyed.pur").symlink_to("rooms.pur")
+    done = pursue("survey", "map.yaml", "rooms.pur", "--force")
+    assert done.status == 2 and "link" in done.err and Path("rooms.pur").read_text() == TEXT
+    assert pursue("survey", "map.yaml", "rooms.pur", "-o", "rooms.pur", "--force").status == 0
+    assert "survey: " in Path("rooms.pur").read_text()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--speed", "bot3=1"], "bot3 is not a robot of the scenario"),
+        (["--speed", "bott1=1"], "did you mean bot1?"),
+        (["--speed", "bot1=fast"], "expected metres per second"),
+        (["--speed", "0"], "expected metres per second"),
+        (["--keep", "desk,shelf"], "the scenario has no such way"),
+        (["--keep", "desk"], "expected two places"),
+        (["--radius", "-1"], "expected a number from 0 to 1000"),
+        (["--unit", "nan"], "expected a number from 0.001"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(options: Any, told: str) -> None:
+    done = surveyed(*options, status=2)
+    assert told in " ".join(done.err.split()) and not Path("rooms_surveyed.pur").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "told"),
+    [
+        (re.sub(r"//\[.*", "", TEXT), [], "rooms.pur:2:5: error MAP001: 0 places of 3 with a pose"),
+        (TEXT, ["--radius", "5"], "error MAP001: the map has no free ground"),
+        (TEXT.replace("location desk", "location dest"), [], "rooms.pur:12:"),
+    ],
+)
+def test_a_scenario_with_which_nothing_can_be_measured_is_reported(text: str, options: Any, told: str) -> None:
+    done = surveyed(*options, text=text, status=3)
+    assert told in done.err and not Path("rooms_surveyed.pur").exists()
+
+
+def test_maps_that_cannot_be_read_are_reported() -> None:
+    assert pursue("survey", "none.yaml", "rooms.pur").status == 2
+    Path("map.yaml").write_text(Path("map.yaml").read_text() + "mode: wild\n")
+    done = pursue("survey", "map.yaml", "rooms.pur")
+    assert done.status == 2 and "map.yaml" in done.err and "trinary" in done.err
+
+
+def test_without_the_packages_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    done = pursue("survey", "map.yaml", "rooms.pur")
+    assert done.status == 6 and "MAP002" in done.err and "pip install 'pursue-gen[survey]'" in done.err
+
+
+def test_the_example_of_the_page_is_what_the_program_does(folder: Path) -> None:
+    page = (ROOT / "docs" / "survey.md").read_text(encoding="utf-8")
+    for file in (ROOT / "docs" / "survey").iterdir():
+        shutil.copy(file, folder)
+    command = re.search(r"^    pursue-gen (survey .*)$", page, re.M)
+    assert command
+    done = pursue(*command[1].replace("docs/survey/", "").split())
+    assert done.status == 0
+    table, copy = re.findall(r"```(?:text|pursue-part)\n(.*?)```", page, re.S)
+    assert done.out == table
+    assert Path("three_rooms_surveyed.pur").read_text() == copy
+    for finding in re.findall(r"^    docs/survey/(.*)$", page, re.M):
+        assert finding in done.err
