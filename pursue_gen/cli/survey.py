@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, List, Mapping, Optional, Tuple
 
 import typer
 
@@ -16,6 +16,7 @@ from pursue_gen.diagnostics import PursueError, as_json, error, usage_error
 from pursue_gen.files import shell_quoted, write_bytes
 
 if TYPE_CHECKING:
+    from pursue_gen.language.scenario import Scenario
     from pursue_gen.survey.make import Options, Survey
 
 
@@ -41,6 +42,9 @@ def survey(
     output: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="FILE", help="The copy; SCENARIO_surveyed.pur beside it by default."
     ),
+    picture: Optional[Path] = typer.Option(
+        None, metavar="FILE.svg", help="Draw the map with places, paths and spots there."
+    ),
     force: bool = typer.Option(False, "--force", help="Replace a file that is there already."),
     dry_run: bool = typer.Option(False, "--dry-run", help="Write no copy."),
     as_json_: bool = typer.Option(False, "--json", help="Print JSON on stdout."),
@@ -51,31 +55,27 @@ def survey(
     ways that lead through a third place; proposes the ways that are missing, and a spot for each robot at each place.
     """
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
-    if not dry_run and target.exists() and not force:
-        raise usage_error(f"{target} is there already", "name another file with -o, or replace it with --force")
-    for name, value, least in (
-        ("--radius", radius, 0.0),
-        ("--clearance", clearance, 0.0),
-        ("--time-unit", time_unit, 0.001),
-        ("--turning", turning, 0.001),
-        ("--start", start, 0.0),
-        ("--reserve", reserve, 0.0),
-        ("--tolerance", tolerance, 0.0),
-        ("--unit", unit, 0.001),
-    ):
-        _check_number(name, value, least)
+    for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
+        if file.exists() and not force:
+            raise usage_error(f"{file} is there already", "name another file, or replace it with --force")
+    _check_numbers({"--radius": radius, "--clearance": clearance, "--start": start, "--reserve": reserve}, 0.0)
+    _check_numbers({"--tolerance": tolerance}, 0.0)
+    _check_numbers({"--time-unit": time_unit, "--turning": turning, "--unit": unit}, 0.001)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
 
     drive = Drive({}, time_unit, turning, start, reserve / 100, tolerance)
     options = Options(radius, clearance, unit, ways, tuple(map(_pair, keep)), drive)
-    content, found = _surveyed(floor, scenario, speed, options)
-    if not dry_run:
-        write_bytes({target: content})
+    read, copy, found = _surveyed(floor, scenario, speed, options)
+    files = {} if dry_run else {target: copy}
+    if picture is not None:
+        files[picture] = _picture(read, found, floor, radius)
+    write_bytes(files)
     _print(found, as_json_)
+    for file in files:
+        info(f"wrote {file}")
     if not dry_run:
-        info(f"wrote {target}")
         suggest(f"pursue-gen solve {shell_quoted(target)}")
 
 
@@ -91,8 +91,8 @@ def _check_packages() -> None:
     del numpy, scipy
 
 
-def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tuple[bytes, Survey]:
-    """The copy and the survey."""
+def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tuple[Scenario, bytes, Survey]:
+    """The scenario, its copy, and the survey."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
     from pursue_gen.survey.make import read_scenario, surveyed
@@ -103,7 +103,14 @@ def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tu
     driven = replace(options, drive=replace(options.drive, speeds=_speeds(speed, robots)))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven)
     copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
-    return copy.encode("utf-8"), found
+    return scenario, copy.encode("utf-8"), found
+
+
+def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> bytes:
+    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.survey.picture import drawn
+
+    return drawn(scenario, found, read_floor(floor), radius).encode("utf-8")
 
 
 def _print(found: Survey, as_json_: bool) -> None:
@@ -118,9 +125,10 @@ def _print(found: Survey, as_json_: bool) -> None:
         print(line)
 
 
-def _check_number(name: str, value: float, least: float) -> None:
-    if not least <= value <= 1000:
-        raise usage_error(f"{name} is {value:g}", f"expected a number from {least:g} to 1000")
+def _check_numbers(values: Mapping[str, float], least: float) -> None:
+    for name, value in values.items():
+        if not least <= value <= 1000:
+            raise usage_error(f"{name} is {value:g}", f"expected a number from {least:g} to 1000")
 
 
 def _pair(text: str) -> Tuple[str, str]:

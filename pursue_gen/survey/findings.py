@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
@@ -20,8 +21,9 @@ def too_narrow(scenario: Scenario, ground: Ground, grid: Grid, radius: float) ->
     for what, pose, span in _poses(scenario):
         if ground.at(pose.x, pose.y) == FREE and not grid.is_free(grid.cell(pose.x, pose.y)):
             message = f"{what} ({pose.x:g}, {pose.y:g}) is nearer than {radius:g} m, the robots' radius, to an obstacle"
-            hint = "move it away from the obstacle; if the robot is smaller, say so: --radius METRES"
-            yield warning("MAP003", message, span, hint)
+            yield warning(
+                "MAP003", message, span, f"{_nearest(grid, pose)}; if the robot is smaller, say so: --radius METRES"
+            )
 
 
 def apart(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
@@ -91,6 +93,13 @@ def other_unit(
         message = f"ways are {ratio:.1f} times as long as written, so with the same mobile {_listed(movers)} "
         hint = f"say what a unit of distance is: --unit {ratio * unit:.2g}; or change mobile, or give robots a --speed"
         yield warning("MAP008", message + f"will take {ratio:.1f} times as long", span, hint)
+
+
+def _nearest(grid: Grid, pose: Pose) -> str:
+    """Where there is room for the robot nearby."""
+    x, y = grid.nearest((pose.x, pose.y))
+    apart = math.dist((x, y), (pose.x, pose.y))
+    return f"move it away from the obstacle: there is room at {x:.2f}, {y:.2f}, {apart:.2f} m from there"
 
 
 def _poses(scenario: Scenario) -> Iterator[Tuple[str, Pose, Span]]:

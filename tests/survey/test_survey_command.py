@@ -7,6 +7,7 @@ import math
 import re
 import shutil
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +107,7 @@ def test_places_in_walls_and_too_near_to_them_keep_their_distances() -> None:
     assert codes(done) == ["WSP008", "MAP003"]
     assert "rooms.pur:3:5: warning WSP008: the pose of hall (4, 1) is in an obstacle" in done.err
     assert "rooms.pur:4:5: warning MAP003: the pose of shelf (11.75, 5) is nearer than 0.3 m" in done.err
+    assert "there is room at 11.55, " in done.err
     assert "6 stays: hall is not on free ground" in done.out
     assert not Path("rooms_surveyed.pur").exists()
 
@@ -184,7 +186,8 @@ def test_nothing_is_replaced_without_force_and_never_through_a_link() -> None:
     assert same.status == 2 and Path("rooms.pur").read_text() == TEXT
     Path("rooms_surveyed.pur").unlink()
     Path("rooms_surveyed.pur").symlink_to("rooms.pur")
-    done = pursue("survey", "map.yaml", "rooms.pur", "--force")
+    done = pursue("survey", "map.yaml", "rooms.pur", "--force", "--picture", "plan.svg")
+    assert not Path("plan.svg").exists()
     assert done.status == 2 and "link" in done.err and Path("rooms.pur").read_text() == TEXT
     assert pursue("survey", "map.yaml", "rooms.pur", "-o", "rooms.pur", "--force").status == 0
     assert "survey: " in Path("rooms.pur").read_text()
@@ -240,10 +243,22 @@ def test_the_example_of_the_page_is_what_the_program_does(folder: Path) -> None:
         shutil.copy(file, folder)
     command = re.search(r"^    pursue-gen (survey .*)$", page, re.M)
     assert command
-    done = pursue(*command[1].replace("docs/survey/", "").split())
+    done = pursue(*command[1].replace("docs/survey/", "").split(), "--picture", "plan.svg")
     assert done.status == 0
+    assert Path("plan.svg").read_text() == (ROOT / "docs" / "pictures" / "survey_three_rooms.svg").read_text()
     table, copy = re.findall(r"```(?:text|pursue-part)\n(.*?)```", page, re.S)
     assert done.out == table
     assert Path("three_rooms_surveyed.pur").read_text() == copy
     for finding in re.findall(r"^    docs/survey/(.*)$", page, re.M):
         assert finding in done.err
+
+
+def test_the_picture_shows_all_that_has_a_pose_whatever_is_wrong() -> None:
+    text = TEXT.replace("//[6.0, 3.0, 0, 0, 0, 0, 1]", "").replace('"desk"', '"desk" label "the <desk>"', 1)
+    surveyed("--picture", "plan.svg", "--dry-run", text=text)
+    picture = ElementTree.parse("plan.svg").getroot()
+    shown = [one.text for one in picture.iter("{http://www.w3.org/2000/svg}text")]
+    assert "the <desk>" in shown and "shelf" in shown and "hall" not in shown
+    assert len(list(picture.iter("{http://www.w3.org/2000/svg}circle"))) == 4  # two places, bot2 beside each
+    again = pursue("survey", "map.yaml", "rooms.pur", "--picture", "plan.svg", "--dry-run")
+    assert again.status == 2 and "--force" in again.err
