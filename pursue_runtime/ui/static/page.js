@@ -127,10 +127,15 @@ function setTaskList(section, list, agents) {
     const idle = agent.kind === "human" ? "nothing to do now" : "not under way";
     const task = { row, text, time, done, idle, word: "", pressed: "" };
     onPress(done, () => {
-      ask({ do: "done", word: task.word, seq: view.seq });
-      task.pressed = task.word; // a second press would mean what comes next
-      setTimeout(() => { task.pressed = ""; refresh(); }, 2000);
-      refresh();
+      const now = present(), given = view.tasks.find((each) => each.agent === agent.name), message = { do: "done", word: task.word, seq: view.seq };
+      const report = () => {
+        ask(message);
+        task.pressed = message.word; // a second press would mean what comes next
+        setTimeout(() => { task.pressed = ""; refresh(); }, 2000);
+        refresh();
+      };
+      if (isEarly(given, now)) confirmed(earlyText(given, now), "It has ended", "Not yet", report);
+      else report();
     });
     row.append(text, time, done);
     widgets.tasks.set(agent.name, task);
@@ -275,12 +280,6 @@ function follow() { // the end of the log stays in sight, unless somebody has sc
 // Everything starts here ---------------------------------------------------------------------------------------------
 
 onPress($("start"), () => ask({ do: "start" }));
-onPress($("stop"), () => {
-  if ($("sure").showModal) $("sure").showModal();
-  else if (window.confirm($("sure-text").textContent)) ask({ do: "stop" });
-});
-onPress($("stop-yes"), () => { $("sure").close(); ask({ do: "stop" }); });
-onPress($("stop-no"), () => $("sure").close());
 $("inside").addEventListener("toggle", () => $("log").classList.toggle("raw", $("inside").open));
 $("log").addEventListener("scroll", () => {
   const log = $("log");

@@ -462,8 +462,8 @@ def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[
     assert page.value("document.documentElement.lang") == "en"
     levels = page.value("[...document.querySelectorAll('h1, h2, h3')].map((e) => e.tagName)")
     assert levels[0] == "H1" and set(levels[1:]) == {"H2"}
-    lists = "[...document.querySelectorAll('li')].every((e) => e.parentElement.matches('ul:not([role]), ol:not([role])'))"
-    assert page.value(lists) is True
+    is_list = "(e) => e.parentElement.matches('ul:not([role]), ol:not([role])')"
+    assert page.value(f"[...document.querySelectorAll('li')].every({is_list})") is True
     ids = page.value("[...document.querySelectorAll('[id]')].map((e) => e.id)")
     assert len(set(ids)) == len(ids)
     read_aloud = "[...document.querySelectorAll('[aria-live], [role=status], [role=alert], [role=log]')]"
@@ -474,7 +474,7 @@ def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[
 
 def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
-    node.show(2, 2.0, clock=2.0, nurse="doing_screw_in_s")
+    node.show(2, 2.0, clock=3.5, nurse="doing_screw_in_s")
     says(page, "#tasks", "nurse: do screw, at s")
     page.value("window.setTimeout = () => 0; true")  # however slow the machine: no time passes between the presses
     page.click(".done")
@@ -483,13 +483,33 @@ def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node
     assert node.wanted == [("done", "nurse:screwDONE", 2)]
 
 
+def test_the_report_of_an_end_that_the_model_does_not_have_yet_is_confirmed(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody())
+    node.clock = lambda: 0.0
+    node.show(2, 2.0, clock=1.0, unit=30.0, nurse="doing_screw_in_s")
+    says(page, "#tasks", "nurse: do screw, at s")
+    page.click(".done")
+    page.wait("document.getElementById('sure').open")
+    matches(page, "#sure-text", r"nurse: do screw, at s\. By the model this ends in [12]\.\d time units at the ear")
+    page.click("#stop-no")
+    page.wait("!document.getElementById('sure').open")
+    page.click(".done")
+    page.click("#stop-yes")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("done", "nurse:screwDONE", 2)]
+    page.click("#stop")
+    says(page, "#sure-text", "Stop the mission?")
+
+
 def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_page(
     page: Browser, show: Callable[..., Node]
 ) -> None:
     node = show(*everybody(), ends=True)
     page.wait("!document.getElementById('others').hidden")
     says(page, "#ends", "bot: not under way")
-    node.show(2, 2.0, clock=2.0, thief="going_a_to_b", boy="doing_screw_in_s")
+    node.show(2, 2.0, clock=20.5, thief="going_a_to_b", boy="doing_screw_in_s")
     says(page, "#ends", "thief: from a to b")
     says(page, "#ends", "boy: screw, at s")
     labels = page.value("[...document.querySelectorAll('#ends .done')].map((each) => each.textContent).join()")
@@ -566,7 +586,7 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
     assert page.text("[data-agent=thief] text") == "thief ?" and page.text("[data-agent=bot] text") == "bot"
     for dark in (False, True):
         page.dark(dark)
-        page.wait(f"{COVERED}.length === 0")
+        page.wait(f"{COVERED}.length === 0")  # as soon as nobody glides any more
     node.board.on_positions({})
     page.wait("document.getElementById('real').hidden")
     assert page.complaints == []
