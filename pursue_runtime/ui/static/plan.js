@@ -150,7 +150,7 @@ function pointOf(agent, now) { // on the picture: where it is known to be, else 
   const real = positions.get(agent.name), from = map.points.get(agent.place), to = map.points.get(agent.to);
   if (real) {
     const { x, y } = map.at(real[0], real[1]);
-    return { x: Math.min(map.width, Math.max(0, x)), y: Math.min(map.height, Math.max(0, y)), yaw: real[2], away: POI };
+    return { x: Math.min(map.width, Math.max(0, x)), y: Math.min(map.height, Math.max(0, y)), yaw: real[2], away: 2 * POI };
   }
   if (!from) return null;
   if (!to) return { ...from, away: 2 * POI };
@@ -206,13 +206,16 @@ function share(agent, now) { // of what it does: nine tenths when it may end, al
 function animate(moment) {
   map.moving = false;
   if (!view || !map.marks.size) return;
-  const now = present(), pace = Math.min(1, (moment - map.last) / 150), taken = [...map.places];
+  const now = present(), pace = Math.min(1, (moment - map.last) / 150);
+  const points = new Map(view.agents.map((agent) => [agent.name, pointOf(agent, now)]));
+  const dots = view.agents.filter(({ name, to }) => points.get(name) && (to || points.get(name).yaw !== undefined)).map(({ name }) => points.get(name));
+  const taken = [...map.places, ...dots.map(({ x, y }) => ({ x, y, half: 9, tall: 9 }))];
   map.last = moment;
   let unsettled = false;
   for (const agent of view.agents) {
     const mark = map.marks.get(agent.name), to = map.points.get(agent.to);
     if (!mark) continue;
-    const point = pointOf(agent, now);
+    const point = points.get(agent.name);
     for (const part of [mark.group, mark.lead, mark.dot, mark.path]) part.style.display = point ? "" : "none";
     mark.group.classList.toggle("lost", agent.lost);
     if (!point) continue;
