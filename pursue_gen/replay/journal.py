@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.replay.assumptions import breach, overstayed, without
-from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
+from pursue_gen.replay.moves import EXACT, DiscreteState, Move, Moves, after
 from pursue_gen.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_gen.tga.network import Objective
 from pursue_runtime.bounded import BadText, read_json
@@ -21,6 +21,9 @@ FORMATS = (1, 2)
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")
 END = "told"
 """Closes a journal: the end of the mission was published."""
+
+KEPT = 0.5
+"""Time units after which a command that came early has been taken or overtaken: the observer's tolerance is smaller."""
 
 MOST = 1000
 """By so many numbers one call may move a mission on; more is damage."""
@@ -126,6 +129,7 @@ class _Walk:
         self._seq, self._plan, self._status = 0, 0, WAITING
         self._event = self._agent = ""
         self._noted: List[RecordedWord] = []  # the ends that others had not reported yet
+        self._early: List[RecordedWord] = []  # commands that were kept until they are due
 
     def follow(self, entry: Entry) -> None:
         """What one call did; the number of the state after it gives the number of steps to look for."""
@@ -143,6 +147,8 @@ class _Walk:
             self._seq = entry.seq - 1
         if word is not None and entry.seq == self._seq and self._moves.sharing(self._place, word.event, word.agent):
             self._noted.append(word)
+        if word is not None and word.seq is not None and entry.seq == self._seq:
+            self._early.append(word)
         self._steps(entry, word)
         status = entry.status or self._ending(entry, word)
         if status and self.states and self.states[-1].status != status:
@@ -178,6 +184,8 @@ class _Walk:
             else:
                 move = self._next(entry.at, word)
                 if entry.call == "tick" and move is None:
+                    move = self._due_command(entry.at)
+                if entry.call == "tick" and move is None:
                     self._place = without(self._place, overstayed(self._moves, self._place, self._clocks(entry.at)))
                 if entry.call == "tick" or (word is not None and word.event == FAILED):
                     move = move or self._without_lost()
@@ -203,6 +211,17 @@ class _Walk:
                 return min(found, key=lambda move: self._moves.untimely(move, self._place, clocks).amount)
         internal = self._moves.internal(self._place, self._objective)
         return next((move for move in internal if self._moves.is_due(move, self._place, clocks)), None)
+
+    def _due_command(self, at: float) -> Optional[Move]:
+        """The move of a command that came early, by less than the observer's tolerance, and is due now."""
+        clocks = self._clocks(at)
+        self._early = [word for word in self._early if at - word.at <= KEPT * self._unit]
+        for word in self._early:
+            for move in self._moves.of(self._place, word.event, word.agent):
+                if self._moves.untimely(move, self._place, clocks).amount <= EXACT:
+                    self._early.remove(word)
+                    return move
+        return None
 
     def _without_lost(self) -> Optional[Move]:
         """The end of what several did together, where the last who had not reported it is lost."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Dict, List
@@ -56,6 +57,20 @@ def test_a_journal_is_worked_out_to_the_same_states(tmp_path: Path) -> None:
     assert list(record.states) == mission(unit=0.5).states[1:]
     findings = check(record, game())
     assert (findings.kept, findings.won, findings.findings) == (True, True, ())
+
+
+def test_a_command_that_the_observer_has_kept_until_it_was_due_led_to_the_state_after_it(tmp_path: Path) -> None:
+    """A controller whose clock is ahead is early, by less than the tolerance: the journal has the word, then a tick."""
+    journal = read_recording(write_journal(PLAY, tmp_path / "j.jsonl"))
+    assert isinstance(journal, Journal)
+    (at,) = (number for number, entry in enumerate(journal.entries) if entry.args == ("bot1:bot1_c2b@2",))
+    word = journal.entries[at]
+    early, due = replace(word, at=word.at - 0.15, seq=2), replace(word, at=word.at - 0.08, call="tick", args=())
+    journal = replace(journal, entries=(*journal.entries[:at], early, due, *journal.entries[at + 1:]))
+    record = reconstruct(journal, Moves(game().network), game().objective)
+    assert [(state.event, state.agent) for state in record.states if state.seq == 3] == [("bot1_c2b", "bot1")]
+    findings = check(record, game())
+    assert (findings.kept, findings.won) == (True, True), findings.findings
 
 
 def test_a_journal_shows_where_the_world_left_the_model(tmp_path: Path) -> None:
