@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 NO_ANSWER = "The observer does not answer"
 
+SETTLED = 10.0
+"""Seconds of real time after the end after which no observer is expected that renames the journal of the mission."""
+
 LOOKS_AT_FILES = 4
 """So many looks at the connections go by until the next look at the files of earlier missions."""
 
@@ -44,6 +47,7 @@ class UIPage:
         self._received = (0.0, 0.0)  # when the last state came: Unix time, ROS time
         self._stopping = False
         self._next = False  # the nodes wait for the start of another mission
+        self._ended = 0.0  # when the mission has ended, on the monotonic clock
         self._recording = ""  # the file that the recorder writes
         own, scenario = ui.membership.own, ui.membership.scenario
         folder = scenario_folder(os.environ, scenario)
@@ -88,6 +92,7 @@ class UIPage:
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
         """Show the end of the mission."""
+        self._ended = time.monotonic()
         if self._board is not None:
             self._board.end(at, verdict)
 
@@ -181,8 +186,9 @@ class UIPage:
             with self.lock:
                 self._look()
                 state, start = self._ui.mission.state, self._ui.mission.start
+                is_settled = self._next or not self.stays or time.monotonic() > self._ended + SETTLED
             if looks % LOOKS_AT_FILES == 0 and self._board is not None and (state is None or state.status not in LIVE):
-                self._board.show_missions(shown_missions(self._past.read(self._recording), start))
+                self._board.show_missions(shown_missions(self._past.read(self._recording), start, is_settled))
             looks += 1
             time.sleep(LOOK)
 

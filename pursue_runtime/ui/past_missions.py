@@ -49,14 +49,22 @@ def workspace_of(config: str) -> str:
     return os.path.dirname(source) if os.path.basename(source) == "src" and os.path.isfile(game) else ""
 
 
-def shown_missions(missions: Sequence[PastMission], start: Optional[float]) -> List[Dict[str, Any]]:
-    """Return the missions for a page; the one that began at `start` (ROS time) is marked as the present one."""
+def shown_missions(
+    missions: Sequence[PastMission], start: Optional[float], is_settled: bool = True
+) -> List[Dict[str, Any]]:
+    """Return the missions for a page; the one that began at `start` (ROS time) is marked as the present one.
+
+    Its journal is not named unless `is_settled`: the next observer of the launch renames it.
+    """
     shown = []
     for mission in missions:
         is_present = None not in (start, mission.began) and abs(float(mission.began or 0) - float(start or 0)) < SAME
         moment = mission.began if mission.began is not None and mission.began > SINCE_1970 else mission.written
         units = None if mission.units is None else round(mission.units, 1)
-        known = {"began": round(moment, 3), "units": units, "files": list(mission.files), "present": is_present}
+        known: Dict[str, Any] = {"began": round(moment, 3), "units": units, "files": list(mission.files)}
+        known["present"] = is_present
+        if is_present and not is_settled and JOURNAL.fullmatch(os.path.basename(mission.files[0])):
+            known.update(files=[], replay="")
         shown.append({**mission._asdict(), **known})
     return shown
 

@@ -24,7 +24,7 @@ function missionRow(mission) {
 }
 
 function replayLines(mission) {
-  const files = make("p", "files", `Recorded: ${mission.files.join(", ")}`);
+  const files = make("p", "files", `Recorded: ${mission.files.join(", ") || "its journal, which is being closed"}`);
   if (!mission.replay) return [files];
   const replay = make("p", "replay", "Replay: ");
   replay.append(make("code", "", mission.replay));

@@ -105,6 +105,15 @@ def test_recordings_are_joined_with_the_journal_of_their_mission(tmp_path: Path)
     assert [each["present"] for each in shown] == [True, False]
 
 
+def test_a_journal_that_the_next_observer_will_rename_is_not_named_yet(tmp_path: Path) -> None:
+    write_journal(tmp_path / "journal-x.jsonl")
+    missions = PastMissions(str(tmp_path)).read()
+    (shown,) = shown_missions(missions, BEGAN, is_settled=False)
+    assert (shown["result"], shown["files"], shown["replay"]) == ("won", [], "")
+    assert shown_missions(missions, BEGAN + 5, is_settled=False)[0]["files"], "that of another mission is as it is"
+    assert shown_missions(missions, BEGAN)[0]["replay"]
+
+
 def test_damaged_files_are_listed_as_such(tmp_path: Path) -> None:
     lines = write_journal(tmp_path / "journal-cut.jsonl", "").read_bytes().splitlines(keepends=True)
     (tmp_path / "journal-cut.jsonl").write_bytes(lines[0] + lines[1][:20] + b"\n" + lines[2])
