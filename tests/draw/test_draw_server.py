@@ -132,9 +132,11 @@ def test_a_text_is_opened_shown_and_changed(served: DrawServer) -> None:
 
 
 def test_any_text_can_be_shown(served: DrawServer) -> None:
-    texts = ["\0", "poi", 'poi "a', "/*", "\ud800", 'poi "a" //[', "connect a and a distance 0", "agent", "\r\n"]
+    texts = ["\0", "poi", 'poi "a', "/*", "\ufffd", 'poi "a" //[', "connect a and a distance 0", "agent", "\r\n"]
     for text in [*texts, 'agent agent "x" location', "event event", "é\U0001f600" * 5 + "?"]:
         assert "view" in asked(served, "view", text=text)
+    half = json.dumps({"text": "\ud800"}).encode()
+    assert request(served, "POST", f"/{served.token}/view", half)[0] == 400, "no file can hold it"
 
 
 def test_offsets_of_findings_are_those_of_javascript(served: DrawServer) -> None:

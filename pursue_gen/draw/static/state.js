@@ -15,11 +15,14 @@ export function show() {
   for (const listener of listeners) listener();
 }
 
+// Half a character, which a person can paste but no file can hold, is sent as a replacement character.
+const whole = (_, value) => (typeof value === "string" ? value.replace(/\p{Surrogate}/gu, "\ufffd") : value);
+
 // Asks the server; {refused, hint} where it does not do it or cannot be reached.
 export async function ask(request, body = {}) {
   try {
     const headers = { "Content-Type": "application/json" };
-    const answer = await fetch(request, { method: "POST", headers, body: JSON.stringify(body) });
+    const answer = await fetch(request, { method: "POST", headers, body: JSON.stringify(body, whole) });
     if (answer.ok) return await answer.json();
     return { refused: await answer.text(), hint: "" };
   } catch (problem) {
