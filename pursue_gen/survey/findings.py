@@ -79,7 +79,8 @@ def other_unit(
 
     `measured`: the lengths (metres) of ways whose distances change; `timed`: movements that have windows in the copy.
     """
-    ratios = sorted((metres / unit / float(way.distance), way.span) for way, metres in measured.items())
+    ratios = [(metres / unit / float(way.distance), way.span) for way, metres in measured.items()]
+    ratios.sort(key=lambda one: one[0])
     movers = [
         agent.name
         for agent in scenario.agents

@@ -171,6 +171,12 @@ def test_distances_are_of_the_unit_and_as_fine_as_the_times_allow() -> None:
     assert codes(surveyed("--speed", "1", text=TEXT.replace("distance 6", "distance 1").replace("5.8", "1"))) == []
 
 
+def test_ways_that_are_equally_wrong_are_no_hindrance() -> None:
+    text = TEXT.replace("[6.0, 3.0", "[1.0, 3.0").replace("[11.0, 5.0", "[1.0, 5.0").replace("5.8", "6")
+    done = surveyed(text=text)
+    assert codes(done) == ["MAP008"] and "ways are 0.3 times as long as written" in done.err
+
+
 def test_line_ends_stay_as_they_are() -> None:
     Path("rooms.pur").write_bytes(TEXT.replace("\n", "\r\n").encode())
     assert pursue("survey", "map.yaml", "rooms.pur").status == 0

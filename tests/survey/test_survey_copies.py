@@ -1,0 +1,53 @@
+"""The copies of the scenarios that come with the project: sound, and the same again when they are surveyed again."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from pursue_gen.diagnostics import Severity
+from pursue_gen.drawing.ground import Ground
+from pursue_gen.language import check, parse
+from pursue_gen.language.formatter import format_text
+from pursue_gen.survey.make import Options, Survey, read_scenario, surveyed
+from pursue_gen.survey.times import Drive
+from tests.conftest import ROOT
+from tests.survey.maps import drawn, ground_of
+
+CELL = 0.25
+SCENARIOS = sorted((ROOT / "scenarios").glob("*/*.pur"))[::15]
+
+
+def with_poses(text: str) -> str:
+    """The text with a pose behind each place that has its line for itself."""
+    places = iter(range(1000))
+
+    def pose(match: "re.Match[str]") -> str:
+        number = next(places)
+        x, y = 2 + 3 * (number % 6), 2 + 3 * (number // 6)
+        return f"{match[1]} //[{x}, {y}, 0, 0, 0, 0, 1]{match[2] or ''}"
+
+    return re.sub(r'^(poi "\w+"(?: label "[^"]*")?)[ \t]*(?://[ \t]*(?:\[[^\n\]]*\])?([^\n]*))?$', pose, text, flags=re.M)
+
+
+def ground(text: str) -> Ground:
+    return ground_of(drawn((20.0, 3.0 * text.count("//[") / 6 + 6), [], resolution=CELL), CELL)
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=lambda file: str(file.stem))
+@pytest.mark.parametrize("ways", [False, True])
+def test_a_copy_is_sound_and_is_its_own_copy(file: Path, ways: bool) -> None:
+    text = with_poses(file.read_text(encoding="utf-8"))
+
+    def survey(text: str) -> Survey:
+        scenario = read_scenario(text, str(file))
+        speeds = {agent.name: 0.5 for agent in scenario.agents if agent.is_robot and agent.mobile is not None}
+        return surveyed(scenario, ground(text), "map.yaml", Options(radius=0.2, ways=ways, drive=Drive(speeds)))
+
+    copy = survey(text).text
+    assert not [one for one in check(parse(copy, str(file))) if one.severity is Severity.ERROR]
+    assert survey(copy).text == copy
+    formatted = format_text(copy, str(file))
+    assert survey(formatted).text == formatted
