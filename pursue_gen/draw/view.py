@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Collection, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
 from pursue_gen.draw.places import positions
@@ -32,10 +32,11 @@ def view(text: str, file: str = "scenario.pur", ground: Optional[Ground] = None)
     """
     document = Document.of(text, file)
     found = _findings(document, ground)
+    places = _places(document)
     return {
-        "places": _places(document),
+        "places": places,
         "computed": positions(document.scenario)[1],
-        "ways": _ways(document),
+        "ways": _ways(document, {place["name"] for place in places}),
         "agents": _agents(document),
         "events": _events(document),
         "others": [_other(document, k) for k, one in enumerate(document.statements) if one.kind not in _OWN_FORMS],
@@ -120,8 +121,8 @@ def _places(document: Document) -> List[Dict[str, Any]]:
     return found
 
 
-def _ways(document: Document) -> List[Dict[str, Any]]:
-    known = document.declared["POI"]
+def _ways(document: Document, known: Collection[str]) -> List[Dict[str, Any]]:
+    """The ways between places that are shown."""
     found = []
     for number, statement in _whole(document, "CONNECT"):
         a, b = words_behind(statement, "CONNECT"), words_behind(statement, "AND")

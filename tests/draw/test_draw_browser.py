@@ -105,6 +105,16 @@ def at(there: Browser, place: str) -> List[float]:
     return found
 
 
+def covered(there: Browser) -> int:
+    """How many words and places in the picture are covered by others."""
+    found: int = there.value(
+        "(() => { const boxes = [...document.querySelectorAll('#plan .halo, #plan .dot')]"
+        ".map((one) => one.getBoundingClientRect()); return boxes.filter((a, k) => boxes.slice(k + 1).some((b) => "
+        "a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom)).length; })()"
+    )
+    return found
+
+
 def named(there: Browser, default: str, name: str) -> None:
     """Types a name in place of the one that was proposed."""
     there.wait(f"document.activeElement.id === 'field-name' && document.activeElement.value === {default!r}")
@@ -191,6 +201,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         there.click("#add-form")
         says(there, "reach_objective: do handOver\n")
         there.wait("document.getElementById('counts').textContent.startsWith('0 errors')")
+        assert covered(there) == 0
         made = text(there)
         assert made == format_text(made, "night_shift.pur")
         assert without_places(parse(made, "night_shift.pur")) == without_places(expected)
@@ -260,6 +271,10 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
         there.click("#item-place-b")
         there.click("#delete")
         there.wait("document.getElementById('status').textContent.startsWith('the text has an error in line 2')")
+        x, y = at(there, "b")
+        there.press(x, y, x, y - 50)
+        there.wait("document.querySelector('.place[data-key=b] .dot').getBoundingClientRect().y > "
+                   f"{y - 20} - document.documentElement.getBoundingClientRect().y")
         assert there.complaints == []
 
 

@@ -34,7 +34,7 @@ function number() {
 function follow() {
   const line = text.value.slice(0, text.selectionStart).split("\n").length;
   const one = all(state.view).find(({ thing }) => thing.from <= line && line <= thing.to);
-  if (one && state.text === text.value && !isSelected(one.kind, one.key)) select(one);
+  if (one && state.viewed === text.value && !isSelected(one.kind, one.key)) select(one);
 }
 
 function finding(one) {

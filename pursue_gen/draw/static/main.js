@@ -55,7 +55,8 @@ function press(id, action) {
 async function begin() {
   const opened = await ask("open");
   if (opened.refused) return say(refusal(opened), true);
-  Object.assign(state, { opened, text: opened.text, view: opened.view, saved: opened.new ? null : opened.text });
+  const { text, view } = opened;
+  Object.assign(state, { opened, text, view, viewed: text, saved: opened.new ? null : text });
   document.title = `Draw ${opened.file}`;
   for (const listener of [draw, inspect, list, editor.write, follow]) onShow(listener);
   pointer.listen();

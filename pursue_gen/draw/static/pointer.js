@@ -2,7 +2,7 @@
 import { pan, size, toMap, zoom } from "./camera.js";
 import { byId } from "./elements.js";
 import { draw, fitAll, pending, placeNamed } from "./plan.js";
-import { all, change, say, select, selected, state } from "./state.js";
+import { all, change, look, say, select, selected, state } from "./state.js";
 
 const plan = byId("plan");
 const STILL = 6; // pixels that a click may move
@@ -137,7 +137,7 @@ function up(event) {
   if (event.type === "pointercancel") {
     pending.from = null;
     pending.to = null;
-    draw();
+    look(); // what was dragged goes back
   } else if (ended.kind === "tap") {
     use(ended.hit, toMap(event.clientX, event.clientY), event.pointerType === "touch");
   } else if (ended.kind === "place") {

@@ -1,8 +1,8 @@
 // The text and what is seen of it: the text is what counts, the picture follows it.
 import { byId } from "./elements.js";
 
-export const state = { text: "", view: null, selected: null, saved: "", playing: null, past: [], future: [], opened: null };
-// `playing`: in a game, where everybody is: agent → [place], or [from, to].
+export const state = { text: "", view: null, viewed: "", selected: null, saved: "", playing: null, past: [], future: [], opened: null };
+// `viewed`: the text that `view` shows, which may be older than `text`. `playing`: in a game, where everybody is: agent → [place], or [from, to].
 const listeners = [];
 let queue = Promise.resolve(); // changes are made one after the other
 let typed = 0; // when the text was last typed in
@@ -87,13 +87,14 @@ export function change(asked, then = null) {
     const answer = await ask("change", { text: before, operation });
     if (answer.refused) {
       say(refusal(answer), true);
+      await look(); // what was dragged goes back to where it is in the text
     } else if (state.text !== before) {
       say("The text was changed meanwhile: do it again.", true);
     } else {
       say("");
       if (answer.text !== before) remember();
       typed = 0;
-      state.text = answer.text;
+      state.text = state.viewed = answer.text;
       state.view = answer.view;
       const about = answer.statement === null ? null : atStatement(answer.statement);
       if (about) state.selected = { kind: about.kind, key: about.key };
@@ -126,7 +127,7 @@ export async function look() {
   const answer = await ask("view", { text });
   if (number !== wanted || text !== state.text) return;
   if (answer.refused) say(refusal(answer), true);
-  else state.view = answer.view;
+  else Object.assign(state, { view: answer.view, viewed: text });
   show();
 }
 
