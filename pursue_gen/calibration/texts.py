@@ -80,7 +80,7 @@ def sentences(proposal: Proposal) -> Iterator[str]:
     if proposal.missing:
         some = ", ".join(shown(proposal.scenario, way) for way in proposal.missing[:_MANY])
         more = " …" if len(proposal.missing) > _MANY else ""
-        yield f"Not measured, so windows stay: {some}{more}."
+        yield f"Not measured, so windows stay: {some}{more}. (rosrun UI drive_legs drives all ways of robots.)"
     widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
     if widened:
         yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."

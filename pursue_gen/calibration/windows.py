@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, exp, floor, log, sqrt
+from math import ceil, exp, floor, lgamma, log, sqrt
 from statistics import NormalDist, fmean, stdev
 from typing import List, Optional, Sequence, Tuple
 
@@ -126,11 +126,12 @@ def confidence_of(count: int, dropped: int, share: float) -> float:
     outside = 2 * (dropped + 1)  # at least so many of the parts between the times lie outside
     if outside > count + 1:
         return 0.0
-    term, below = share**count, 0.0
-    for number in range(outside):
-        below += term
-        term *= (count - number) / (number + 1) * (1 - share) / share
-    return max(0.0, 1.0 - below)
+    ways = lgamma(count + 1)
+    terms = (  # logarithms: share**count is too small for a number where there are very many times
+        ways - lgamma(number + 1) - lgamma(count - number + 1) + number * log(1 - share) + (count - number) * log(share)
+        for number in range(outside)
+    )
+    return max(0.0, 1.0 - sum(map(exp, terms)))
 
 
 @lru_cache(maxsize=None)
@@ -138,9 +139,11 @@ def _dropped(count: int, share: float, confidence: float) -> Optional[int]:
     """How many times may be left out at each end; None: there are too few."""
     if confidence_of(count, 0, share) < confidence:
         return None
-    dropped = 0
-    while confidence_of(count, dropped + 1, share) >= confidence:
-        dropped += 1
+    dropped, too_many = 0, count  # the confidence falls with each one that is left out
+    while too_many - dropped > 1:
+        middle = (dropped + too_many) // 2
+        enough = confidence_of(count, middle, share) >= confidence
+        dropped, too_many = (middle, too_many) if enough else (dropped, middle)
     return dropped
 
 

@@ -93,6 +93,12 @@ def test_so_many_times_are_needed_without_an_assumption() -> None:
     assert min(more) < window_of(more).low and window_of(more).high < max(more)
 
 
+def test_with_very_many_times_as_many_are_outside_as_may_be() -> None:
+    many = [float(number) for number in range(1, 100_001)]
+    window = window_of(many)
+    assert 450 < window.low < 500 and window.low - 1 == 100_000 - window.high  # some 1,000 in all, less for confidence
+
+
 @pytest.mark.parametrize(
     ("count", "factor"), [(5, 6.598), (10, 4.433), (20, 3.615), (50, 3.126), (100, 2.934)]
 )
