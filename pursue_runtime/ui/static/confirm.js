@@ -16,8 +16,8 @@ function confirmed(text, yes, no, act) {
   $("sure").showModal();
 }
 
-function isEarly(task, now) { // the model does not have it end yet
-  return task !== undefined && task.low !== null && now < task.low - MARGIN;
+function isEarly(task, now) { // the model does not have it end yet; a robot that is held may go on at any time
+  return task !== undefined && task.label !== "Resume" && task.low !== null && now < task.low - MARGIN;
 }
 
 function earlyText(task, now) {

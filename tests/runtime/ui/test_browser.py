@@ -116,9 +116,9 @@ class Node:
 
     def show(self, seq: int, at: float, clock: float = 50.0, **more: Any) -> None:
         self.phase, self.shown = "running", self.clock()
-        commanded = more.pop("commanded", False)
+        facts = {name: more.pop(name) for name in ("commanded", "held") if name in more}
         self.state = state(self.model, seq, 100.0 + at, dict.fromkeys(self.model.clocks, clock), **more)
-        self.state = self.state._replace(commanded=commanded)
+        self.state = self.state._replace(**facts)
         self.board.on_state(self.state, at)
         self.board.show()
 
@@ -501,6 +501,16 @@ def test_the_report_of_an_end_that_the_model_does_not_have_yet_is_confirmed(
     assert node.wanted == [("done", "nurse:screwDONE", 2)]
     page.click("#stop")
     says(page, "#sure-text", "Stop the mission?")
+
+
+def test_a_robot_that_is_held_goes_on_without_another_question(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody(), ends=True)
+    node.show(2, 2.0, clock=1.0, unit=30.0, bot="going_a_to_b", held=("bot",))
+    says(page, "#ends", "bot: held, until it is to continue")
+    says(page, "#agents", "bot goes from a to b; held, until it is resumed")
+    page.click("#ends .done")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("done", "bot:_resume_", 2)]
 
 
 def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_page(
