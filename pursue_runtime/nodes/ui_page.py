@@ -48,6 +48,7 @@ class UIPage:
         self._stopping = False
         self._next = False  # the nodes wait for the start of another mission
         self._ended = 0.0  # when the mission has ended, on the monotonic clock
+        self._looks = 0
         self._recording = ""  # the file that the recorder writes
         own, scenario = ui.membership.own, ui.membership.scenario
         folder = scenario_folder(os.environ, scenario)
@@ -92,7 +93,7 @@ class UIPage:
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
         """Show the end of the mission."""
-        self._ended = time.monotonic()
+        self._ended, self._looks = time.monotonic(), 0  # now there are other files
         if self._board is not None:
             self._board.end(at, verdict)
 
@@ -101,7 +102,7 @@ class UIPage:
         if state.status in LIVE:
             self._ui.ending.renew()
         elif (state.status == WAITING) != self._next:
-            self._next = state.status == WAITING
+            self._next, self._looks = state.status == WAITING, 0
             self.show()
 
     def on_robots(self, node: str, values: Mapping[str, str]) -> None:
@@ -181,15 +182,15 @@ class UIPage:
 
     def _watch(self) -> None:
         """Look at the connections with the observer; publish `_stop_` again until the mission has ended."""
-        looks = 0
         while not self._ui.ending.called:
             with self.lock:
                 self._look()
                 state, start = self._ui.mission.state, self._ui.mission.start
                 is_settled = self._next or not self.stays or time.monotonic() > self._ended + SETTLED
-            if looks % LOOKS_AT_FILES == 0 and self._board is not None and (state is None or state.status not in LIVE):
+            is_live = state is not None and state.status in LIVE
+            if self._board is not None and not is_live and self._looks % LOOKS_AT_FILES == 0:
                 self._board.show_missions(shown_missions(self._past.read(self._recording), start, is_settled))
-            looks += 1
+            self._looks += 1
             time.sleep(LOOK)
 
     def _look(self) -> None:

@@ -16,6 +16,7 @@ from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import Step, course, first_commands, is_certain, next_command
 from pursue_runtime.ui.floor import Floor
+from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
@@ -103,6 +104,7 @@ class Page:
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
+        self._lanes = Lanes(model)
         self._number = 0
         self.log: List[Dict[str, Any]] = []
 
@@ -155,6 +157,7 @@ class Page:
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
             "answers": facts.answers, "received": _round(facts.received),
             "stays": facts.stays, "offers": list(facts.offers),
+            "lanes": self._lanes.shown() if facts.verdict else None,
         }
 
     def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
@@ -167,6 +170,7 @@ class Page:
         last, self._last = self._last, state
         self._guarantee.on_state(state)
         self._why.on_state(state)
+        self._lanes.on_state(state, at)
         fresh: List[Dict[str, Any]] = []
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
             fresh.append(self.note(at, f"the mission starts{not_promised(self._model)}"))

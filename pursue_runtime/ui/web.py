@@ -29,7 +29,7 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 
-SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan")
+SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan", "timeline")
 FILES = {
     "/": ("index.html", "text/html"),
     **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},

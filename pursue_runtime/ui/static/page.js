@@ -239,6 +239,7 @@ function refresh() { // what changes while nothing happens: times, and what is p
   showButtons(now, here);
   showObjectives(now);
   showAfter();
+  showTimeline();
   for (const agent of view.agents) showAgent(widgets.rows.get(agent.name), agent, now);
   for (const [name, widget] of widgets.tasks) showTask(widget, name, view.tasks.find((task) => task.agent === name), now, here);
 }

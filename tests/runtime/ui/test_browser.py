@@ -605,9 +605,19 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
 def test_after_the_mission_the_page_says_how_to_replay_it_and_offers_what_there_is(
     page: Browser, show: Callable[..., Node]
 ) -> None:
-    node = show(*everybody())
+    node = show(*everybody(), labels={"boy": HOSTILE})
+    node.show(1, 0.0, event="_start_")
+    node.show(4, 20.0, boy="doing_screw_in_s")
+    assert page.value("document.getElementById('timeline').hidden") is True
     node.verdict, node.offers = (0, "It is won."), ("close",)
     node.show(5, 40.0, status="won")
+    page.wait("document.querySelectorAll('#lanes .segment').length === 6")
+    says(page, "#lanes .segment.acts", f"{HOSTILE}: screw at s, 20.0 to 40.0")
+    for width in (360, 1100):
+        page.screen(width, 740)
+        lanes = "document.querySelector('#lanes svg').viewBox.baseVal.width"
+        page.wait(f"{lanes} === document.getElementById('lanes').clientWidth")
+        assert page.value("document.documentElement.scrollWidth <= window.innerWidth")
     command = "pursue-gen replay '/a b/mission.bag'"
     played = {"result": "won", "why": "", "began": 1e9, "units": 12.5, "files": ["/a b/mission.bag", "/j.jsonl"]}
     before = {**played, "result": "damaged", "why": f"its journal: {HOSTILE}", "units": None, "present": False}
