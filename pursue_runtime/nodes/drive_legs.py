@@ -165,6 +165,7 @@ class DriveLegs:
         message = String(format_drive(drive))
         if self._bag is not None:
             self._bag.write(rospy.resolve_name(DRIVES), message, stamp())
+            self._bag.flush()  # drives are few, and take long to be made again
             self._count += 1
         with contextlib.suppress(rospy.ROSException):  # the node is going down
             self._drives.publish(message)
