@@ -14,13 +14,12 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.course import Step, course, first_commands, is_certain, next_command
 from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
+from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
-from pursue_runtime.ui.reasons import Why
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.words import START
 
@@ -97,8 +96,7 @@ class Page:
         watching = {name for objective in promise.objectives for name in objective.of}
         self._others = [status for status in statuses if status.of not in watching]  # than those of objectives
         self._guarantee = Guarantee(promise, model)
-        self._why = Why(model, statuses, strategies)
-        self._steps: Tuple[Tuple[object, ...], List[Step]] = ((), [])  # of which state, and what comes after it
+        self._outlook = Outlook(model, statuses, strategies)
         self._plan = plan
         self._floor = floor
         self._reporters = reporters
@@ -130,18 +128,14 @@ class Page:
         offers = possible_words(self._model, state, state.clocks, ACTING, ends=True) if state.status in LIVE else []
         opens = {offer.word: [_round(facts.at + offer.opens), _end(facts.at, offer.closes)] for offer in offers}
         agents = [self._agent(automaton, state, facts.at) for automaton in self._acting]
+        sight = self._outlook.sight(state, facts.at, offers)
         for agent in agents:
+            agent.update(sight.agents.get(agent["name"], {"why": "", "then": None}))
             agent["next"] = [
                 {"may": self._may(offer.agent, offer.word, state), "opens": opens[offer.word][0],
-                 "closes": opens[offer.word][1]}
+                 "closes": opens[offer.word][1], "answer": sight.answers.get(offer.word)}
                 for offer in offers if offer.agent == agent["name"]
             ]
-        steps = self._course(state)
-        first = first_commands(steps)
-        for agent in agents:
-            step = first.get(agent["name"])
-            agent["why"] = self._why.of(agent["name"])
-            agent["then"] = None if step is None else {"does": step.does, **self._due(steps, step, facts.at)}
         others = [automaton.name for automaton in self._model.automata if automaton not in self._acting]
         return {
             "phase": facts.phase, "missing": list(facts.missing), "status": state.status, "reason": state.reason,
@@ -149,8 +143,7 @@ class Page:
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
             "objectives": objectives_now(self._promise, self._statuses, self._model, state, facts.at),
-            "guarantee": self._guarantee.now(state), "next": self._next(steps, facts.at),
-            "planned": bool(self._why.strategies(state.plan)),
+            "guarantee": self._guarantee.now(state), "next": sight.next, "planned": sight.planned,
             "clocks": {name: _round(value) for name, value in state.clocks.items()},
             "statuses": status_texts(self._others, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
@@ -162,14 +155,13 @@ class Page:
 
     def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
         """Take the strategies of a new plan."""
-        self._why.add_plan(number, strategies)
-        self._steps = ((), [])
+        self._outlook.add_plan(number, strategies)
 
     def on_state(self, state: SystemState, at: float) -> List[Dict[str, Any]]:
         """A state came; what is new in the log."""
         last, self._last = self._last, state
         self._guarantee.on_state(state)
-        self._why.on_state(state)
+        self._outlook.on_state(state)
         self._lanes.on_state(state, at)
         fresh: List[Dict[str, Any]] = []
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
@@ -195,26 +187,6 @@ class Page:
         entry = {"n": self._number, "at": _round(at), "text": text, "kind": kind, "word": word}
         self.log = [*self.log, entry][-MAX_ENTRIES:]
         return entry
-
-    def _course(self, state: SystemState) -> List[Step]:
-        """What comes after a state, if nobody who is not controlled begins anything."""
-        key = (state.seq, state.stamp, state.plan, state.status, state.lost)
-        strategies = self._why.strategies(state.plan)
-        if self._steps[0] != key:
-            self._steps = key, course(self._model, strategies, state) if strategies else []
-        return self._steps[1]
-
-    def _next(self, steps: Sequence[Step], at: float) -> Optional[Dict[str, Any]]:
-        """The next command, and when it is due."""
-        step = next_command(steps)
-        if step is None:
-            return None
-        return {"says": f"{self._model.shown(step.agent)} is to {step.does}", **self._due(steps, step, at)}
-
-    @staticmethod
-    def _due(steps: Sequence[Step], step: Step, at: float) -> Dict[str, Any]:
-        """When a step comes; `certain`: nothing has to end before."""
-        return {"at": _round(at + step.after), "certain": is_certain(steps, step)}
 
     # Agents -----------------------------------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ function showAgent(widget, agent, now) {
   say(widget.doing, [agent.doing, ...agent.notes].join("; "));
   widget.progress.style.visibility = agent.since === null || !view.live ? "hidden" : "visible";
   widget.progress.value = share(agent, now);
-  if (widget.kind !== "agent") say(widget.why, view.live ? whyAndThen(agent, now) : "");
+  say(widget.why, !view.live ? "" : widget.kind === "agent" ? answers(agent, now) : whyAndThen(agent, now));
   say(widget.next, !view.live ? "" : agent.awaited ? ending(widget, agent, now, late) : widget.kind === "agent" ? mayDo(agent, now) : "");
 }
 
@@ -31,6 +31,11 @@ function whyAndThen(agent, now) { // only what the strategy says; nothing where 
   if (agent.then) parts.push(`${agent.awaited ? "then" : "next"}: ${agent.then.does}${due(agent.then, now)}`);
   else if (view.planned && view.status === "running" && !agent.awaited && !agent.lost) parts.push("waits: nothing is planned for it until something else happens");
   return parts.join("; ");
+}
+
+function answers(agent, now) { // what the strategy does if it begins that, where that is something else than now
+  const found = agent.next.filter(({ answer, closes }) => answer && (closes === null || now <= closes));
+  return found.slice(0, 3).map(({ may, answer }) => `should it ${may}: ${answer}`).join("; ");
 }
 
 function due({ at, certain }, now) { // what waits for an end comes later, nobody knows by how much

@@ -411,7 +411,9 @@ def test_what_is_next_and_why_is_what_the_strategy_says(page: Browser, show: Cal
     node.show(2, 4.1, clock=0.0, event="bot_a2b", agent="bot", bot="going_a_to_b", commanded=True, unit=30.0)
     says(page, "#agents", "because thief is at a (if it were at b: go to c); then: do catch in 1")
     says(page, "#agents", "at the earliest")
-    node.show(3, 40.0, clock=0.0, bot="b", thief="b", unit=30.0)
+    node.show(3, 30.0, clock=3.0, unit=30.0)
+    says(page, "#agents", "should it go to b: bot is to go to c")
+    node.show(4, 40.0, clock=0.0, bot="b", thief="b", unit=30.0)
     says(page, "#next", "Next: what others do. Until then the strategy has no command.")
     says(page, "#agents", "waits: nothing is planned for it until something else happens")
     assert page.complaints == []

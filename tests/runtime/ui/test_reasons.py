@@ -135,6 +135,21 @@ def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_fo
     assert bot["why"] == ""
 
 
+def answer(known: Strategy, now: Any) -> Any:
+    """What the page says that the strategy does if the thief goes to b."""
+    view, _ = sight(Page(MODEL, FloorPlan({}, ()), strategies=(known,)), now)
+    thief = next(agent for agent in view["agents"] if agent["name"] == "thief")
+    (found,) = [each["answer"] for each in thief["next"] if each["may"] == "go to b"]
+    return found
+
+
+def test_the_answer_to_what_another_may_do_is_said_where_it_changes_what_is_next() -> None:
+    changed = strategy({ASKED: [GO], ("a", "going_a_to_b", 0): [REST]})
+    assert answer(changed, state(MODEL, 1, 0.0, {"Cthief": 0.0})) == "bot is to do rest"
+    assert answer(strategy({ASKED: [GO], ("a", "going_a_to_b", 0): [GO]}), state(MODEL, 1, 0.0, {})) is None
+    assert answer(strategy({ASKED: [GO]}), state(MODEL, 1, 0.0, {})) is None, "nothing is known of that"
+
+
 def test_without_the_state_of_the_decision_no_reason_is_known() -> None:
     page = Page(MODEL, FloorPlan({}, ()), strategies=(GOES,))
     sight(page, state(MODEL, 1, 0.0, {}))
