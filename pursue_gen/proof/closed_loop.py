@@ -41,7 +41,8 @@ class ClosedLoop:
 
         `arenas`: those of the network by their scale (`Arena.kept`), where several loops share them.
         """
-        scale = _scale(network, strategy, reaction) * (instant.denominator if instant else INSTANTS)
+        scale = _scale(network, strategy, reaction)
+        scale = least_common_multiple((scale, instant.denominator)) if instant else scale * INSTANTS
         self.arena, self.strategy = (arenas or Arena.kept(network))(scale), strategy
         self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
         self.goal = () if objective.kind is Kind.SAFETY else _places(network, objective.goal)

@@ -52,6 +52,15 @@ class Depth:
     many: int = 0
 
 
+@dataclass(frozen=True)
+class Latest:
+    """The largest (scaled) value of a clock at the goal; None: nothing bounds it, or it was not found out within the
+    limit, or the strategy `fails` when it is played so."""
+
+    value: Optional[int]
+    fails: bool = False
+
+
 class Searches:
     """The searches through a closed loop, in Python. Each raises PursueError where the monitor does."""
 
@@ -74,12 +83,12 @@ class Searches:
         zones = is_invariant(self.loop, monitor)
         return None if zones is None else Found(zones, frozenset(self.loop.used), None)
 
-    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Optional[int]:
-        """The largest (scaled) value of a clock at the goal; None without a bound, at the limit, or where it fails."""
+    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Latest:
+        """When the goal is reached at the latest, with at most so many symbolic states."""
         try:
-            return _latest(self.loop, clock, limit, monitor)
+            return Latest(_latest(self.loop, clock, limit, monitor))
         except Broken:
-            return None
+            return Latest(None, fails=True)
 
     def _begin(self, depth: Depth) -> None:
         self.loop.rules, self.loop.used = replace(self.loop.rules, prompt=depth.prompt), set()

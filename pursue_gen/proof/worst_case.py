@@ -28,6 +28,9 @@ LIMIT = 20_000
 LONGEST = 100_000
 """Times above this number of time units are not distinguished."""
 
+_USUAL = 1_000
+"""Most plays end sooner than that, in time units: with it as a deadline the native checker's narrow numbers do."""
+
 
 def counting_clock(network: Network) -> Optional[str]:
     """A clock of the network that is 0 at the start and that no edge resets, so that it counts the time from there."""
@@ -89,14 +92,17 @@ def worst_case(
         return None
     if strategy.stages:
         return _of_stages(network, objective, strategy, reaction, limit, limits)
-    game = with_deadline(with_counter(named_part(network, strategy)), objective, LONGEST)
-    loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
-    count = loop.arena.clock[counting_clock(game) or ""]
-    try:
-        latest = searches_of(loop).latest(count, limit, LimitMonitor(limits))
-    except PursueError:
-        return None
-    return None if latest is None else Fraction(latest, loop.arena.scale)
+    counted, monitor = with_counter(named_part(network, strategy)), LimitMonitor(limits)
+    for longest in (_USUAL, LONGEST):
+        game = with_deadline(counted, objective, longest)
+        loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
+        try:
+            latest = searches_of(loop).latest(loop.arena.clock[counting_clock(game) or ""], limit, monitor)
+        except PursueError:
+            return None
+        if not latest.fails:
+            return None if latest.value is None else Fraction(latest.value, loop.arena.scale)
+    return None
 
 
 def _of_stages(

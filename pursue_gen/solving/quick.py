@@ -48,7 +48,7 @@ _PRECISION = Fraction(21, 20)
 """The search for a deadline ends where the shortest that is won is so close to the longest that is not."""
 
 _UNDECIDED = 2
-"""So many deadlines in a row that are not decided end the search, as long as none is known to be kept."""
+"""So many games in a row that are not decided end the search, as long as no deadline is known to be kept."""
 
 _NOT_WITHIN = "SYN023"
 
@@ -72,7 +72,7 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
             found = replace(won, guarantee=known)
         if found is not None:
             return _bounded(found, options.since(start), scale) if first.easy else found
-    found, decided = _in_less_time(won, known, scale, options.since(start))
+    found, decided = _in_less_time(won, known, scale, options.since(start), in_vain=first is None)
     return _bounded(found, options.since(start), scale) if first is None and decided else found
 
 
@@ -100,14 +100,16 @@ def _bounded(won: Solution, options: SolveOptions, scale: float) -> Solution:
     return won
 
 
-def _in_less_time(won: Solution, known: Guarantee, scale: float, options: SolveOptions) -> Tuple[Solution, bool]:
+def _in_less_time(
+    won: Solution, known: Guarantee, scale: float, options: SolveOptions, in_vain: bool
+) -> Tuple[Solution, bool]:
     """The solution with a strategy for a deadline that is much shorter than what the one at hand takes, or with that,
     and whether games with a deadline are decided with so much work.
 
-    `scale`: the part of the work that games of so many clocks get.
+    `scale`: the part of the work that games of so many clocks get; `in_vain`: a game was tried, and nothing was found.
     """
     start, budget = time.monotonic(), _budget(options, WORK, _DISCRETE_STATES, scale)
-    least, kept, moves, decided = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale))
+    least, kept, moves, decided = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale), in_vain)
     known = replace(known, least=max(known.least, least))
     if kept is None:
         return replace(won, guarantee=known), decided
@@ -156,7 +158,7 @@ def _too_short(deadline: Fraction, known: Guarantee) -> Diagnostic:
 
 
 def _prompt(
-    won: Solution, known: Guarantee, budget: Budget, work: int
+    won: Solution, known: Guarantee, budget: Budget, work: int, in_vain: bool
 ) -> Tuple[Fraction, Optional[Fraction], Moves, bool]:
     """A lower bound, a deadline that is kept where commands take effect at once, the moves that this needs, and whether
     the games were decided.
@@ -164,7 +166,7 @@ def _prompt(
     The deadline is None where none was found that is much shorter than what the strategy at hand takes.
     """
     network, now = with_counter(won.part), Fraction(0)
-    search = _Bisection(int(bounds(won.part, won.objective, now).least), known.worst)
+    search = _Bisection(int(bounds(won.part, won.objective, now).least), known.worst, int(in_vain))
     best: Optional[Faster] = None
     for deadline in search.deadlines():
         if budget.used_up or not search.is_easy:
@@ -183,20 +185,23 @@ def _prompt(
 
 @dataclass
 class _Bisection:
-    """Integer deadlines to try: `least` and what is below is lost; `floor` and below is lost, or not decided."""
+    """Integer deadlines to try: `least` and what is below is lost; `floor` and below is lost, or not decided.
+
+    `undecided`: so many games in a row were not decided.
+    """
 
     least: int
     high: Optional[Fraction]
+    undecided: int
 
     def __post_init__(self) -> None:
         self.floor = self.least
-        self._undecided = 0
         self._any_won = False
 
     @property
     def is_easy(self) -> bool:
         """False once deadlines are not decided though longer ones were tried: so it goes on as a rule."""
-        return self._any_won or self._undecided < _UNDECIDED
+        return self._any_won or self.undecided < _UNDECIDED
 
     def deadlines(self) -> Iterator[int]:
         """The next one to try, until `high` is close to `floor`."""
@@ -209,7 +214,7 @@ class _Bisection:
     def answer(self, deadline: int, won: bool, decided: bool) -> None:
         """Takes in what became of the deadline."""
         self._any_won = self._any_won or won
-        self._undecided = 0 if decided else self._undecided + 1
+        self.undecided = 0 if decided else self.undecided + 1
         if won:
             self.high = Fraction(deadline)
             return

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.worst_case import counting_clock, with_counter, with_deadline, worst_case
+from pursue_gen.proof.worst_case import INSTANT, LONGEST, counting_clock, with_counter, with_deadline, worst_case
 from pursue_gen.solving.least_time import TOLERANCE, fastest, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules
@@ -194,6 +194,18 @@ def test_a_strategy_keeps_its_worst_case_and_nothing_less(reference_dir: Path) -
         report = verify(with_deadline(network, objective, deadline), objective, won.strategy, prompt=True)
         assert report.ok == keeps
     assert worst_case(network, objective, won.strategy, limit=3) is None
+
+
+@pytest.mark.parametrize("longest", [7, 998, 1_001, 90_000])
+def test_a_long_worst_case_is_found_as_a_short_one_is(longest: int) -> None:
+    network = _race(_edge("start", "goal", ">", longest))
+    won = solution(network, REACH, IDEAL)
+    assert worst_case(network, REACH, won.strategy) == longest + INSTANT
+
+
+def test_what_takes_too_long_to_tell_has_no_worst_case() -> None:
+    network = _race(_edge("start", "goal", ">", LONGEST + 1))
+    assert worst_case(network, REACH, solution(network, REACH, IDEAL).strategy) is None
 
 
 # Random small games.

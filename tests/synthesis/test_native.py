@@ -9,10 +9,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from pursue_gen.language import load, parse
+from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
+from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.zones.dbm import INF
 from tests.conftest import thesis_scenario
@@ -80,6 +82,17 @@ def test_ranks_fall_with_every_command() -> None:
         for (_, action), rank in zip(pieces, ranks):
             if action is not None and moves[action].target in lowest:
                 assert lowest[moves[action].target] < rank
+
+
+@pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10)])
+def test_a_strategy_speaks_of_nothing_that_no_play_reaches(reaction: Fraction) -> None:
+    scenario = load(str(thesis_scenario("1").parents[1] / "catch_the_thief" / "one_officer.pur"))
+    network, objective = ends_reported(translate(scenario), {}), scenario_objective(scenario)
+    verdict = solve(network, objective, reaction, engine="native")
+    assert verdict.strategy is not None
+    report = verify(network, objective, verdict.strategy, reaction, ranks=verdict.ranks)
+    assert report.ok
+    assert {b for b, _, _ in report.used} == set(range(len(verdict.strategy.blocks)))
 
 
 RING = """

@@ -8,7 +8,7 @@ from pursue_gen.proof import reasons
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words
 from pursue_gen.proof.moves import State
 from pursue_gen.proof.native.tables import MOST_DELAY, MOST_FACTOR, MOST_RANK, NotHeld, Tables, tables_of
-from pursue_gen.proof.search import Depth, Failure, Found, Searches
+from pursue_gen.proof.search import Depth, Failure, Found, Latest, Searches
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Move
 from pursue_gen.zones.dbm import INF, Dbm
@@ -77,13 +77,12 @@ class NativeSearches(Searches):
             return super().covered(monitor)
         return None if result["number"] is None else Found(result["number"], self._used(result), None)
 
-    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Optional[int]:
-        """The largest (scaled) value of a clock at the goal; None without a bound, at the limit, or where it fails."""
+    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Latest:
+        """When the goal is reached at the latest, with at most so many symbolic states."""
         result = self._searched("latest", Depth(self.loop.rules.prompt, False, limit), monitor, clock)
         if result is None:
             return super().latest(clock, limit, monitor)
-        latest: Optional[int] = result["number"]
-        return latest
+        return Latest(result["number"], fails=result["fault"] >= 0)
 
     def _found(self, search: str, depth: Depth, monitor: LimitMonitor) -> Optional[Found]:
         result = self._searched(search, depth, monitor)

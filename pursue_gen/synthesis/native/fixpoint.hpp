@@ -26,10 +26,10 @@ class Fixpoint : public ZoneGraph<Z> {
 
     std::size_t evaluations() const { return evaluations_; }
 
-    // What to do in the states that a play by the plans may come to: in a reach game by one hull of the clocks of each.
+    // What to do in the states that a play by the plans may come to: in a reach game at the clocks with which it does.
     // In a safety game whatever the clocks: such a strategy is its own certificate, which has to be closed.
     std::map<int, std::vector<Piece<Z>>> followed() {
-        return game_.kind == Kind::safety ? followed_at_any_clocks() : followed_by_hulls();
+        return game_.kind == Kind::safety ? followed_at_any_clocks() : followed_by_plays();
     }
 
   private:
@@ -56,62 +56,170 @@ class Fixpoint : public ZoneGraph<Z> {
         return plans;
     }
 
-    std::map<int, std::vector<Piece<Z>>> followed_by_hulls() {
-        std::map<int, std::vector<Piece<Z>>> plans;
-        std::map<int, Z> met;
-        std::deque<int> queue{0};
-        std::vector<bool> queued(nodes_.size(), false);
-        const auto enter = [&](const Transition& transition, Z z) {
-            const Node<Z>& target = nodes_[transition.target];
-            if (!target.reached || !this->take(joints_[transition.joint], target, z)) return;
-            const auto [known, fresh] = met.emplace(transition.target, z);
-            if (!fresh) {
-                if (includes(known->second, z)) return;
-                known->second = hull(known->second, z);
-                this->extrapolate_within(target, known->second);
+    // While there is one, work does not count: it makes a strategy smaller, once the game is decided.
+    struct Uncounted {
+        const Effort before = effort;
+
+        Uncounted() { effort.due = 0; }
+        ~Uncounted() { effort = before; }
+        Uncounted(const Uncounted&) = delete;
+        Uncounted& operator=(const Uncounted&) = delete;
+    };
+
+    // A discrete state on plays by the plans.
+    struct Met {
+        std::vector<Piece<Z>> pieces;       // what to do there
+        std::vector<bool> used;             // which of it plays meet
+        std::vector<Federation<Z>> strict;  // of each command's zone where a play does not go on without it
+        std::vector<Z> entries;             // the zones at which plays enter it
+    };
+
+    // What plays by the plans meet; where a state is entered at more than `most` zones their hull takes their place, which
+    // only adds plays.
+    std::map<int, std::vector<Piece<Z>>> followed_by_plays() {
+        constexpr std::size_t most = 8;
+        std::map<int, Met> met;
+        std::deque<std::pair<int, Z>> queue;
+        const auto enter = [&](int k, Z z) {
+            const auto [here, fresh] = met.try_emplace(k);
+            Met& state = here->second;
+            if (fresh) meet(k, state);
+            if (state.pieces.empty()) return;
+            for (const Z& entry : state.entries)
+                if (includes(entry, z)) return;
+            if (state.entries.size() >= most) {
+                for (const Z& entry : state.entries) z = hull(z, entry);
+                state.entries.clear();
             }
-            if (queued[transition.target]) return;
-            queued[transition.target] = true;
-            queue.push_back(transition.target);
+            insert(state.entries, z);
+            queue.emplace_back(k, z);
         };
-        Z start = this->start_zone();
-        this->elapse(nodes_[0], start);
-        for (met.emplace(0, start); !queue.empty();) {
-            const int k = queue.front();
+        for (enter(0, this->start_zone()); !queue.empty();) {
+            const int k = queue.front().first;
+            const Z entry = queue.front().second;
             queue.pop_front();
-            queued[k] = false;
             this->check_limits();
-            const auto [known, fresh] = plans.try_emplace(k);
-            if (fresh) known->second = plan(k);
-            const Z here = met.at(k);
-            std::map<int, Z> commanded;  // per joint move, where it may take effect
-            std::optional<Z> anywhere;   // and where a play may be
-            for (const Piece<Z>& piece : known->second) {
-                Z z = piece.zone;
-                if (!intersect(z, here)) continue;
-                if (piece.joint >= 0) {
-                    up_within(z, game_.delta);
-                    if (!intersect(z, here)) continue;
-                    const auto [other, first] = commanded.emplace(piece.joint, z);
-                    if (!first) other->second = hull(other->second, z);
-                }
-                anywhere = anywhere ? hull(*anywhere, z) : z;
-            }
-            if (!anywhere) continue;
+            Met& here = met.at(k);
+            const auto same = [&](const Z& other) { return includes(entry, other) && includes(other, entry); };
+            if (std::none_of(here.entries.begin(), here.entries.end(), same)) continue;  // a larger one took its place
+            const Played play = played(nodes_[k], entry, here);
             for (const Transition& transition : nodes_[k].transitions) {
-                const auto command = commanded.find(transition.joint);
-                if (!joints_[transition.joint].controllable) enter(transition, *anywhere);
-                else if (command != commanded.end()) enter(transition, command->second);
+                const Joint& joint = joints_[transition.joint];
+                const Node<Z>& target = nodes_[transition.target];
+                const auto command = play.commanded.find(transition.joint);
+                if (!target.reached || (joint.controllable && command == play.commanded.end())) continue;
+                for (Z z : joint.controllable ? command->second : play.active)
+                    if (this->step(joint, target, z)) enter(transition.target, z);
             }
         }
-        for (auto k = plans.begin(); k != plans.end();) {
-            const Z& here = met.at(k->first);
-            std::vector<Piece<Z>>& pieces = k->second;  // without those that no play comes to
-            const auto missed = [&](Piece<Z> piece) { return !intersect(piece.zone, here); };
-            pieces.erase(std::remove_if(pieces.begin(), pieces.end(), missed), pieces.end());
-            k = pieces.empty() ? plans.erase(k) : std::next(k);
+        std::map<int, std::vector<Piece<Z>>> plans;
+        for (auto& [k, state] : met) {
+            std::vector<Piece<Z>> pieces;
+            for (std::size_t p = 0; p < state.pieces.size(); ++p)
+                if (state.used[p]) pieces.push_back(std::move(state.pieces[p]));
+            if (!pieces.empty()) plans.emplace(k, std::move(pieces));
         }
         return plans;
+    }
+
+    void meet(int k, Met& state) {
+        state.pieces = plan(k);
+        const Uncounted uncounted;
+        state.used.resize(state.pieces.size(), false);
+        state.strict.resize(state.pieces.size());
+        for (std::size_t p = 0; p < state.pieces.size(); ++p) {
+            const Piece<Z>& piece = state.pieces[p];
+            if (piece.joint < 0) continue;
+            state.strict[p] = {piece.zone};
+            // Where another command may be on its way it may give way to that, and begin later (overtaking.py).
+            for (const Piece<Z>& other : state.pieces) {
+                if (game_.delta == 0 || other.joint < 0 || other.joint == piece.joint || other.rank >= piece.rank) continue;
+                Z flight = other.zone;
+                up_within(flight, game_.delta);
+                if (touches(state.strict[p], flight)) state.strict[p] = minus(state.strict[p], flight);
+            }
+        }
+    }
+
+    // Where a play may be in a state until something happens, and where which command may take effect.
+    struct Played {
+        Federation<Z> active;
+        std::map<int, Federation<Z>> commanded;
+    };
+
+    Played played(const Node<Z>& n, const Z& entry, Met& here) {
+        const Uncounted uncounted;
+        const std::size_t count = here.pieces.size();
+        std::vector<Federation<Z>> decided(count);
+        Federation<Z> starts{entry}, waited;
+        const auto decide = [&](std::size_t p, Z z) {  // anywhere on the way through its zone
+            up(z);
+            if (intersect(z, here.pieces[p].zone)) decided[p].push_back(z);
+        };
+        for (std::size_t p = 0; p < count; ++p) {
+            if (here.pieces[p].joint < 0) continue;
+            Z z = entry;
+            if (!intersect(z, here.pieces[p].zone)) continue;
+            decide(p, z);
+            starts = minus(starts, here.strict[p]);
+        }
+        for (const Z& start : starts) {
+            Z future = start;
+            up(future);
+            this->invariant(n, future);
+            std::vector<std::pair<std::size_t, Z>> due;  // what ends the time that passes from here
+            for (std::size_t p = 0; p < count; ++p)
+                for (Z z : here.strict[p])
+                    if (intersect(z, future)) due.emplace_back(p, z);
+            Federation<Z> before{future};
+            std::vector<Z> from;
+            for (const auto& [p, z] : due) {
+                from.push_back(z);
+                up(from.back());
+                before = minus(before, from.back());
+            }
+            for (std::size_t d = 0; d < due.size(); ++d) {
+                Federation<Z> first{due[d].second};
+                for (std::size_t other = 0; other < due.size() && !first.empty(); ++other) {
+                    if (due[other].first == due[d].first) continue;
+                    for (Z earlier : minus(Federation<Z>{due[other].second}, from[d])) {
+                        up(earlier);
+                        first = minus(first, earlier);
+                    }
+                }
+                for (const Z& z : first) decide(due[d].first, z);
+            }
+            for (std::size_t p = 0; p < count; ++p)
+                if (here.pieces[p].joint >= 0)
+                    for (Z z : before)
+                        if (intersect(z, here.pieces[p].zone)) decide(p, z);
+            append(waited, before);
+        }
+        Played out;
+        Federation<Z> flights;
+        for (std::size_t p = 0; p < count; ++p)
+            for (Z z : reduced(decided[p])) {
+                here.used[p] = true;
+                up_within(z, game_.delta);
+                this->invariant(n, z);
+                flights.push_back(z);
+                out.commanded[here.pieces[p].joint].push_back(z);
+            }
+        if (game_.delta > 0)
+            for (const Z& flight : flights)
+                for (std::size_t p = 0; p < count; ++p) {
+                    Z z = flight;
+                    if (here.pieces[p].joint < 0 || !intersect(z, here.pieces[p].zone)) continue;
+                    here.used[p] = true;
+                    up_within(z, game_.delta);
+                    if (intersect(z, flight)) out.commanded[here.pieces[p].joint].push_back(z);
+                }
+        append(waited, flights);
+        out.active = reduced(waited);
+        for (auto& [joint, zones] : out.commanded) zones = reduced(zones);
+        for (std::size_t p = 0; p < count; ++p)
+            here.used[p] = here.used[p] || (here.pieces[p].joint < 0 && touches(out.active, here.pieces[p].zone));
+        return out;
     }
 
   protected:

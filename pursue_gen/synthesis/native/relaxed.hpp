@@ -44,35 +44,39 @@ class RelaxedPlanner {
         for (const Place& place : to) goals.push_back(known(place.automaton, place.location));
         if (goals.empty() || std::find(goals.begin(), goals.end(), -1) != goals.end()) return {};
         std::reverse(goals.begin(), goals.end());  // what comes last is taken first
-        std::vector<int> layer(facts_.size(), -1), achiever(facts_.size(), -1), missing(missing_), ready, fresh;
-        std::vector<bool> met(preconditions_.size(), false);
+        ++looks_;
+        layers_.resize(facts_.size());
+        met_.resize(preconditions_.size(), 0);
+        missed_.resize(missing_.size());
+        std::vector<int> ready, fresh;
         for (std::size_t k = 0; k < d.size(); ++k) {
             const int fact = known(static_cast<int>(k), d[k]);
             if (fact < 0) continue;
-            layer[fact] = 0;
+            layers_[fact] = {looks_, 0, -1};
             fresh.push_back(fact);
         }
-        const auto missed = [&] { return std::any_of(goals.begin(), goals.end(), [&](int g) { return layer[g] < 0; }); };
+        const auto missed = [&] { return std::any_of(goals.begin(), goals.end(), [&](int g) { return layer(g) < 0; }); };
         for (int depth = 0; missed(); ++depth) {
             ready.clear();
             for (int fact : fresh)
                 for (int need : met_by_[fact]) {
-                    if (met[need]) continue;
-                    met[need] = true;
-                    if (--missing[preconditions_[need]] == 0) ready.push_back(preconditions_[need]);
+                    if (met_[need] == looks_) continue;
+                    met_[need] = looks_;
+                    const int op = preconditions_[need];
+                    if (missed_[op].first != looks_) missed_[op] = {looks_, missing_[op]};
+                    if (--missed_[op].second == 0) ready.push_back(op);
                 }
             std::sort(ready.begin(), ready.end());
             fresh.clear();
             for (int op : ready)
                 for (int fact : operators_[op].effects)
-                    if (layer[fact] < 0) {
-                        layer[fact] = depth + 1;
-                        achiever[fact] = op;
+                    if (layer(fact) < 0) {
+                        layers_[fact] = {looks_, depth + 1, op};
                         fresh.push_back(fact);
                     }
             if (fresh.empty()) return {};
         }
-        return extract(std::move(goals), layer, achiever);
+        return extract(std::move(goals));
     }
 
   private:
@@ -132,24 +136,26 @@ class RelaxedPlanner {
         return -1;
     }
 
-    Plan extract(std::vector<int> open, const std::vector<int>& layer, const std::vector<int>& achiever) const {
+    // The layer of a fact in the present look for a plan, -1: not met.
+    int layer(int fact) const { return layers_[fact].look == looks_ ? layers_[fact].depth : -1; }
+
+    Plan extract(std::vector<int> open) const {
         Plan plan;
-        std::vector<bool> seen(facts_.size(), false);
         while (!open.empty()) {
             const int fact = open.back();
             open.pop_back();
-            if (seen[fact]) continue;
-            seen[fact] = true;
+            if (layers_[fact].seen) continue;
+            layers_[fact].seen = true;
             if (facts_[fact] >= 0) plan.uses.push_back(facts_[fact]);
-            if (layer[fact] == 0) continue;
-            const Operator& op = operators_[achiever[fact]];
+            if (layer(fact) == 0) continue;
+            const Operator& op = operators_[layers_[fact].achiever];
             plan.acts[op.controllable] = true;
             bool now = true;
             for (const auto& any : op.preconditions) {
                 int best = -1;
                 for (int need : any)
-                    if (layer[need] >= 0 && (best < 0 || layer[need] < layer[best])) best = need;
-                now = now && layer[best] == 0;
+                    if (layer(need) >= 0 && (best < 0 || layer(need) < layer(best))) best = need;
+                now = now && layer(best) == 0;
                 open.push_back(best);
             }
             auto& first = plan.first[op.controllable];
@@ -167,6 +173,17 @@ class RelaxedPlanner {
     std::vector<std::vector<int>> met_by_;                  // per fact the preconditions that it meets
     std::vector<int> missing_;                              // per operator how many preconditions it has
     std::vector<Operator> operators_;
+
+    // What a look for a plan works with. It is kept: most looks meet a small part of it, and what has the number of an
+    // earlier look counts as not met.
+    struct Layer {
+        int look = 0, depth = 0, achiever = -1;
+        bool seen = false;
+    };
+    mutable int looks_ = 0;
+    mutable std::vector<Layer> layers_;                 // per fact
+    mutable std::vector<int> met_;                      // per precondition the look that met it
+    mutable std::vector<std::pair<int, int>> missed_;   // per operator the look, and how many of its preconditions it misses
 };
 
 }  // namespace pursue

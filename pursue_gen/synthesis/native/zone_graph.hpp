@@ -191,7 +191,17 @@ class ZoneGraph {
         return changed;
     }
 
-    // Where the move leads from z, and what time makes of it; false: nowhere.
+    // Where the move leads from z; false: nowhere.
+    static bool step(const Joint& joint, const Node<Z>& target, Z& z) {
+        spend(1);
+        if (!guard(joint, z)) return false;
+        for (int x : joint.resets) reset(z, x);
+        if (!invariant(target, z)) return false;
+        extrapolate_within(target, z);
+        return true;
+    }
+
+    // The same, and what time makes of it.
     static bool take(const Joint& joint, const Node<Z>& target, Z& z) {
         spend(1);
         if (!guard(joint, z)) return false;
