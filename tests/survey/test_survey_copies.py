@@ -29,7 +29,8 @@ def with_poses(text: str) -> str:
         x, y = 2 + 3 * (number % 6), 2 + 3 * (number // 6)
         return f"{match[1]} //[{x}, {y}, 0, 0, 0, 0, 1]{match[2] or ''}"
 
-    return re.sub(r'^(poi "\w+"(?: label "[^"]*")?)[ \t]*(?://[ \t]*(?:\[[^\n\]]*\])?([^\n]*))?$', pose, text, flags=re.M)
+    place = r'^(poi "\w+"(?: label "[^"]*")?)[ \t]*(?://[ \t]*(?:\[[^\n\]]*\])?([^\n]*))?$'
+    return re.sub(place, pose, text, flags=re.M)
 
 
 def ground(text: str) -> Ground:
