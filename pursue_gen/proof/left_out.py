@@ -33,7 +33,7 @@ def named_part(network: Network, strategy: Strategy) -> Network:
     not in the part.
     """
     names = _names(network, strategy)
-    part = network if names is None else part_of(network, *names)
+    part = network if names is None else _with_clocks_of(part_of(network, *names), network, strategy)
     return without_clocks(part, strategy.left_out_clocks)
 
 

@@ -21,7 +21,9 @@ from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
+from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solution import Solution, fastest_solution, guaranteed, solution
+from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 
@@ -78,6 +80,23 @@ def test_the_least_time_is_that_without_them() -> None:
         found.append(fastest_solution(translate(scenario), scenario_objective(scenario), DEFAULT_RULES))
     assert found[0].guarantee == found[1].guarantee
     assert found[0].strategy == found[1].strategy
+
+
+def test_a_strategy_may_compare_a_clock_that_only_moves_compare_which_it_excludes() -> None:
+    """In the ideal game one of the robots does all, and the other one, which stands still, has no edge that counts."""
+    text = """poi "a"
+        poi "b"
+        connect a and b distance 1
+        event "fetch" location b duration 3
+        event "drop" location a duration 3
+        rule "parcel" for each robot: fetch before drop
+        agent "bot1" controllable mobile 3 location a can_do fetch, drop
+        agent "bot2" controllable mobile 3 location b can_do fetch, drop
+        travel bot2 from b to a takes 13 to 39
+        reach_objective: do drop"""
+    scenario = parse(text, "slow.pur", "slow")
+    won = solved(translate(scenario), scenario_objective(scenario), IDEAL, DEFAULT)
+    assert won.guarantee is not None and won.guarantee.worst is not None and won.guarantee.worst < 17
 
 
 def test_a_plan_says_what_it_leaves_out_and_reads_back(crowd: Tuple[Scenario, Solution]) -> None:
