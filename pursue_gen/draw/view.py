@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Collection, Dict, List, Optional, Tuple
+from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
 from pursue_gen.draw.places import positions
@@ -11,6 +11,7 @@ from pursue_gen.draw.statement_edits import names_behind, parts_of, words_behind
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.wording import objective_words
 from pursue_gen.lsp.completion import HOLE
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS
@@ -25,7 +26,9 @@ _OWN_FORMS = ("POI", "CONNECT", "EVENT", "AGENT")
 
 
 def view(text: str, file: str = "scenario.pur", ground: Optional[Ground] = None) -> Dict[str, Any]:
-    """The picture's parts and the findings of a text, right or wrong; `ground`: where places stand is looked at, too.
+    """The picture's parts and the findings of a text, right or wrong, and what is wanted in sentences.
+
+    `ground`: where places stand on it is looked at, too.
 
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
     which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
@@ -44,7 +47,7 @@ def view(text: str, file: str = "scenario.pur", ground: Optional[Ground] = None)
         "findings": [_finding(document, one) for one in found[:_MOST_FINDINGS]],
         "errors": sum(one.severity is Severity.ERROR for one in found),
         "warnings": sum(one.severity is Severity.WARNING for one in found),
-        "readable": document.reading.scenario is not None,
+        "wanted": _wanted(document, found),
     }
 
 
@@ -68,6 +71,12 @@ def _findings(document: Document, ground: Optional[Ground]) -> Tuple[Diagnostic,
     if ground is None or any(one.severity is Severity.ERROR for one in found):
         return found
     return in_order((*found, *check_spots(document.scenario, ground, SPOT_DISTANCE)))
+
+
+def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:
+    """The objectives in sentences; none as long as there are errors."""
+    wrong = any(one.severity is Severity.ERROR for one in findings)
+    return [] if wrong or document.reading.scenario is None else objective_words(document.reading.scenario)
 
 
 def _finding(document: Document, finding: Diagnostic) -> Dict[str, Any]:

@@ -231,6 +231,9 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
         there.click("#choices button")
         there.wait("document.getElementById('game-lines').textContent.includes('bot arrives at b')")
         there.click("#end")
+        there.click("text.event-row")
+        there.wait("document.querySelector('#inspector h2').textContent === 'Event work'")
+        assert there.text("#wishes") == "work happens."
         there.value("document.querySelector('input[value=place]').focus()")
         there.key(" ", 32, " ")
         there.value("document.getElementById('plan').focus()")

@@ -45,7 +45,12 @@ def test_a_text_is_shown_as_its_parts() -> None:
     assert (bot["kind"], bot["mobile"], bot["can_do"]) == ("robot", "", ["work"])
     assert (nurse["kind"], nurse["mobile"], nurse["reacts_to"]) == ("person", "1.5", ["work"])
     assert [(one["kind"], one["single"]) for one in shown["others"]] == [("RULE", False), ("OBJECTIVE", True)]
-    assert shown["readable"]
+    assert shown["errors"] and shown["wanted"] == []
+
+
+def test_what_is_wanted_is_said_in_sentences() -> None:
+    shown = view(thesis_scenario("catch_the_thief").read_text(encoding="utf-8"))
+    assert shown["wanted"] == ["catch happens."]
 
 
 def test_what_is_declared_twice_is_shown_once() -> None:

@@ -17,6 +17,8 @@ export function write() {
   const some = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
   byId("counts").textContent = `${some(errors, "error")}, ${some(warnings, "warning")}`;
   byId("findings").replaceChildren(...state.view.findings.map(finding));
+  byId("wanted").hidden = !state.view.wanted.length;
+  byId("wishes").replaceChildren(...state.view.wanted.map((sentence) => html("li", {}, sentence)));
 }
 
 // The numbers of the lines, those of what is selected marked.

@@ -178,19 +178,21 @@ function namesOf(place, at, taken) {
   const events = state.view.events.filter((one) => one.location === place.name);
   const lasts = (one) => (one.duration ? ` (${one.duration})` : "");
   const rows = [
-    { words: shown(place), kind: "name", indent: 0 },
-    ...agents.map((one) => ({ words: shown(one), kind: "agent", indent: 18, mark: one.mark })),
-    ...events.map((one) => ({ words: `⚙ ${shown(one)}${lasts(one)}`, kind: "small", indent: 0 })),
+    { words: shown(place), kind: "place", thing: place, indent: 0 },
+    ...agents.map((one) => ({ words: shown(one), kind: "agent", thing: one, indent: 18 })),
+    ...events.map((one) => ({ words: `⚙ ${shown(one)}${lasts(one)}`, kind: "event", thing: one, indent: 0 })),
   ];
-  const across = Math.max(...rows.map((row) => width(row.words, row.kind === "name") + row.indent)) + 10;
+  const across = Math.max(...rows.map((row) => width(row.words, row.kind === "place") + row.indent)) + 10;
   const box = taken.beside(at.x, at.y, across, rows.length * ROW + 4, 15);
   const group = svg("g", { class: "label" });
   if (box.far) group.append(svg("line", { class: "leader", x1: at.x, y1: at.y, x2: box.x + box.w / 2, y2: box.y + box.h / 2 }));
   group.append(halo(box));
   rows.forEach((row, number) => {
     const y = box.y + 14 + number * ROW;
-    group.append(svg("text", { class: row.kind, x: box.x + 5 + row.indent, y }, row.words));
-    if (row.mark) group.append(marked(row.mark, box.x + 12, y - 4));
+    const kinds = `row ${row.kind}-row${isSelected(row.kind, row.thing.name) ? " selected" : ""}`;
+    const about = { class: kinds, "data-kind": row.kind, "data-name": row.thing.name };
+    group.append(svg("text", { ...about, x: box.x + 5 + row.indent, y }, row.words));
+    if (row.thing.mark) group.append(marked(row.thing.mark, box.x + 12, y - 4));
   });
   return group;
 }

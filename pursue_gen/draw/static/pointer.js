@@ -15,7 +15,8 @@ export function tool() {
 
 function target(event) {
   const element = document.elementFromPoint(event.clientX, event.clientY);
-  const found = element && element.closest("#plan .place, #plan .way");
+  const found = element && element.closest("#plan .place, #plan .way, #plan .row");
+  if (found && found.dataset.kind) return { kind: found.dataset.kind, key: found.dataset.name };
   return found && { kind: found.classList.contains("place") ? "place" : "way", key: found.dataset.key };
 }
 
