@@ -233,6 +233,7 @@ function refresh() { // what changes while nothing happens: times, and what is p
   if (!view) return;
   const now = present(), here = isCurrent(), over = view.verdict !== "";
   say($("now"), units(now));
+  for (const id of ["people", "others", "free"]) $(id).classList.toggle("over", over); // there is nothing to report any more
   enable($("start"), here && !over && view.status === "waiting" && view.phase === "ready");
   enable($("stop"), isConnected() && !over); // it is carried out when the observer answers
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));

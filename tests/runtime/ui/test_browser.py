@@ -561,6 +561,8 @@ def test_the_end_is_reported_and_nothing_can_be_pressed(page: Browser, show: Cal
     says(page, "#status", status)
     says(page, "#why", "So it ends.")
     assert page.value("document.title").startswith(status)
+    shown = "[...document.querySelectorAll('#people, #others, #free')].filter((e) => e.getBoundingClientRect().height)"
+    page.wait(f"{shown}.length === 0")
     enabled = "document.querySelectorAll('body > :not(dialog) button:not([aria-disabled=true])').length"
     assert page.value(enabled) == 0
     node.board.web.close()
