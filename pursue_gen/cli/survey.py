@@ -31,7 +31,8 @@ def survey(
     ),
     time_unit: float = typer.Option(1.0, metavar="SECONDS", help="A time unit of the mission (~time_unit)."),
     turning: float = typer.Option(0.5, metavar="RAD/S", help="How fast robots turn on the spot."),
-    start: float = typer.Option(2.0, metavar="SECONDS", help="What a movement takes to be planned, to start, to stop."),
+    acceleration: float = typer.Option(0.5, metavar="M/S^2", help="How fast robots start and stop."),
+    start: float = typer.Option(2.0, metavar="SECONDS", help="How long planning may take in a movement."),
     reserve: float = typer.Option(25.0, metavar="PERCENT", help="How much longer than computed a movement may take."),
     tolerance: float = typer.Option(
         0.4, metavar="METRES", help="How far from the pose a robot has arrived (~end_tolerance)."
@@ -60,12 +61,13 @@ def survey(
             raise usage_error(f"{file} is there already", "name another file, or replace it with --force")
     _check_numbers({"--radius": radius, "--clearance": clearance, "--start": start, "--reserve": reserve}, 0.0)
     _check_numbers({"--tolerance": tolerance}, 0.0)
-    _check_numbers({"--time-unit": time_unit, "--turning": turning, "--unit": unit}, 0.001)
+    _check_numbers({"--time-unit": time_unit, "--turning": turning, "--acceleration": acceleration}, 0.001)
+    _check_numbers({"--unit": unit}, 0.001)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
 
-    drive = Drive({}, time_unit, turning, start, reserve / 100, tolerance)
+    drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
     options = Options(radius, clearance, unit, ways, tuple(map(_pair, keep)), drive)
     read, copy, found = _surveyed(floor, scenario, speed, options)
     files = {} if dry_run else {target: copy}
