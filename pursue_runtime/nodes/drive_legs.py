@@ -44,6 +44,12 @@ DEFAULTS: Mapping[str, Any] = {"goals": "action", "ends": "result", "on_stop": "
 LOOKS = 0.2
 """Seconds of real time between two looks at tf."""
 
+PATIENCE = 5.0
+"""Seconds of real time for which a robot has to be connected, so that it can be called back, before it is sent."""
+
+LAST_WORDS = 0.5
+"""Seconds for which a robot that is called back stays connected: rospy sends messages in a thread of its own."""
+
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
 
@@ -68,7 +74,7 @@ class DriveLegs:
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
         self._done: List[Session] = []
-        self._next_look = 0.0  # on the monotonic clock
+        self._next_look = self._patient_until = 0.0  # on the monotonic clock
         self._count = 0  # drives in the bag
         subscribe(EVENTS, String, lambda message: self._take("on_word", message.data), self.ending, queue_size=100)
         subscribe(STATE, rospy.AnyMsg, self._on_mission, self.ending)
@@ -114,10 +120,11 @@ class DriveLegs:
             take = self._on_result, self._on_statuses, self._on_position
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
+            self._patient_until = time.monotonic() + PATIENCE
             ways = len(robot.plan.ways)
             self._log("info", f"{robot.name} drives {ways} ways {robot.plan.times} times each, from {robot.start} on")
         link.watch()
-        self._alarm.set(None, 1.0)  # the robot's node connects meanwhile
+        self._alarm.set(None, 0.0)
 
     def _act(self) -> None:
         """Looks where the robot is, and does what is due."""
@@ -125,6 +132,9 @@ class DriveLegs:
             if self._robot is None:
                 return
             _, _, session, link = self._robot
+        if not link.can_cancel and time.monotonic() < self._patient_until:
+            self._alarm.set(None, 0.1)
+            return
         if time.monotonic() >= self._next_look:
             self._next_look = time.monotonic() + LOOKS
             position = link.look()
@@ -198,7 +208,9 @@ class DriveLegs:
         """The node ends: what is under way is called back, and what was measured stays."""
         with self._lock:
             if self._robot is not None:
-                self._carry_out(self._robot[2].stop(rospy.get_time()))
+                due = self._robot[2].stop(rospy.get_time())
+                self._carry_out(due)
+                time.sleep(LAST_WORDS if due.cancel else 0.0)
                 self._finish()
 
     def _log(self, level: str, text: str) -> None:

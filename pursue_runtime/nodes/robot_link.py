@@ -181,6 +181,11 @@ class RobotLink(rospy.SubscribeListener):
         rospy.logwarn("%s is called back", self._robot)
         self._cancel.publish(self._ids(id=goal if self._settings.goals == "action" else ""))
 
+    @property
+    def can_cancel(self) -> bool:
+        """Return False while nobody is connected who would call the robot back, where that is wanted."""
+        return self._cancel is None or self._cancel.get_num_connections() > 0
+
     def close(self) -> None:
         """The robot is no more for us to command."""
         for topic in (self._act, self._move, self._cancel, self._results, self._status, *self._positions):

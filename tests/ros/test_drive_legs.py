@@ -37,6 +37,7 @@ def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_mea
             assert refused.returncode == 3 and "end its launch first" in refused.stdout, refused.stdout
         finally:
             end(mission)
+        wait_for(lambda: bool(ros.run(named, workspace, **there).returncode), log, "a state is still published")
         robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3}, bot2={"plays": ["never"]})
         try:
             drives = ros.start(command, workspace, log, **there)
