@@ -57,7 +57,10 @@ class Jobs:
         with self._lock:
             if self._state["state"] != RUNNING or "game" not in self._state or self._pipe is None:
                 raise refused("no game is under way", "press Play to begin one")
-            self._pipe.send(line)
+            try:
+                self._pipe.send(line)
+            except OSError:
+                raise refused("the game has ended", "press Play to begin another one") from None
         return self.state()
 
     def state(self) -> Dict[str, Any]:

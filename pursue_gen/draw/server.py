@@ -115,7 +115,11 @@ class _Handler(BaseHTTPRequestHandler):
         body = self._body()
         if body is None:
             return
-        answer = self.server.page.answer(path, body)
+        try:
+            answer = self.server.page.answer(path, body)
+        except Exception as problem:  # the person's text is in the page: it has to go on
+            what = f"internal error of pursue-gen: {type(problem).__name__}: {problem}"
+            answer = {"refused": what, "hint": "please report it, with the text; Undo takes a change back"}
         self._send(200, json.dumps(answer, allow_nan=False).encode("utf-8"), "application/json")
 
     def _path(self) -> Optional[str]:

@@ -122,6 +122,16 @@ def test_what_is_missing_or_not_known_is_refused_with_a_reason(served: DrawServe
     assert asked(served, "change", text="poi a\n", operation={"do": "format"})["code"] == "DRW002"
 
 
+def test_an_error_of_the_program_leaves_the_page_alive(served: DrawServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: Any) -> Any:
+        raise ZeroDivisionError("by zero")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(served.page.jobs, "state", broken)
+        assert asked(served, "job")["refused"] == "internal error of pursue-gen: ZeroDivisionError: by zero"
+    assert asked(served, "job")["state"] == "none"
+
+
 def test_a_text_is_opened_shown_and_changed(served: DrawServer) -> None:
     opened = asked(served, "open")
     assert (opened["text"], opened["file"], opened["new"]) == (TEXT, "floor.pur", False)
