@@ -10,12 +10,16 @@ from typing import Optional, Tuple
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.solution import Solution, guaranteed
+from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options, machines_for, write_workspace
 from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
+
+_STATES = 10_000
+"""Symbolic states of the checker that may tell the worst-case time: a second at most, as a rule."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ def _guarantee(won: Solution) -> Optional[Fraction]:
     if won.objective.kind is Kind.SAFETY:
         return None
     known = won.guarantee.worst if won.guarantee is not None else None
-    worst = guaranteed(won).worst if known is None else known
+    worst = worst_case(won.network, won.objective, won.strategy, won.reaction, _STATES) if known is None else known
     return won.within if worst is None else worst
 
 
