@@ -4,6 +4,7 @@ the formats."""
 from __future__ import annotations
 
 from fractions import Fraction
+from math import ceil
 from typing import Any, Dict, List, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
@@ -47,7 +48,7 @@ def render(
         "objectives": inline(_objectives(scenario)),
     }
     if options.guarantee is not None:
-        data["guarantee"] = number(options.guarantee)
+        data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
     data["statuses"] = [
         inline({"of": each.of, "label": each.label, "texts": dict(each.texts)}) for each in statuses(scenario, network)
     ]

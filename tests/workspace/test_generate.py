@@ -31,6 +31,7 @@ from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
 from pursue_runtime import bundle
 from pursue_runtime.poses import read_poses
+from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.words import MARKERS
 
 SHAPES = [
@@ -481,6 +482,8 @@ def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None
     assert "guarantee" not in settings, "nobody has found it out"
     known = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(43, 2)))
     assert yaml.safe_load(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
+    third = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(64, 3)))
+    assert read_promise(yaml.safe_load(third["src/UI/config/ui.yaml"])).most == 21.334, "a decimal, rounded up"
     several = yaml.safe_load(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
     assert [each["of"] for each in several] == [["reachObj"]] and "within 26 units" in several[0]["says"]
 
