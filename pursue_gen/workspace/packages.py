@@ -32,7 +32,7 @@ DEPENDS: Mapping[str, Tuple[str, ...]] = {
     RUNTIME: (MESSAGES, "rospy", "std_msgs", "geometry_msgs", "diagnostic_msgs", "rosgraph_msgs", "python3-yaml"),
     "controller": (RUNTIME, "actionlib_msgs", "move_base_msgs", "tf2_ros"),
     "observer": (RUNTIME, "python3-transitions"),
-    "UI": (RUNTIME, "rosbag", "python3-tornado"),
+    "UI": (RUNTIME, "rosbag", "tf2_ros", "python3-tornado"),
     "communication_manager": (RUNTIME, "python3-cryptography", "python3-tornado"),
     "pursue_reader": (RUNTIME, "python3-cryptography"),
     "bringup": ("roslaunch",),
