@@ -76,6 +76,17 @@ def process_of(uri: str, node: str) -> int:
         return int(slave.getPid("/test")[2])  # type: ignore[index,call-overload]
 
 
+@contextlib.contextmanager
+def without_observer(uri: str, launched: "subprocess.Popen[bytes]") -> Iterator[None]:
+    """The observer is killed, and roslaunch does not start it again before the end."""
+    os.kill(launched.pid, signal.SIGSTOP)
+    try:
+        os.kill(process_of(uri, "observer"), signal.SIGKILL)
+        yield
+    finally:
+        os.kill(launched.pid, signal.SIGCONT)
+
+
 def is_drawn(png: bytes) -> bool:
     """True for a PNG that is not of one colour."""
     parts = re.findall(rb"IDAT", png)
@@ -132,7 +143,8 @@ def test_a_mission_is_started_watched_and_won_on_a_page(ros: Ros, built: Build, 
         assert done.returncode in (0, 1) and "arrives at" in done.stdout, f"{command}: {done.stderr}"
         page.click("#another")
         page.wait("document.getElementById('status').textContent === 'ready'")
-        assert page.text("#missions-count") == "Missions played here (1)" and "won" in page.text("#missions-list")
+        page.wait("document.getElementById('missions-count').textContent === 'Missions played here (1)'")
+        assert "won" in page.text("#missions-list")
         page.click("#start")
         page.wait("document.getElementById('status').textContent === 'running'")
         page.click("#stop")
@@ -162,8 +174,9 @@ def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros
         page.wait("document.getElementById('log').textContent.includes('thief sets off from c to b')")
         assert page.text("#log").count("thief sets off") == 1, "the press before the start did nothing"
         page.wait("document.getElementById('agents').textContent.includes('from c to b')")
-        os.kill(process_of(uri, "observer"), signal.SIGKILL)
-        page.wait("document.getElementById('link').textContent.includes('the observer does not answer; this is as of')")
+        with without_observer(uri, launched):
+            says = "the observer does not answer; this is as of"
+            page.wait(f"document.getElementById('link').textContent.includes({says!r})")
         page.wait("document.getElementById('log').textContent.includes('the observer answers again')")
         page.wait("document.getElementById('link').textContent === 'connected'")
         assert page.text("#status") == "running" and page.text("#log").count("thief sets off") == 1
@@ -171,8 +184,11 @@ def test_an_agent_that_nobody_controls_is_moved_and_the_mission_stopped(ros: Ros
         page.wait("document.getElementById('sure').open")
         page.click("#stop-no")
         assert page.text("#status") == "running"
-        page.click("#stop")
-        page.click("#stop-yes")
+        with without_observer(uri, launched):
+            page.wait("document.getElementById('link').textContent.includes('the observer does not answer')")
+            page.click("#stop")
+            page.click("#stop-yes")
+            page.wait("document.getElementById('remark').textContent.includes('is stopped as soon as it does')")
         page.wait("document.getElementById('status').textContent === 'stopped'")
         page.wait("document.getElementById('link').dataset.is === 'away'")
         launched.wait(PATIENCE)
