@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any, List, Tuple
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
@@ -84,6 +86,26 @@ def test_done_pressed_on_a_page_that_shows_the_action_before_ends_nothing() -> N
     play.hear("screwDONE")
     play.hear(f"nurse:screw@{play.state.seq}")
     assert play.press("done", "screwDONE", shown) == ("", "screwDONE has happened meanwhile: nothing was sent.")
+
+
+@given(st.lists(st.tuples(st.sampled_from(["begin", "press", "arrive"]), st.integers(0, 6)), max_size=30))
+def test_a_press_of_done_ends_only_what_its_page_has_shown(steps: List[Tuple[str, int]]) -> None:
+    """Pages show states of before, and links bring words late and in any order."""
+    play = Play()
+    sent: List[Tuple[str, int]] = []  # words on their way, and the state that the page showed
+    begun = 0  # the state in which the present action has begun
+    for what, number in steps:
+        seq = play.state.seq
+        if what == "begin" and play.location("nurse") == "s":
+            play.hear(f"nurse:screw@{seq}")
+            begun = play.state.seq
+        elif what == "press":
+            shown = max(0, seq - number)
+            sent += [(word, shown) for word, _ in [play.press("done", "screwDONE", shown)] if word]
+        elif what == "arrive" and sent:
+            word, shown = sent.pop(number % len(sent))
+            play.hear(word)
+            assert play.state.seq == seq or shown >= begun, "this action was not on the page"
 
 
 def test_a_button_pressed_in_two_tabs_acts_once() -> None:
