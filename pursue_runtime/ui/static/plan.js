@@ -71,7 +71,8 @@ function drawPlaces(picture, names, under) { // where two would cover each other
   for (const name of names) {
     const point = map.points.get(name), lead = draw("line", under, { class: "lead" });
     const group = labelled(picture, "poi", shown(name), 2 * POI, 14), { half, tall } = size(group);
-    const box = arranged(point, half, tall, [{ x: 0, y: 0 }, ...around(half, tall, 2 * POI)], map.places, 0).box;
+    const offsets = [{ x: 0, y: 0 }, ...around(half, tall, 2 * POI)];
+    const box = arranged(point, half, tall, offsets, map.places, 0).box || { ...point, half, tall };
     map.places.push(box);
     put(group, box);
     join(lead, point, box);
@@ -158,9 +159,9 @@ function pointOf(agent, now) { // on the picture: where it is known to be, else 
   return { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), away: POI + 4 };
 }
 
-function showDot(mark, point, to) { // the point itself, with its heading, and what is left of its way
+function showDot(mark, point, to, named) { // the point itself, with its heading, and what is left of its way
   const round = "M4 0A4 4 0 1 1 -4 0A4 4 0 1 1 4 0Z", arrowed = "M10 0L-6 7L-3 0L-6 -7Z", headed = point.yaw !== undefined;
-  mark.dot.style.display = to || headed ? "" : "none";
+  mark.dot.style.display = to || headed || !named ? "" : "none";
   mark.dot.setAttribute("d", headed ? arrowed : round);
   const turn = headed ? ` rotate(${(-point.yaw * 180 / Math.PI).toFixed(1)})` : "";
   mark.dot.setAttribute("transform", `translate(${point.x.toFixed(1)} ${point.y.toFixed(1)})${turn}`);
@@ -191,7 +192,7 @@ function arranged(point, half, tall, offsets, taken, last) { // the first place 
   }));
   const free = (box) => !taken.some((other) => covers(box, other));
   const choice = free(boxes[last]) ? last : boxes.findIndex(free);
-  return choice < 0 ? { box: boxes[last], choice: last } : { box: boxes[choice], choice };
+  return choice < 0 ? { box: null, choice: last } : { box: boxes[choice], choice };
 }
 
 // What moves ---------------------------------------------------------------------------------------------------------
@@ -220,12 +221,17 @@ function animate(moment) {
     mark.group.classList.toggle("lost", agent.lost);
     if (!point) continue;
     const target = settle(mark, point, taken);
+    showDot(mark, point, to, target !== null);
+    if (target === null) { // there is no room for its name; the list has it
+      mark.group.style.display = mark.lead.style.display = "none";
+      mark.x = null;
+      continue;
+    }
     const fast = mark.x === null || calm.matches;
     mark.x = fast ? target.x : mark.x + pace * (target.x - mark.x);
     mark.y = fast ? target.y : mark.y + pace * (target.y - mark.y);
     put(mark.group, mark);
     join(mark.lead, point, mark);
-    showDot(mark, point, to);
     const glides = to && point.yaw === undefined && share(agent, now) < 1 && view.live;
     unsettled = unsettled || Math.abs(mark.x - target.x) + Math.abs(mark.y - target.y) > 0.5 || glides;
   }
@@ -236,9 +242,9 @@ function animate(moment) {
   }
 }
 
-function settle(mark, point, taken) { // where a label comes to rest; what it takes is free no more
+function settle(mark, point, taken) { // where a label comes to rest, null where there is no room; what it takes is free no more
   const { box, choice } = arranged(point, mark.half, mark.tall, around(mark.half, mark.tall, point.away), taken, mark.choice);
   mark.choice = choice;
-  taken.push(box);
+  if (box) taken.push(box);
   return box;
 }

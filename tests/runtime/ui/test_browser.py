@@ -439,6 +439,21 @@ def test_labels_never_cover_each_other(page: Browser, show: Callable[..., Node])
         page.wait(f"{COVERED}.length === 0")
 
 
+def test_where_there_is_no_room_for_a_label_its_agent_is_a_point(page: Browser, show: Callable[..., Node]) -> None:
+    crowd = [mover(f"robot_number_{k}_with_a_name", "robot", 9) for k in range(40)]
+    node = show(*crowd)
+    page.value("Object.defineProperty(calm, 'matches', {value: true}); true")
+    page.screen(360, 740)
+    drawn(page)
+    node.show(2, 10.0, clock=3.0, **{each["name"]: "going_a_to_b" for each in crowd[::2]})
+    page.wait("view.seq === 2")
+    page.wait(f"{COVERED}.length === 0")
+    seen = "(e) => getComputedStyle(e).display !== 'none'"
+    labels = page.value(f"[...document.querySelectorAll('#map .mark')].filter({seen}).length")
+    points = page.value(f"[...document.querySelectorAll('#map .dot')].filter({seen}).length")
+    assert 2 < labels < 40 <= labels + points
+
+
 def test_every_text_can_be_read_in_light_and_dark_colours(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody(), ends=True)
     going = {"bot": "going_a_to_b", "thief": "going_a_to_b", "nurse": "doing_screw_in_s"}
