@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
-from typing import Optional
+from functools import lru_cache
+from typing import Optional, Tuple
 
 _SIGNATURE = 8  # bytes
 _CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}  # channels by type of colour: grey, RGB, both with opacity
+
+_NOT_ZERO = re.compile(rb"[^\0]")
 
 
 def greys(png: bytes) -> Optional[bytes]:
@@ -49,6 +53,8 @@ def _chunks(png: bytes, name: bytes) -> bytes:
 def _mean(row: bytes, channels: int) -> bytes:
     """The greys of a row of colours; opacity does not count."""
     colours = [row[channel::channels] for channel in range(1 if channels == 2 else 3)]
+    if all(colour == colours[0] for colour in colours):
+        return colours[0]
     return bytes(sum(one) // len(one) for one in zip(*colours))
 
 
@@ -56,18 +62,63 @@ def _unfiltered(kind: int, row: bytes, above: bytes, step: int) -> bytes:
     """A row as it was before it was filtered (PNG specification, section 9)."""
     if kind == 0:
         return row
+    if kind == 1:
+        return _running(row, step)
     if kind == 2:
-        return bytes((one + up) & 255 for one, up in zip(row, above))
+        return _sum(int.from_bytes(row, "little"), int.from_bytes(above, "little"), len(row)).to_bytes(
+            len(row), "little"
+        )
+    if kind == 4:
+        return _unpredicted(row, above, step)
     found = bytearray(row)
     for k, up in enumerate(above):
         left = found[k - step] if k >= step else 0
-        corner = above[k - step] if k >= step else 0
-        guess = {1: left, 3: (left + up) // 2}.get(kind)
-        found[k] = (found[k] + (_paeth(left, up, corner) if guess is None else guess)) & 255
+        found[k] = (found[k] + (left + up) // 2) & 255
     return bytes(found)
+
+
+def _unpredicted(row: bytes, above: bytes, step: int) -> bytes:
+    """A row of which each byte was predicted from its neighbours (Paeth)."""
+    found = bytearray(row)
+    k = 0
+    while k < len(row):
+        if not row[k] and found[max(0, k - step) : k] == above[max(0, k - step) : k]:
+            other = _NOT_ZERO.search(row, k)  # as the row above, up to there
+            end = len(row) if other is None else other.start()
+            found[k:end] = above[k:end]
+            k = end
+            continue
+        left, corner = (found[k - step], above[k - step]) if k >= step else (0, 0)
+        found[k] = (row[k] + _paeth(left, above[k], corner)) & 255
+        k += 1
+    return bytes(found)
+
+
+def _running(row: bytes, step: int) -> bytes:
+    """The sum of each byte with all bytes of its channel before it."""
+    size = len(row)
+    found, shift, whole = int.from_bytes(row, "little"), step, (1 << 8 * size) - 1
+    while shift < size:
+        found = _sum(found, found << 8 * shift & whole, size)
+        shift *= 2
+    return found.to_bytes(size, "little")
+
+
+def _sum(a: int, b: int, size: int) -> int:
+    """The sum of so many bytes each, without what is carried from one to the next."""
+    low, high = _masks(size)
+    return (a & low) + (b & low) ^ (a ^ b) & high
+
+
+@lru_cache(maxsize=8)
+def _masks(size: int) -> Tuple[int, int]:
+    """Seven bits, and the eighth one, of so many bytes."""
+    return int.from_bytes(b"\x7f" * size, "little"), int.from_bytes(b"\x80" * size, "little")
 
 
 def _paeth(left: int, up: int, corner: int) -> int:
     """The neighbour that is nearest to left + up - corner; the first of those that are equally near."""
-    target = left + up - corner
-    return min((left, up, corner), key=lambda one: abs(target - one))
+    by_left, by_up, by_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+    if by_left <= by_up and by_left <= by_corner:
+        return left
+    return up if by_up <= by_corner else corner
