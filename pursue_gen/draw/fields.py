@@ -85,6 +85,14 @@ def metres_of(values: Values, field: str) -> float:
     return value
 
 
+def positive_of(values: Values, field: str, most: float) -> float:
+    """A number of at least 0.001."""
+    value = _float(values, field)
+    if not 0.001 <= value <= most:
+        raise refused(f"{field} is {value:g}", f"expected a number from 0.001 to {most:g}")
+    return value
+
+
 def degrees_of(values: Values, field: str) -> float:
     """An angle."""
     return math.fmod(_float(values, field), 360)

@@ -1,4 +1,4 @@
-"""Solving and playing beside the page: one text at a time, in a process of its own that can be ended at any moment."""
+"""Solving, playing and measuring beside the page: one text at a time, in a process that can be ended at any moment."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import Any, Callable, Dict, Optional
 from pursue_gen.draw.fields import refused
 from pursue_gen.draw.play_work import play
 from pursue_gen.draw.solve_work import UNDECIDED, Work, solve
+from pursue_gen.draw.survey_work import SurveyWork, survey
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
 _DIED = "the process has ended without an answer; perhaps the machine has too little memory"
@@ -42,14 +43,26 @@ class Jobs:
     def solve(self, text: str) -> Dict[str, Any]:
         """Solves a text, instead of what is under way; the state."""
         with self._lock:
-            self._launch(solve, text)
+            self._launch(solve, self._work(text))
             self._report = ""
         return self.state()
 
     def play(self, text: str) -> Dict[str, Any]:
         """Begins a game of a text, instead of what is under way; the state."""
         with self._lock:
-            self._launch(play, text)
+            self._launch(play, self._work(text))
+        return self.state()
+
+    def survey(self, text: str, radius: float, speed: Optional[float], ways: bool) -> Dict[str, Any]:
+        """Measures a text's ways on the map, instead of what is under way; the state. As `SurveyWork`.
+
+        Raises PursueError where there is no map.
+        """
+        if self._floor is None:
+            raise refused("there is no map to measure on", "pursue-gen draw map.yaml my_floor.pur")
+        given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, radius, speed, ways)
+        with self._lock:
+            self._launch(survey, given)
         return self.state()
 
     def say(self, line: str) -> Dict[str, Any]:
@@ -84,14 +97,16 @@ class Jobs:
             self._process.join()
             self._process = None
 
-    def _launch(self, target: Callable[[Work, Connection], None], text: str) -> None:
+    def _work(self, text: str) -> Work:
+        return Work(text, self._file, self._floor, self._seconds, self._memory)
+
+    def _launch(self, target: Callable[[Any, Connection], None], given: Work) -> None:
         self.end()
         self._number += 1
         self._state, self._start = {"state": RUNNING}, time.monotonic()
         context = multiprocessing.get_context("spawn")
         resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
         self._pipe, theirs = context.Pipe()
-        given = Work(text, self._file, self._floor, self._seconds, self._memory)
         self._process = context.Process(target=target, args=(given, theirs), daemon=True)
         # Ctrl-C is for the server; the process has that blocked from its birth.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

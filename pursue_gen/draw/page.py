@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Optional
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.draw import storage
-from pursue_gen.draw.fields import text_of
+from pursue_gen.draw import fields, storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.operations import ANYBODY, change
 from pursue_gen.draw.view import forms, view
@@ -47,7 +46,8 @@ class DrawPage:
             "save": self._save,
             "solve": lambda values: self.jobs.solve(_text(values)),
             "play": lambda values: self.jobs.play(_text(values)),
-            "say": lambda values: self.jobs.say(text_of(values, "line")),
+            "survey": self._survey,
+            "say": lambda values: self.jobs.say(fields.text_of(values, "line")),
             "job": lambda values: self.jobs.state(),
             "cancel": lambda values: self.jobs.cancel(),
         }
@@ -78,6 +78,12 @@ class DrawPage:
         """The text after an operation, and how it looks."""
         done = change(_text(values), values.get("operation"), self.file.name)
         return {"text": done.text, "statement": done.statement, "view": self._view(done.text)}
+
+    def _survey(self, values: Mapping[str, Any]) -> Answer:
+        """Begins to measure the ways on the map: {radius, speed (None: no travel times), ways}."""
+        radius = fields.positive_of(values, "radius", 10)
+        speed = None if values.get("speed") is None else fields.positive_of(values, "speed", 100)
+        return self.jobs.survey(_text(values), radius, speed, fields.is_set(values, "ways"))
 
     def _save(self, values: Mapping[str, Any]) -> Answer:
         """Saves the text; with `overwrite` also where the file is not of the version any more that the page had."""

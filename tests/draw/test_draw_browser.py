@@ -7,6 +7,7 @@ import sys
 import threading
 from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Iterator, List, Optional
 
@@ -205,6 +206,12 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         made = text(there)
         assert made == format_text(made, "night_shift.pur")
         assert without_places(parse(made, "night_shift.pur")) == without_places(expected)
+        if find_spec("scipy"):
+            there.click("#measure")
+            there.wait("document.getElementById('text').value.includes('// survey: ')")
+            assert "pharmacy - corridor" in there.text("#measured")
+            there.click("#undo")
+            there.wait(f"document.getElementById('text').value === {made!r}")
         there.click("#solve")
         there.wait("document.getElementById('outcome').dataset.verdict === 'won'")
         assert "Time to the goal: at most 34.65 time units" in there.text("#sentences")

@@ -18,6 +18,9 @@ from pursue_gen.draw import storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage, file_for
 from pursue_gen.draw.server import MOST_BYTES, DrawServer
+from pursue_gen.drawing.ground import read_ground
+from pursue_gen.language.formatter import format_text
+from tests.conftest import ROOT
 from tests.large_scenarios import many_walkers
 from tests.waiting import PATIENCE, until
 
@@ -262,6 +265,33 @@ def test_a_text_is_solved_beside_the_page_and_can_be_given_up(served: DrawServer
     asked(served, "solve", text=WON.replace("can_do work", ""))
     done = until(lambda: asked(served, "job")["state"] == "ended" and asked(served, "job"), "the end")
     assert done["verdict"] == "errors" and "nobody can do work" in done["lines"][0]
+
+
+def test_ways_are_measured_on_the_map_as_survey_does(tmp_path: Path) -> None:
+    pytest.importorskip("scipy", reason="scipy is not installed")
+    rooms = ROOT / "docs" / "survey" / "three_rooms.pur"
+    text = rooms.read_text(encoding="utf-8")
+    jobs = Jobs(rooms.name, rooms.with_suffix(".yaml"), 600, 4096)
+    page = DrawPage(tmp_path / rooms.name, rooms.with_suffix(".yaml"), jobs)
+    settings = {"radius": 0.3, "speed": 0.4, "ways": True}
+    page.answer("survey", {"text": text, **settings})
+    done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
+    from pursue_gen.survey.make import Options, read_scenario, surveyed
+    from pursue_gen.survey.times import Drive
+
+    ground = read_ground(rooms.with_suffix(".yaml"), whole=True)
+    options = Options(ways=True, drive=Drive({"bot1": 0.4, "bot2": 0.4}))
+    copy = surveyed(read_scenario(text, rooms.name), ground, "three_rooms.yaml", options).text
+    assert done["surveyed"] == format_text(copy, "copy.pur")
+    assert any(line.startswith("hall - shelf") for line in done["lines"])
+    page.answer("survey", {"text": "poi", **settings})
+    done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
+    assert done["verdict"] == "errors" and "surveyed" not in done
+    assert page.answer("survey", {"text": text, **settings, "radius": -1})["code"] == "DRW001"
+
+
+def test_without_a_map_nothing_is_measured(served: DrawServer) -> None:
+    assert asked(served, "survey", text=WON, radius=0.3, speed=None, ways=True)["code"] == "DRW001"
 
 
 def test_a_game_is_played_beside_the_page_and_writes_nothing(served: DrawServer, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import { byId } from "./elements.js";
 import * as game from "./game.js";
 import { inspect } from "./inspector.js";
 import { list } from "./lists.js";
+import { measure } from "./measure.js";
 import { draw } from "./plan.js";
 import * as pointer from "./pointer.js";
 import { ask, change, onShow, redo, refusal, say, selected, show, state, undo } from "./state.js";
@@ -68,6 +69,8 @@ async function begin() {
   press("solve", solve);
   press("play", game.play);
   press("cancel", cancel);
+  press("measure", measure);
+  byId("measuring").hidden = opened.floor === null;
   press("format", () => change({ do: "format" }));
   press("overwrite", () => { byId("changed").close(); save(true); });
   press("keep", () => byId("changed").close());

@@ -27,6 +27,10 @@ export function draw() {
   const ways = state.view.ways.filter((way) => at.has(way.a) && at.has(way.b));
   const taken = new Taken(ways.map((way) => ({ a: at.get(way.a), b: at.get(way.b) })));
   for (const point of at.values()) taken.add({ x: point.x - 13, y: point.y - 13, w: 26, h: 26 });
+  for (const spot of state.view.places.flatMap((one) => one.spots)) {
+    const point = toScreen(spot.x, spot.y);
+    taken.add({ x: point.x - 7, y: point.y - 7, w: 14, h: 14 });
+  }
   const names = state.view.places.map((place) => namesOf(place, at.get(place.name), taken));
   const lengths = ways.map((way) => lengthOf(way, ends(way, at), taken));
   plan.replaceChildren(

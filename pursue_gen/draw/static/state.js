@@ -131,6 +131,15 @@ export async function look() {
   show();
 }
 
+// Another text in the place of the present one.
+export function replace(text) {
+  if (text === state.text) return;
+  remember();
+  typed = 0;
+  state.text = text;
+  look();
+}
+
 function turnBack(from, to) {
   if (!from.length) return;
   to.push(state.text);

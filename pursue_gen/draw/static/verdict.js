@@ -24,7 +24,9 @@ export async function solve() {
   byId("report").hidden = true;
   byId("report").removeAttribute("src");
   outdated();
-  report(await ask("solve", { text: solved }));
+  const answer = await ask("solve", { text: solved });
+  mine = answer.job;
+  report(answer);
   byId("verdict").scrollIntoView({ block: "nearest" });
 }
 
@@ -32,10 +34,16 @@ export async function cancel() {
   report(await ask("cancel"));
 }
 
+// Something else was begun meanwhile: what is known by then stays.
+function giveUp() {
+  const outcome = byId("outcome");
+  byId("cancel").hidden = true;
+  outcome.textContent = OUTCOMES[outcome.dataset.verdict] || "Cancelled.";
+}
+
 function report(answer) {
   if (answer.refused) return say(refusal(answer), true);
-  if (answer.game || answer.job < mine) return;
-  mine = answer.job;
+  if (answer.job !== mine) return giveUp();
   const running = answer.state === "running";
   byId("cancel").hidden = !running;
   const going = running ? `${answer.progress || "solving"} … ${answer.seconds} s` : "";

@@ -1,0 +1,56 @@
+"""What the process beside the page does to measure a text's ways on the map, as `pursue-gen survey` does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.draw.solve_work import ERRORS, Work, sentences, working
+from pursue_gen.drawing.ground import read_ground
+from pursue_gen.language.formatter import format_text
+
+SURVEYED = "surveyed"
+
+
+@dataclass(frozen=True)
+class SurveyWork(Work):
+    """A text whose ways are to be measured, on the map `floor`.
+
+    `radius`: of the largest robot, in metres; `speed`: metres per second of all robots, None: no travel times; `ways`:
+    those that are missing are added.
+    """
+
+    radius: float = 0.3
+    speed: Optional[float] = None
+    ways: bool = False
+
+
+def survey(given: SurveyWork, pipe: Connection) -> None:
+    """Sends {"verdict": "surveyed", "lines": …, "surveyed": the text with what was measured}, or why not."""
+    with working(pipe):
+        pipe.send({"progress": "measuring"})
+        try:
+            assert given.floor is not None, "the page offers this with a map only"
+            pipe.send(_measured(given, given.floor))
+        except ImportError as problem:
+            what = f"this needs the Python packages numpy and scipy, which are not installed here ({problem})"
+            pipe.send({"verdict": ERRORS, "lines": [f"{what}: pip install 'pursue-gen[survey]'"]})
+        except PursueError as problem:
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem)})
+
+
+def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
+    from pursue_gen.survey.make import Options, read_scenario, surveyed  # needs numpy and scipy
+    from pursue_gen.survey.texts import table
+    from pursue_gen.survey.times import Drive
+
+    scenario = read_scenario(given.text, given.file)
+    robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
+    speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
+    options = Options(radius=given.radius, ways=given.ways, drive=Drive(speeds))
+    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
+    lines = [*table(found), *(f"{one.severity.value} {one.code}: {one.message}" for one in found.findings)]
+    return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file)}
