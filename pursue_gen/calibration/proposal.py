@@ -24,8 +24,8 @@ from pursue_gen.diagnostics import counted
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.rewriting import Edit, Rewriting, edited
 from pursue_gen.language.scenario import Scenario, Window
-from pursue_gen.lsp.new_numbers import Duration, NewNumber, TravelTime, with_numbers
 from pursue_gen.replay.record import MissionRecord
 
 BY = "calibrate"
@@ -103,14 +103,6 @@ class Finding:
             text += f", {len(self.far)} far out"
         return text if self.basis in (COUNTED, FITTED) else f"{text}, too few for more than a guess"
 
-    @property
-    def number(self) -> NewNumber:
-        """The proposal as a number for the text."""
-        low, high = self.proposed
-        if isinstance(self.what, Way):
-            return TravelTime(self.what.agent, self.what.a, self.what.b, low, high, self.source)
-        return Duration(self.what.event, low, high, self.source)
-
 
 @dataclass(frozen=True)
 class Proposal:
@@ -151,7 +143,21 @@ class Proposal:
 
     def text(self) -> str:
         """The scenario's text with the proposed windows."""
-        return with_numbers(self.scenario.text, self.scenario.file, [each.number for each in self.changes], BY)
+        rewriting = Rewriting(self.scenario)
+        travels = {(travel.agent.name, *travel.way): travel for travel in self.scenario.travels}
+        events = {event.name: event for event in self.scenario.events}
+        edits: List[Edit] = []
+        added: List[str] = []
+        for each in self.changes:
+            what, (low, high), remark = each.what, each.proposed, f"{BY}: {each.source}"
+            if isinstance(what, Work):
+                edits += rewriting.duration(events[what.event], low, high, remark)
+            elif (what.agent, what.a, what.b) in travels:
+                edits += rewriting.travel(travels[what.agent, what.a, what.b], low, high, remark)
+            else:
+                takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
+                added.append(f"travel {what.agent} from {what.a} to {what.b} {takes} // {remark}")
+        return edited(self.scenario.text, [*edits, *rewriting.statements(("travel", "agent"), added)])
 
     def checked(self) -> Scenario:
         """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""

@@ -47,7 +47,7 @@ def test_the_proposal_is_written_into_a_copy_with_where_it_comes_from(folder: Pa
     done = called(folder / "floor.pur", folder / "drives.bag", "-o", copy)
     assert done.status == 0, done.err
     text = copy.read_text(encoding="utf-8")
-    assert "travel bot from desk to shelf takes 3.8 to 6.8 // paced; calibrate: 18 drives, 4.6 to 5.7\n" in text
+    assert "travel bot from desk to shelf takes 3.8 to 6.8 /* calibrate: 18 drives, 4.6 to 5.7 */ // paced\n" in text
     assert "travel bot from shelf to desk takes 2.8 to 13.1 // calibrate: 3 drives, 5.7 to 6.5, too few" in text
     assert text.startswith("// the floor of the tests\n")
     assert (folder / "floor.pur").read_text(encoding="utf-8") == FLOOR
