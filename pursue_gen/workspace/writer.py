@@ -64,7 +64,7 @@ def manifest_of(files: Mapping[str, bytes], before: Optional[Known] = None) -> b
     facts: Dict[str, Dict[str, Any]] = {"files": {path: digest_of(content) for path, content in files.items()}}
     if before:
         facts["before"] = {path: sorted(digests) for path, digests in before.items()}
-    return (json.dumps(facts, indent=1, sort_keys=True) + "\n").encode()
+    return (json.dumps(facts, sort_keys=True) + "\n").encode()
 
 
 def _is_new(parent: Folder, name: str) -> bool:

@@ -62,6 +62,12 @@ def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
         return files(name, controllers, reach_obj)
 
 
+def test_what_is_special_to_a_mission_is_small() -> None:
+    apart = [*(f"src/{name}/" for name in SHARED), "TGA.xml", "TCTL.q", "UPPAAL_plan.txt", r".*/test/", r".*\.svg"]
+    special = {path: text for path, text in files("thesis/catch_the_thief").items() if not re.match("|".join(apart), path)}
+    assert sum(text.count(b"\n") for text in special.values()) <= 2500
+
+
 def test_one_package_for_each_node() -> None:
     common = {"observer", "UI", "catch_the_thief_bringup", *SHARED, *RECEIVING}
     robots = {"controller_polBot1", "controller_polBot2"}
