@@ -25,6 +25,7 @@ os.environ.pop("PURSUE_DEBUG", None)
 settings.register_profile(
     "project",
     deadline=None,
+    max_examples=75,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
     derandomize=True,
 )

@@ -279,9 +279,14 @@ def _common(ros: Ros, workspace: Path) -> Path:
     return common
 
 
-def judged(ros: Ros, workspace: Path) -> List[str]:
-    """Runs the workspace's own launch tests, through catkin_make where it was built; the results that
-    catkin_test_results found, all of them good."""
+ALL = slice(None)
+BEGIN, END = slice(0, 2), slice(2, 4)
+"""Of the launch tests among others: those where they do nothing and something at random; at random and by a trace."""
+
+
+def judged(ros: Ros, workspace: Path, which: slice = ALL) -> List[str]:
+    """Runs the workspace's own launch tests, through catkin_make where it was built, else `which` of them; the results
+    that catkin_test_results found, all of them good."""
     results = workspace / "build" / "test_results"
     apart = any((workspace / "src").glob("*/CATKIN_IGNORE"))  # its common packages are in a workspace of their own
     setup = "source devel/setup.bash; " if apart else ""
@@ -290,7 +295,7 @@ def judged(ros: Ros, workspace: Path) -> List[str]:
     else:
         bringup = next((workspace / "src").glob("*_bringup"))
         tests = re.findall(r"add_rostest\(test/(\S+) ARGS ([^)]*)\)", (bringup / "CMakeLists.txt").read_text())
-        played = "; ".join(f"rostest {bringup.name} {file} {arguments}" for file, arguments in tests)
+        played = "; ".join(f"rostest {bringup.name} {file} {arguments}" for file, arguments in tests[which])
         done = ros.run(setup + played, workspace, 1800, ROS_TEST_RESULTS_DIR=str(results))
     verdict = ros.run(f"catkin_test_results --verbose --all {results}", workspace)
     assert verdict.returncode == 0, f"{verdict.stdout}\n{done.stdout[-20000:]}"
