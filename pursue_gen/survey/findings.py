@@ -12,6 +12,7 @@ from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.survey.copying import Movement
 from pursue_gen.survey.grid import Grid
 from pursue_gen.survey.plan import Plan
+from pursue_gen.survey.spots import Ways, exits_of, shut_in
 
 _SOME = 8  # places that a message lists
 
@@ -70,6 +71,25 @@ def without_room(scenario: Scenario, spots: Mapping[str, Sequence[Tuple[str, Opt
         if names:
             hint = "move the place to where there is more room, or keep robots apart: objective: … never_with … at …"
             yield warning("MAP007", f"there is no room for {_listed(names)} beside {place}", spans[place], hint)
+
+
+def shut_in_places(scenario: Scenario, grid: Grid, ways: Ways, radius: float, room: float) -> Iterator[Diagnostic]:
+    """Robots that cannot leave a place while the others stand there; `scenario` has all spots."""
+    present = robots_at(scenario)
+    for poi in scenario.pois:
+        own = {spot.robot.name: spot.pose for spot in poi.spots}
+        standing = {robot: own.get(robot, poi.pose) for robot in present[poi.name]}
+        points = {robot: (pose.x, pose.y) for robot, pose in standing.items() if pose is not None}
+        points = {robot: point for robot, point in points.items() if grid.is_free(grid.cell(*point))}
+        if poi.pose is None or len(set(points.values())) < 2:
+            continue
+        exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
+        names = [list(points)[number] for number in shut_in(grid, list(points.values()), exits, 2 * radius)]
+        if names:
+            hint = "move the place out of the dead end, or keep robots apart: objective: … never_with … at …"
+            yield warning(
+                "MAP009", f"{_listed(names)} cannot leave {poi.name} while all others stand there", poi.span, hint
+            )
 
 
 def other_unit(

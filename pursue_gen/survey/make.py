@@ -17,10 +17,10 @@ from pursue_gen.language.similar import closest
 from pursue_gen.survey import findings as found_wrong
 from pursue_gen.survey.copying import SURVEY, Movement, others_windows, rounded, with_ways, written
 from pursue_gen.survey.graph import graph_of
-from pursue_gen.survey.grid import Grid, Point, grid_of
+from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
-from pursue_gen.survey.spots import Spots, proposed_spots
+from pursue_gen.survey.spots import Spots, Ways, proposed_spots
 from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.map_check import check_spots
 
@@ -103,7 +103,7 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     missing = plan.own_ways([(way.a, way.b) for way in scenario.connections])
     new = missing if options.ways or not scenario.connections else []
     with_new = _with_ways(scenario, new, plan, map_name, options)
-    spots = proposed_spots(with_new, grid, plan.places, options.room, _lines(with_new, plan))
+    spots = proposed_spots(with_new, grid, plan.places, options.room, _lines(with_new, plan), 2 * options.radius)
     placed = _with_spots(replace(scenario, connections=with_new.connections), spots)
     work = _Work(with_new, placed, plan, options, map_name)
     ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
@@ -114,6 +114,7 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
         *found_wrong.too_near(scenario, plan),
         *found_wrong.crossing(scenario, plan),
         *found_wrong.without_room(scenario, spots),
+        *found_wrong.shut_in_places(placed, grid, _lines(with_new, plan), options.radius, options.room),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
         *check_spots(placed, ground, 0),
     ]
@@ -182,7 +183,7 @@ def _measured(metres: float, map_name: str, unit: float) -> str:
     return f"{SURVEY}: {metres:.2f} m on {map_name}{scale}"
 
 
-def _lines(scenario: Scenario, plan: Plan) -> Dict[Pair, Sequence[Point]]:
+def _lines(scenario: Scenario, plan: Plan) -> Ways:
     """The paths of the scenario's ways."""
     pairs = [(way.a, way.b) for way in scenario.connections if {way.a, way.b} <= set(plan.places)]
     return {pair: route.bends for pair in pairs for route in [plan.route(*pair)] if route is not None}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
@@ -26,19 +27,32 @@ _NEARLY = 0.25
 _LEAVING = 1.5
 """A spot may be in the way of robots that come to its place or leave it, up to so many times the room of a robot."""
 
+_AROUND = 1.0
+"""Metres around spots and exits in which a robot looks for a path from one to the other."""
+_TRIES = 200
+"""So many points are looked at for one from which nobody is shut in."""
+
 Spots = Dict[str, List[Tuple[str, Optional[Pose]]]]
 """place → robots without a pose of their own there, with the spot that is proposed; None: there is no room."""
+Ways = Mapping[Tuple[str, str], Sequence[Point]]
+"""The two places of a way → the bends of its path, from the first to the second (metres)."""
 
 
 def proposed_spots(
-    scenario: Scenario, grid: Grid, places: Iterable[str], room: float, ways: Mapping[Tuple[str, str], Sequence[Point]]
+    scenario: Scenario,
+    grid: Grid,
+    places: Iterable[str],
+    room: float,
+    ways: Ways,
+    body: float = 0.0,
 ) -> Spots:
     """Spots for all robots that share a place with others and have no pose of their own there.
 
     The first of them has the pose of the place. `places`: those whose pose is on free ground; `room`: metres that the
-    centres of two robots keep between them; `ways`: the paths that robots take. A spot is as near to the pose of its
-    place as possible, more or less, beside it rather than before or behind it, seen from it, and first of all out of
-    the way of other robots.
+    centres of two robots keep between them; `ways`: the paths that robots take; `body`: metres by which the centres of
+    two robots are apart that touch each other. A spot is as near to the pose of its place as possible, more or less,
+    beside it rather than before or behind it, seen from it, and first of all out of the way of other robots. Where that
+    is possible, each robot can leave while the others stand there.
     """
     present, wanted = robots_at(scenario), set(places)
     taken = [point for poi in scenario.pois for point in _given(poi, present[poi.name])]
@@ -51,10 +65,52 @@ def proposed_spots(
             continue
         candidates = _Candidates(grid, poi.pose, room, _passing(poi, passed, room))
         found[poi.name] = []
+        standing = [one for one in _given(poi, present[poi.name]) if grid.is_free(grid.cell(*one))]
+        exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
         for robot in robots:
-            point = candidates.best(taken)
+            point = candidates.best(taken, standing, exits, body)
             found[poi.name].append((robot, None if point is None else replace(poi.pose, x=point[0], y=point[1])))
             taken += [] if point is None else [point]
+            standing += [] if point is None else [point]
+    return found
+
+
+def shut_in(grid: Grid, points: Sequence[Point], exits: Sequence[Point], body: float) -> List[int]:
+    """The numbers of those points from which a robot gets to none of the exits while others stand at all other points,
+    though it does without them."""
+    scale = grid.settings.resolution
+    cells = [grid.cell(*point) for point in points]
+    away = [grid.cell(*point) for point in exits]
+    margin = math.ceil(_AROUND / scale)
+    left, bottom = (max(0, math.floor(min(one[axis] for one in (*cells, *away))) - margin) for axis in (0, 1))
+    right, top = (math.floor(max(one[axis] for one in (*cells, *away))) + margin + 1 for axis in (0, 1))
+    free = grid.free[bottom:top, left:right]
+    rows, columns = np.ogrid[: free.shape[0], : free.shape[1]]
+    apart = [np.hypot(columns + 0.5 + left - x, rows + 0.5 + bottom - y) * scale for x, y in cells]
+
+    def gets_away(number: int, others: Sequence[int]) -> bool:
+        labels, _ = ndimage.label(free & np.all([apart[other] >= body for other in others], axis=0))
+        here = labels[math.floor(cells[number][1]) - bottom, math.floor(cells[number][0]) - left]
+        return bool(here) and any(labels[math.floor(y) - bottom, math.floor(x) - left] == here for x, y in away)
+
+    return [
+        number
+        for number in range(len(points))
+        if gets_away(number, ()) and not gets_away(number, [one for one in range(len(points)) if one != number])
+    ]
+
+
+def exits_of(place: str, middle: Point, ways: Ways, room: float) -> List[Point]:
+    """Where robots are that have just left a place, beyond its spots, for each of its ways."""
+    found, left = [], max(_LEAST_REACH, _REACH * room) + room
+    for ends, line in ways.items():
+        if place in ends:
+            points = _samples(line)
+            far = np.hypot(points[:, 0] - middle[0], points[:, 1] - middle[1]) >= left
+            points = points if ends[0] == place else points[::-1]
+            far = far if ends[0] == place else far[::-1]
+            first = int(np.argmax(far)) if far.any() else len(points) - 1
+            found.append((float(points[first, 0]), float(points[first, 1])))
     return found
 
 
@@ -81,15 +137,19 @@ class _Candidates:
         order = np.lexsort((points[:, 1], points[:, 0], np.round(ahead, 3), apart // _NEARLY, ~aside))
         self._points = points[order][apart[order] <= reach]
 
-    def best(self, taken: Sequence[Point]) -> Optional[Point]:
-        """The first of the points that is far enough from those that are taken, if possible one that sees the place;
-        None: there is none."""
+    def best(
+        self, taken: Sequence[Point], standing: Sequence[Point], exits: Sequence[Point], body: float
+    ) -> Optional[Point]:
+        """The first of the points that is far enough from those that are taken, if possible one that sees the place and
+        lets those who are standing there leave; None: there is none."""
         free = np.ones(len(self._points), dtype=bool)
         for x, y in taken:
             free &= np.hypot(self._points[:, 0] - x, self._points[:, 1] - y) >= self._room
         points = [(float(x), float(y)) for x, y in self._points[free]]
         seen = (point for point in points if self._grid.sees(self._middle, self._grid.cell(*point)))
-        return next(seen, points[0] if points else None)
+        first = list(islice(seen, _TRIES)) or points[:_TRIES]
+        open_ = (point for point in first if not shut_in(self._grid, [*standing, point], exits, body))
+        return next(open_, first[0] if first else None)
 
 
 def _connected(grid: Grid, middle: Point, reach: float) -> Array:

@@ -16,7 +16,7 @@ import pytest
 from pursue_gen.language import check, load
 from tests.authoring.commands import Outcome, pursue
 from tests.conftest import ROOT
-from tests.survey.maps import three_rooms, write
+from tests.survey.maps import drawn, three_rooms, write
 
 TEXT = """// three rooms
 poi "desk" //[1.0, 1.0, 0, 0, 0, 0, 1] by the window
@@ -268,3 +268,12 @@ def test_the_picture_shows_all_that_has_a_pose_whatever_is_wrong() -> None:
     assert len(list(picture.iter("{http://www.w3.org/2000/svg}circle"))) == 4  # two places, bot2 beside each
     again = pursue("survey", "map.yaml", "rooms.pur", "--picture", "plan.svg", "--dry-run")
     assert again.status == 2 and "--force" in again.err
+
+
+def test_robots_that_shut_each_other_in_are_reported(folder: Path) -> None:
+    greys = drawn((12, 6), [(0, 2.0, 5, 6), (0, 0, 5, 1.0)], resolution=CELL)
+    write(folder, greys, CELL)
+    text = TEXT.replace("//[1.0, 1.0,", "//[1.0, 1.5,")
+    done = surveyed(text=text)
+    assert "MAP009" in codes(done) and "cannot leave desk while all others stand there" in done.err
+    assert "MAP009" not in codes(surveyed(text=text.replace("//[1.0, 1.5,", "//[6.0, 1.0,")))

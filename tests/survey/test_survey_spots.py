@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.survey.grid import Point, grid_of
-from pursue_gen.survey.spots import Spots, proposed_spots
+from pursue_gen.survey.spots import Spots, proposed_spots, shut_in
 from tests.survey.maps import drawn, ground_of
 
 GRID = grid_of(ground_of(drawn((8, 6), [(3.9, 0, 4.1, 6)], [(3.9, 2.5, 4.1, 3.5)])), 0.3)
@@ -77,6 +77,19 @@ def test_where_there_is_no_room_it_is_said() -> None:
     assert proposed_spots(made, tiny, ["a"], ROOM, {}) == {"a": [("bot2", None), ("bot3", None)]}
 
 
+def test_poses_of_robots_that_are_not_on_the_map_are_no_hindrance() -> None:
+    for far in (-500.0, 500.0):
+        found = proposed_spots(
+            scenario({"a": f"{pose(2.0, 2.0)} bot1 {pose(far, far)}"}, 3),
+            GRID,
+            ["a"],
+            ROOM,
+            {("a", "b"): [(2, 2), (2, 5)]},
+            0.6,
+        )
+        assert [robot for robot, spot in found["a"] if spot is not None] == ["bot3"]
+
+
 def test_places_in_obstacles_and_robots_that_are_alone_get_none() -> None:
     assert spots({"a": pose(2.0, 2.0)}, 1) == {}
     assert proposed_spots(scenario({"a": pose(4.0, 1.0)}, 2), GRID, [], ROOM, {}) == {}
@@ -95,3 +108,23 @@ def test_all_spots_are_free_and_apart(places: List[Tuple[float, float, float]], 
     assert all(GRID.is_free(GRID.cell(*point)) for point in new)
     assert all(math.dist(a, b) >= ROOM for a, b in combinations(new, 2))
     assert all(math.dist(point, (x, y)) >= ROOM for point in new for x, y, _ in places)
+
+
+CORRIDOR = grid_of(ground_of(drawn((8, 6), [(0, 2.0, 5, 6), (0, 0, 5, 1.0)])), 0.3)  # of 1 m, with a room at its end
+
+
+def test_a_robot_in_a_dead_end_is_shut_in_by_the_one_before_it() -> None:
+    exits = [(4.5, 1.5)]
+    assert shut_in(CORRIDOR, [(1.0, 1.5), (2.0, 1.5)], exits, 0.6) == [0]
+    assert shut_in(CORRIDOR, [(1.0, 1.5), (7.0, 1.5)], exits, 0.6) == []
+    assert shut_in(CORRIDOR, [(1.0, 1.5), (2.0, 1.5), (3.0, 1.5)], exits, 0.6) == [0, 1]
+    assert shut_in(CORRIDOR, [(1.0, 1.5), (2.0, 1.5)], [], 0.6) == []
+    assert shut_in(GRID, [(2.0, 2.0), (2.0, 2.8)], [(3.5, 3.0)], 0.6) == []
+
+
+def test_a_spot_is_chosen_from_which_everybody_can_leave() -> None:
+    made = scenario({"a": pose(4.8, 1.5, math.pi)}, 2)  # at the mouth of the corridor
+    ways = {("a", "b"): [(4.8, 1.5), (7.5, 4.5)], ("b", "c"): [(5.7, 0.5), (5.7, 5.5)]}
+    for body, inside in ((0.0, True), (0.6, False)):
+        ((x, _),) = points(proposed_spots(made, CORRIDOR, ["a"], 0.8, ways, body)["a"])
+        assert (x < 4.8) == inside
