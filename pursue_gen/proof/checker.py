@@ -25,8 +25,9 @@ from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 
-LIMIT = 300_000
-"""So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000."""
+LIMIT = 1_000_000
+"""So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000, a
+chase through a ring of 150 places 400,000."""
 
 _LARGE, _SOON = 20_000, 10_000
 """A safety strategy with more zones is checked as an invariant first; with fewer, after so many symbolic states."""
