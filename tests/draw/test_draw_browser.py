@@ -288,6 +288,18 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
         assert there.complaints == []
 
 
+def test_what_has_the_focus_keeps_it_and_the_page_stays_where_it_is(there: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "small.pur"
+    file.write_text(SMALL, encoding="utf-8")
+    with drawn(there, file):
+        there.screen(1400, 400)
+        for ident in ("form", "field-name"):
+            there.value("document.getElementById('item-place-b').click()")
+            there.value(f"(() => {{ document.getElementById({ident!r}).focus(); scrollTo(0, 0); }})()")
+            there.value("import('./state.js').then((page) => page.show())")
+            assert there.value("[document.activeElement.id, scrollY]") == [ident, 0]
+
+
 def test_fingers_move_places_and_the_ground(there: Browser, tmp_path: Path) -> None:
     file = tmp_path / "small.pur"
     file.write_text(SMALL, encoding="utf-8")

@@ -15,7 +15,7 @@ export function inspect() {
   const away = button("Delete", () => change({ do: "delete", statement: one.thing.statement }), { class: "danger", id: "delete" });
   form.append(html("h2", {}, title), html("div", { class: "fields" }, ...fields), html("p", { class: "row" }, ...more, away));
   const again = focused && byId(focused);
-  if (again) again.focus();
+  if (again) again.focus({ preventScroll: true });
 }
 
 function set(thing, name) {

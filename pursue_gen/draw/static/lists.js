@@ -26,7 +26,7 @@ export function list() {
   const things = all(state.view);
   box.replaceChildren(...Object.keys(TITLES).map((kind) => part(kind, things.filter((one) => one.kind === kind), closed)));
   const again = focused && byId(focused);
-  if (again) again.focus();
+  if (again) again.focus({ preventScroll: true });
 }
 
 function part(kind, things, closed) {

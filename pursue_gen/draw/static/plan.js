@@ -43,7 +43,7 @@ export function draw() {
     ...travellers(ways, at),
   );
   const again = key && plan.querySelector(`[data-key="${CSS.escape(key)}"]`);
-  if (again) again.focus();
+  if (again) again.focus({ preventScroll: true });
 }
 
 // The ground -------------------------------------------------------------------------------------------------------

@@ -187,7 +187,7 @@ function pressed(event) {
     if (hit && tool() === "select") typeName(false)();
   } else if (event.key === "Delete" || event.key === "Backspace") {
     const one = hit ? all(state.view).find((each) => each.kind === hit.kind && each.key === hit.key) : selected();
-    if (one) change({ do: "delete", statement: one.thing.statement }, () => plan.focus());
+    if (one) change({ do: "delete", statement: one.thing.statement }, () => plan.focus({ preventScroll: true }));
   } else if (event.key === "Escape") {
     pending.from = null;
     pending.to = null;
