@@ -18,7 +18,7 @@ from pursue_gen.language.poses import end_of_poses
 from pursue_gen.language.scenario import Connection, Event, Poi, Pose, Scenario, Travel
 from pursue_gen.language.syntax import cut
 
-_REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>[a-z]+): ")
+_REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 _STATEMENTS = ("poi", "connection", "agent", "travel")
 
 

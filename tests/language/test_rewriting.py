@@ -61,6 +61,12 @@ def test_a_remark_goes_to_the_end_of_the_line_where_nothing_else_is_and_replaces
     assert edited(text, Rewriting(last).distance(last.connections[2], 9, "")).split() == TEXT.split()
 
 
+def test_a_comment_of_the_author_is_no_remark_even_where_it_looks_like_one() -> None:
+    scenario = read(TEXT.replace("// through the door", "// note: through the door"))
+    found = edited(scenario.text, Rewriting(scenario).distance(scenario.connections[0], 5, "survey: 5 m"))
+    assert "distance 5 /* survey: 5 m */ // note: through the door\n" in found
+
+
 def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() -> None:
     scenario = read()
     rewriting = Rewriting(scenario)
