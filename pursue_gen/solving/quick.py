@@ -38,6 +38,9 @@ _PROMPT, _PROMPT_GAME, _DELAYED_GAME = 0.6, 5_000_000, 8_000_000
 _CLOCKS = 8
 """In games of more clocks each piece of work takes longer: they get less of it."""
 
+_HARD = 20_000_000
+"""A game that took more work than this has none left for games with a deadline, which are larger."""
+
 _ENOUGH = Fraction(11, 10)
 """A strategy that takes no longer than this part of the lower bound is quick."""
 
@@ -60,7 +63,8 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
     """
     start, options = time.monotonic(), replace(options, limits=options.limits.chosen)
     known = guaranteed(won, STATES, options.limits)
-    if won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
+    hard = won.stats is not None and won.stats.work > _HARD
+    if hard or won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
         return replace(won, guarantee=known)
     scale = min(1.0, (_CLOCKS / (len(won.part.clocks) + 1)) ** 3)
     budget = _budget(options.since(start), WORK, _DISCRETE_STATES, scale)

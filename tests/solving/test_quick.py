@@ -96,6 +96,16 @@ def test_without_work_the_first_strategy_stays(monkeypatch: pytest.MonkeyPatch) 
     assert found.guarantee is not None and found.guarantee.worst == guaranteed(first, quick_module.STATES).worst
 
 
+@needs_native
+def test_after_a_hard_game_the_first_strategy_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = solution(*_game(THIEF), Rules())
+    assert first.stats is not None and quick(first, NOW).strategy != first.strategy
+    monkeypatch.setattr(quick_module, "_HARD", first.stats.work - 1)
+    found = quick(first, NOW)
+    assert found.strategy == first.strategy
+    assert found.guarantee is not None and found.guarantee.worst is not None
+
+
 def test_the_first_strategy_can_be_asked_for() -> None:
     game = _game(THIEF)
     assert solved(*game, Rules(), SolveOptions(optimize="none")).strategy == solution(*game, Rules()).strategy
