@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import AbstractSet, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -19,6 +21,9 @@ EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an ob
 
 RECORD = re.compile(rb"[0-9a-f]{8} 0 \d+ \{")
 """How a journal of format 2 begins."""
+
+BEHIND = 2.0
+"""Seconds by which the recorder's clock may be seen to be behind the observer's; more is another clock."""
 
 _SIMPLE, _ACTION = "/move_base_simple/goal", "/move_base/goal"
 _ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
@@ -61,18 +66,23 @@ def _bag(file: Path, content: bytes, drives: bool) -> MissionRecord:
 
 
 def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
-    """What the messages of a bag hold; those that are not ours are passed over."""
+    """What the messages of a bag hold; those that are not ours are passed over.
+
+    What was recorded after a state is not dated before it, where the recorder's clock was a little behind.
+    """
     states: List[SystemState] = []
     words: List[RecordedWord] = []
     orders: List[RobotOrder] = []
     plans: Dict[int, Mapping[str, Any]] = {}
     game: Optional[Mapping[str, Any]] = None
     drives: List[Drive] = []
-    strange = 0
+    strange, latest = 0, -math.inf
     # without `seq`, which counts what was sent to one subscriber alone, too
     simple = {(message.topic.strip("/"), message.data[4:]) for message in messages if message.topic.endswith(_SIMPLE)}
     for message in messages:
         topic = message.topic.strip("/")
+        if message.at < latest <= message.at + BEHIND:  # /clock may reach the recorder later than a state
+            message = replace(message, at=latest)
         if topic.endswith(_ORDERS):
             orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic)]
         elif topic.endswith(DRIVES):
@@ -87,6 +97,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
                 words.append(read_word(message.at, text, message.node))
             elif state is not None:
                 states.append(state)
+                latest = state.stamp
             elif data is not None and topic.endswith("plan"):
                 plans[_whole(data.get("plan"))] = data
             elif data is not None:

@@ -16,15 +16,16 @@ from pursue_gen.replay.read import from_messages
 from pursue_runtime.state import SystemState
 
 
-def record(made: Mission) -> MissionRecord:
-    """What a reader makes of the mission (the bag's bytes have tests of their own)."""
+def record(made: Mission, behind: float = 0.0) -> MissionRecord:
+    """What a reader makes of the mission (the bag's bytes have tests of their own), recorded with a clock that is so
+    many seconds behind."""
     import recordings
 
     messages = []
     for at, topic, node, what in made.messages():
         goal = topic.endswith("goal")
         data = recordings._pose(at, what) if goal else recordings._string(what)
-        messages.append(Message(topic, "", node, at, data))
+        messages.append(Message(topic, "", node, at - behind, data))
     return from_messages(messages)
 
 
@@ -239,6 +240,13 @@ def test_the_recorders_clock_may_be_a_little_behind_the_observers() -> None:
     orders = ("move_base_simple/goal", "pursue/actions")
     made.heard = [(m[0] - 0.1 * m[1].endswith(orders), *m[1:]) for m in made.heard]
     assert kinds(found(made)) == []
+
+
+def test_an_order_is_not_older_than_a_state_that_was_recorded_before_it() -> None:
+    made = mission()
+    assert kinds(check(record(made, behind=0.6), game())) == []  # simulated time may reach the recorder that late
+    orders = [order.at for order in record(made, behind=10.0).orders]
+    assert orders == [order.at - 10.0 for order in record(made).orders]  # not this clock
 
 
 def test_a_goal_that_was_never_sent_is_a_fault() -> None:
