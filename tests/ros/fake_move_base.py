@@ -117,10 +117,10 @@ class Body:
 class FakeMoveBase:
     """A move_base, with its simple action server, and the robot that it drives."""
 
-    def __init__(self, name: str, settings: Dict[str, Any]) -> None:
+    def __init__(self, name: str, settings: Dict[str, Any], body: Optional[Body] = None) -> None:
         self.name = name
         self.lock = threading.RLock()
-        self.body = Body(name, settings.get("start", [0.0, 0.0]))
+        self.body = body or Body(name, settings.get("start", [0.0, 0.0]))
         self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
         self.boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
         self.plays: List[str] = list(settings.get("plays", ["succeed"]))
