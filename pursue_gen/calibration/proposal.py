@@ -106,7 +106,8 @@ class Finding:
 
 @dataclass(frozen=True)
 class Proposal:
-    """All findings, in the scenario's order; `missing`: ways of robots of which nothing was measured.
+    """All findings, in the scenario's order; `missing`: ways of robots of which nothing was measured;
+    `missing_events`: events with a duration of which nothing was.
 
     `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units.
     """
@@ -115,6 +116,7 @@ class Proposal:
     options: Options
     findings: Tuple[Finding, ...]
     missing: Tuple[Way, ...]
+    missing_events: Tuple[Work, ...]
     unused: Tuple[Unused, ...]
     slack: Mapping[str, int]
     lost_after: int
@@ -175,8 +177,9 @@ def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
     missing = tuple(
         what for what in present if isinstance(what, Way) and what.agent in robots and what not in measured
     )
+    events = tuple(what for what in present if isinstance(what, Work) and what not in measured)
     return Proposal(
-        scenario, options, tuple(findings), missing, samples.unused, _slack(findings, robots, options),
+        scenario, options, tuple(findings), missing, events, samples.unused, _slack(findings, robots, options),
         _lost_after(findings, samples.unused, options),
     )  # fmt: skip
 

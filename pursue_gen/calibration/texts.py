@@ -81,6 +81,10 @@ def sentences(proposal: Proposal) -> Iterator[str]:
         some = ", ".join(shown(proposal.scenario, way) for way in proposal.missing[:_MANY])
         more = " …" if len(proposal.missing) > _MANY else ""
         yield f"Not measured, so windows stay: {some}{more}. (rosrun UI drive_legs drives all ways of robots.)"
+    if proposal.missing_events:
+        some = ", ".join(shown(proposal.scenario, event) for event in proposal.missing_events[:_MANY])
+        more = " …" if len(proposal.missing_events) > _MANY else ""
+        yield f"Not measured, so durations stay: {some}{more}. (Recorded missions measure actions, drives do not.)"
     widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
     if widened:
         yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."
@@ -173,6 +177,7 @@ def as_json(proposal: Proposal, verdicts: Sequence[Verdict] = ()) -> Dict[str, A
         "left": {"times": left[0], "of": left[1]},
         "held_out": {"held": held[0], "of": held[1]},
         "missing": [vars(way) for way in proposal.missing],
+        "missing_events": [work.event for work in proposal.missing_events],
         "unused": [{"what": str(u.what), "why": u.why, "seconds": u.seconds, "file": u.file} for u in proposal.unused],
         "slack": dict(proposal.slack),
         "lost_after": proposal.lost_after,

@@ -9,6 +9,7 @@ from typing import Any, List
 
 import pytest
 
+from pursue_gen.calibration import texts
 from pursue_gen.calibration.proposal import Options, Proposal, propose
 from pursue_gen.calibration.samples import Sample, Samples, Way, Work
 from pursue_gen.language import load, parse
@@ -140,7 +141,15 @@ def test_durations_of_actions_are_proposed_too() -> None:
     found = proposal([Sample(Work("fetch"), 2.0 + 0.1 * n) for n in range(10)])
     text = found.checked().text
     assert 'event "fetch" location shelf duration ' in text and "// calibrate: 10 actions, 2.0 to 2.9\n" in text
-    assert found.missing == (OUT, BACK)
+    assert found.missing == (OUT, BACK) and found.missing_events == ()
+
+
+def test_actions_that_were_not_measured_are_named() -> None:
+    found = proposal([Sample(OUT, 4.0), Sample(BACK, 4.0)])
+    assert found.missing == () and found.missing_events == (Work("fetch"),)
+    said = "Not measured, so durations stay: fetch. (Recorded missions measure actions, drives do not.)"
+    assert said in list(texts.report(found))
+    assert texts.as_json(found, ())["missing_events"] == ["fetch"]
 
 
 def test_an_action_that_takes_hardly_any_time_keeps_a_duration() -> None:
