@@ -121,8 +121,8 @@ def _names_all(part: Network, strategy: Strategy) -> bool:
     automata = tuple(automaton.name for automaton in part.automata)
     variables = tuple(name for name, _ in part.variables)
     states = [block.state for block in strategy.blocks]
-    return all(tuple(name for name, _ in state.locations) == automata for state in states) and all(
-        tuple(name for name, _ in state.values) == variables for state in states
+    return all(tuple([name for name, _ in state.locations]) == automata for state in states) and all(
+        tuple([name for name, _ in state.values]) == variables for state in states
     )
 
 
@@ -163,9 +163,10 @@ def _ranks_of(played: Part, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
 
 def pruned(strategy: Strategy, report: Report) -> Strategy:
     """The strategy without the blocks, commands and zones that no play reaches."""
+    used = report.used
 
     def kept(zones: Sequence[Zone], block: int, part: object) -> Tuple[Zone, ...]:
-        return tuple(zone for n, zone in enumerate(zones) if (block, part, n) in report.used)
+        return tuple([zone for n, zone in enumerate(zones) if (block, part, n) in used])
 
     blocks = []
     for b, block in enumerate(strategy.blocks):

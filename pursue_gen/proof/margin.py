@@ -32,6 +32,9 @@ CAP = Fraction(10)
 USUAL = 3_000
 """States for `strategy_margin` that are worth a second."""
 
+_BLOCKS = 10
+"""A strategy with more blocks than so many for each state is not played: each takes a state where plays come to it."""
+
 _LIMIT_HIT = 5
 """The exit status of errors at a limit."""
 
@@ -58,8 +61,11 @@ def strategy_margin(
     """The margin of a strategy that is proven for the reaction.
 
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
-    depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found.
+    depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found, and
+    where so few states cannot tell, of a strategy with very many blocks, at least the reaction.
     """
+    if len(strategy.blocks) > _BLOCKS * states:
+        return Margin(reaction, None)
     part = named_part(network, strategy)
     left, arenas = states, None if strategy.stages else Arena.kept(part)
 

@@ -25,6 +25,10 @@ INSTANT = Fraction(1, 1000)
 LIMIT = 20_000
 """So many symbolic states are explored."""
 
+_BLOCKS = 2
+"""A strategy with more blocks than so many times the limit is not played: each block takes at least one symbolic state
+where plays come to it, and few do not."""
+
 LONGEST = 100_000
 """Times above this number of time units are not distinguished."""
 
@@ -92,6 +96,8 @@ def worst_case(
         return None
     if strategy.stages:
         return _of_stages(network, objective, strategy, reaction, limit, limits)
+    if len(strategy.blocks) > _BLOCKS * max(limit, LIMIT):
+        return None
     counted, monitor = with_counter(named_part(network, strategy)), LimitMonitor(limits)
     for longest in (_USUAL, LONGEST):
         game = with_deadline(counted, objective, longest)

@@ -73,6 +73,15 @@ def won_by_some(
     return None if strategy is None else Found(strategy, search.stats())
 
 
+def has_parts(network: Network, objective: Objective) -> bool:
+    """False where `won_by_some` has nothing to try: one robot has one thing to do."""
+    robots = commanded_agents(network)
+    if len(robots) != 1 or len(objective.goal) != 1:
+        return True
+    goals = subgoals(network, objective.goal[0])
+    return len(goals) > 1 or not goals[0].agents.issuperset(robots) or bool(protections(network, objective.bad))
+
+
 def works_in_parallel(network: Network, goal: Place) -> bool:
     """True if some subgoals of the goal can be met at the same time."""
     return any(len(stage) > 1 for stage in _grouped(subgoals(network, goal)))

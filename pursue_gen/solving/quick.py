@@ -41,6 +41,9 @@ _CLOCKS = 8
 _HARD = 20_000_000
 """A game that took more work than this has none left for games with a deadline, which are larger."""
 
+_MANY = 2 * _DISCRETE_STATES
+"""Nor has one of so many discrete states: games with a deadline have about as many."""
+
 _ENOUGH = Fraction(11, 10)
 """A strategy that takes no longer than this part of the lower bound is quick."""
 
@@ -63,7 +66,8 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
     """
     start, options = time.monotonic(), replace(options, limits=options.limits.chosen)
     known = guaranteed(won, STATES, options.limits)
-    hard = won.stats is not None and won.stats.work > _HARD
+    stats = won.stats
+    hard = stats is not None and (stats.work > _HARD or stats.discrete_states > _MANY)
     if hard or won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
         return replace(won, guarantee=known)
     scale = min(1.0, (_CLOCKS / (len(won.part.clocks) + 1)) ** 3)

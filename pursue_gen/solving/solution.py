@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.crowds import Found, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.crowds import Found, has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
@@ -82,7 +82,9 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     game = played(network, rules)
     verdict = None
     in_parts = not options.whole and not options.limits.work
-    if in_parts:
+    # Where there is nothing else to try after little work, the same search goes on.
+    alone = in_parts and not options.most_work and not pauses(game) and not has_parts(game, objective)
+    if in_parts and not alone:
         known = _with_little_work(game, objective, rules.reaction, options)
         if isinstance(known, Found):
             return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
@@ -91,7 +93,8 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     if verdict is None:
         how = options.engine, options.since(start).in_one_piece, options.progress
-        verdict = solve(game, objective, rules.reaction, *how, whole=options.whole)
+        first = little_work(game) if alone else 0
+        verdict = solve(game, objective, rules.reaction, *how, whole=options.whole, first=first)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
     left = options.since(start)

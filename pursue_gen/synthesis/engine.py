@@ -62,6 +62,10 @@ class Engine(ABC):
         """True if its numbers can hold all times and values of the game."""
         return True
 
+    def giving_first(self, work: int) -> Engine:
+        """The engine that gives a game at least so much work as it is, before anything else is tried in turn."""
+        return self
+
     @abstractmethod
     def solve(
         self,

@@ -375,6 +375,8 @@ def write_plan(strategy: Strategy, network: Network, objective: Objective) -> st
     lines = ["Verifying property 1 at line 1", f" -- Property is {'NOT ' if strategy.counter else ''}satisfied."]
     lines += [*left_out_lines(strategy, network), ""]
     lines += [_title(strategy, objective), ""]
+    zones: Dict[int, str] = {}
+    known: Dict[int, List[str]] = {}
     for block in strategy.blocks:
         if not block.wait and not block.commands:
             continue
@@ -382,12 +384,14 @@ def write_plan(strategy: Strategy, network: Network, objective: Objective) -> st
         values = "".join(f"{name}={value} " for name, value in block.state.values)
         lines.append(f"State: ( {places} ) {values}")
         if block.wait:
-            lines.append(f"While you are in {zones_text(block.wait)}, wait.")
+            lines.append(f"While you are in {zones_text(block.wait, zones)}, wait.")
         for command in block.commands:
             if not command.zones:
                 raise ValueError("a command without a zone can never be due")
-            moves = [_move_text(move, printed[move.automaton]) for move in command.moves]
-            lines.append(f"When you are in {zones_text(command.zones)}, take transition {moves[0]}")
+            moves = known.get(id(command.moves))
+            if moves is None:
+                moves = known[id(command.moves)] = [_move_text(move, printed[move.automaton]) for move in command.moves]
+            lines.append(f"When you are in {zones_text(command.zones, zones)}, take transition {moves[0]}")
             lines += moves[1:]
         lines.append("")
     return "\n".join(lines)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import FrozenSet, Iterator, List, Optional, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Optional, Tuple
 
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -62,11 +62,19 @@ def constraint_texts(zone: Zone, space: str = "") -> Iterator[str]:
             index += 1
 
 
-def zones_text(zones: Tuple[Zone, ...]) -> str:
-    """The zones as TIGA prints a federation: `(a && b) || (c)`, or `true`."""
+def zones_text(zones: Tuple[Zone, ...], known: Optional[Dict[int, str]] = None) -> str:
+    """The zones as TIGA prints a federation: `(a && b) || (c)`, or `true`.
+
+    `known`: the texts of zones by their identity, for zones that stand in many places.
+    """
     if zones == ((),):
         return ALWAYS
-    return " || ".join(f"({' && '.join(constraint_texts(zone)) or ALWAYS})" for zone in zones)
+    texts = {} if known is None else known
+    return " || ".join(texts.get(id(zone)) or texts.setdefault(id(zone), _zone_text(zone)) for zone in zones)
+
+
+def _zone_text(zone: Zone) -> str:
+    return f"({' && '.join(constraint_texts(zone)) or ALWAYS})"
 
 
 def read_constraint(text: str) -> Optional[Tuple[Constraint, ...]]:

@@ -86,13 +86,14 @@ def solve(
     whole: bool = False,
     soonest: bool = False,
     without_pauses: bool = False,
+    first: int = 0,
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
     What cannot matter is left out of the game first, and not named in the strategy (`cone`), unless `whole` is set.
     `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
     takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
-    lost so may be won.
+    lost so may be won. `first`: the least work for the game as it is, before searches take turns (see `Engine`).
 
     `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
     a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
@@ -112,7 +113,7 @@ def solve(
             message = f"the {engine} engine cannot hold the game: its times are too large, or it has too many clocks"
             raise PursueError([error("SYN012", message, hint=hint)], exit_status=2)
         chosen = next(other for other in ENGINES if other.available() and other.holds(game))
-    outcome = chosen.solve(game, limits, progress, soonest)
+    outcome = chosen.giving_first(first).solve(game, limits, progress, soonest)
     counts = outcome.counts
     took = outcome.seconds, counts.symbolic_states, counts.work
     stats = Stats(chosen.name, counts.discrete_states, counts.zones, *took)

@@ -92,7 +92,8 @@ class Strategy:
     def scale(self) -> int:
         """The least scale in which all of its bounds are integers."""
         zones = (zone for b in self.blocks for zones in (b.wait, *(c.zones for c in b.commands)) for zone in zones)
-        return common_denominator(constraint.bound for zone in zones for constraint in zone)
+        once = {id(zone): zone for zone in zones}  # most zones stand in many places
+        return common_denominator(constraint.bound for zone in once.values() for constraint in zone)
 
 
 def with_edges(blocks: Iterable[Block], automaton: str, changed: Mapping[Edge, Edge]) -> Tuple[Block, ...]:

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
-from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import (
+    Block,
+    Command,
+    Constraint,
+    DiscreteState,
+    Move,
+    Place,
+    Strategy,
+    Zone,
+    ZoneKey,
+)
 from pursue_gen.zones.dbm import INF, LE_ZERO, constant, is_strict
 
 Matrix = Tuple[int, ...]
@@ -16,10 +26,13 @@ Matrix = Tuple[int, ...]
 
 @dataclass(frozen=True)
 class _Known:
-    """Constraints by their bounds, zones by their matrices: few of them stand in very many places."""
+    """Of each automaton its name beside each location; constraints by their bounds, zones by their matrices, moves by
+    their edges: few of them stand in very many places."""
 
-    constraints: Dict[Bound, Constraint]
-    zones: Dict[Matrix, Zone]
+    places: Tuple[Tuple[Place, ...], ...] = ()
+    constraints: Dict[Bound, Constraint] = field(default_factory=dict)
+    zones: Dict[Matrix, Zone] = field(default_factory=dict)
+    moves: Dict[Tuple[int, ...], Tuple[Move, ...]] = field(default_factory=dict)
 
 
 def to_strategy(game: Game, blocks: Iterable[RawBlock], left_out_clocks: Sequence[str] = ()) -> Strategy:
@@ -28,7 +41,7 @@ def to_strategy(game: Game, blocks: Iterable[RawBlock], left_out_clocks: Sequenc
     `left_out_clocks`: those of the network that are not in the game. Each zone's matrix must be canonical (raw bounds,
     scaled as the game's; INF or more: no bound).
     """
-    known = _Known({}, {})
+    known = _Known(tuple(tuple((a.name, place) for place in a.locations) for a in game.automata))
     named = tuple(_block(game, block, known) for block in blocks)
     return Strategy(named, left_out_clocks=tuple(left_out_clocks))
 
@@ -72,25 +85,27 @@ def _block(game: Game, block: RawBlock, known: _Known) -> Block:
     for matrix, action in pieces:
         key = None if action is None else tuple(action)
         by_action.setdefault(key, []).append(_zone(game, tuple(matrix), known))
-    state = DiscreteState(
-        tuple((automaton.name, automaton.locations[k]) for automaton, k in zip(game.automata, locations)),
-        tuple(zip(game.variables, values)),
-    )
+    places = tuple([each[k] for each, k in zip(known.places, locations)])
+    state = DiscreteState(places, tuple(zip(game.variables, values)))
     commands = (
-        Command(tuple(zones), tuple(_move(game, k) for k in action))
+        Command(tuple(zones), _moves(game, action, known))
         for action, zones in by_action.items()
         if action is not None
     )
     return Block(state, tuple(by_action.get(None, ())), tuple(commands))
 
 
-def _move(game: Game, edge: int) -> Move:
-    return Move(game.automata[game.edges[edge].automaton].name, game.origins[edge])
+def _moves(game: Game, edges: Tuple[int, ...], known: _Known) -> Tuple[Move, ...]:
+    found = known.moves.get(edges)
+    if found is None:
+        named = ((game.automata[game.edges[k].automaton].name, game.origins[k]) for k in edges)
+        found = known.moves[edges] = tuple(Move(name, edge) for name, edge in named)
+    return found
 
 
 def zone_text(game: Game, matrix: Matrix) -> Zone:
     """The constraints that make the zone, fewest bounds, in time units; the canonical matrix has the game's scale."""
-    return _zone(game, matrix, _Known({}, {}))
+    return _zone(game, matrix, _Known())
 
 
 def _zone(game: Game, matrix: Matrix, known: _Known) -> Zone:

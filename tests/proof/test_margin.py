@@ -62,6 +62,16 @@ def test_with_little_to_spend_the_margin_is_at_least_what_is_known() -> None:
     assert strategy_margin(NET, REACH, late, NOW, states=3).wins < Fraction(39, 20)
 
 
+def test_with_far_more_blocks_than_states_to_spend_nothing_is_played(monkeypatch: pytest.MonkeyPatch) -> None:
+    def played(*_: object, **__: object) -> None:
+        raise AssertionError("each look at such a strategy costs far more than it may tell")
+
+    large = Strategy(11 * plan("x<=1", "x>1").blocks)
+    assert strategy_margin(NET, REACH, plan("x<=1", "x>1"), NOW, states=1).fails is None
+    monkeypatch.setattr("pursue_gen.proof.margin.verify", played)
+    assert strategy_margin(NET, REACH, large, NOW, states=1) == Margin(NOW, None)
+
+
 @settings(max_examples=40)
 @given(networks(), st.sampled_from(list(Kind)).flatmap(objectives))
 def test_it_wins_at_the_margin_and_not_beyond_and_no_more_than_the_game(net: Network, objective: Objective) -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Callable, Set
+from typing import Any, Callable, List, Set
 
 import pytest
 
 from benchmarks import families
-from benchmarks.families import catch_by_robots, clean_by_robots, deliver_by_robots, hand_to_visitors
+from benchmarks.families import catch_by_places, catch_by_robots, clean_by_robots, deliver_by_robots, hand_to_visitors
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
@@ -20,7 +20,7 @@ from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import MissionRunner
-from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.crowds import has_parts, won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.request import SolveRequest
@@ -28,6 +28,7 @@ from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.subgoals import subgoals
 from pursue_gen.synthesis.plan import read_plan, write_plan
+from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
@@ -100,6 +101,40 @@ def test_a_game_that_takes_little_work_is_solved_in_one_piece() -> None:
     scenario = scenario_of(hand_to_visitors(1))
     won = solution(translate(scenario), scenario_objective(scenario), Rules())
     assert won.strategy.stages == () and won.guarantee is None
+
+
+@pytest.mark.parametrize(
+    "text, parts",
+    [
+        (catch_by_places(4), False),
+        (catch_by_robots(2), True),
+        (hand_to_visitors(1), True),
+        (clean_by_robots(1), True),
+    ],
+    ids=["one chase", "two officers", "two things to do", "to guard"],
+)
+def test_one_robot_with_one_thing_to_do_has_a_game_in_one_piece_alone(text: str, parts: bool) -> None:
+    scenario = scenario_of(text)
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    assert has_parts(network, objective) is parts
+    if not parts:
+        assert won_by_some(network, objective, DELAY, SolveOptions()) is None
+
+
+def test_where_there_are_no_parts_the_game_is_searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With so little work for a first try, a search that is given up would be begun anew."""
+    games: List[object] = []
+
+    def counted(*given: Any, **named: Any) -> Verdict:
+        games.append(named.get("first"))
+        return solve(*given, **named)
+
+    monkeypatch.setattr("pursue_gen.solving.crowds._FIRST", 1)
+    monkeypatch.setattr("pursue_gen.solving.solution.solve", counted)
+    monkeypatch.setattr("pursue_gen.solving.without_pauses.solve", counted)
+    scenario = scenario_of(catch_by_places(4))
+    assert solution(translate(scenario), scenario_objective(scenario), Rules()).strategy.blocks
+    assert games == [1]
 
 
 def test_a_larger_one_is_solved_in_stages() -> None:

@@ -14,7 +14,15 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.worst_case import INSTANT, LONGEST, counting_clock, with_counter, with_deadline, worst_case
+from pursue_gen.proof.worst_case import (
+    INSTANT,
+    LIMIT,
+    LONGEST,
+    counting_clock,
+    with_counter,
+    with_deadline,
+    worst_case,
+)
 from pursue_gen.solving.least_time import TOLERANCE, fastest, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules
@@ -201,6 +209,17 @@ def test_a_long_worst_case_is_found_as_a_short_one_is(longest: int) -> None:
     network = _race(_edge("start", "goal", ">", longest))
     won = solution(network, REACH, IDEAL)
     assert worst_case(network, REACH, won.strategy) == longest + INSTANT
+
+
+def test_far_more_blocks_than_states_to_spend_are_not_played(monkeypatch: pytest.MonkeyPatch) -> None:
+    def played(*_: object) -> None:
+        raise AssertionError("each of the blocks takes a state, and there are far more than may be spent")
+
+    network, objective = _thesis("1")
+    won = solution(network, objective, DEFAULT)
+    large = replace(won.strategy, blocks=(2 * LIMIT // len(won.strategy.blocks) + 1) * won.strategy.blocks)
+    monkeypatch.setattr("pursue_gen.proof.worst_case.searches_of", played)
+    assert worst_case(won.network, objective, large, won.reaction) is None
 
 
 def test_what_takes_too_long_to_tell_has_no_worst_case() -> None:

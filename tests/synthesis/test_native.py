@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from benchmarks.families import catch_by_places
 from pursue_gen.language import load, parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.compile_game import compile_game
@@ -30,6 +31,16 @@ def test_an_outcome_is_well_formed_after_states_were_opened(reaction: Fraction) 
     scenario = load(thesis_scenario("catch_the_thief"))
     game = compile_game(ends_reported(translate(scenario), {}), scenario_objective(scenario), reaction)
     is_well_formed(game, NATIVE.solve(game))
+
+
+def test_a_search_that_mostly_explores_is_not_done_twice() -> None:
+    """In a ring of rooms states are many, and each is decided in few zones."""
+    scenario = parse(catch_by_places(12), "ring.pur", "ring")
+    game = compile_game(ends_reported(translate(scenario), {}), scenario_objective(scenario), Fraction(1, 10))
+    alone, at_first, in_turn = (NativeEngine(budget).solve(game) for budget in (1e9, 1, 0))
+    assert alone.won and at_first.won and in_turn.won
+    assert at_first.counts.work < 1.1 * alone.counts.work < 0.9 * in_turn.counts.work
+    assert NativeEngine(5).giving_first(7).small_budget == 7 == NativeEngine(7).giving_first(5).small_budget
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -1,7 +1,8 @@
 // The largest constants that the rest of a play compares each clock with (the twin of proof/extrapolation.py).
 #pragma once
 
-#include <set>
+#include <stdexcept>
+#include <vector>
 
 #include "proof/native/closed_loop.hpp"
 
@@ -21,6 +22,7 @@ class MaxConstants {
     // The zone and all points that the rest of the play cannot tell from it, within the state's invariant.
     Z extrapolate(const Z& zone, int state) const {
         const std::vector<std::int64_t>& largest = largest_.at(state);
+        if (largest.empty()) throw std::logic_error("no move leads to this state");
         const int dim = loop_.arena.dim;
         Z larger = zone;
         for (int x = 1; x < dim; ++x)
@@ -50,9 +52,17 @@ class MaxConstants {
 
   private:
     void explore(int start) {
-        std::deque<int> pending{start};
-        largest_[start] = none();
-        while (!pending.empty()) {
+        std::deque<int> pending;
+        const auto meet = [&](int state) {
+            if (state >= static_cast<int>(largest_.size())) {
+                largest_.resize(state + 1);
+                before_.resize(state + 1);
+            }
+            if (!largest_[state].empty()) return;
+            largest_[state] = none();
+            pending.push_back(state);
+        };
+        for (meet(start); !pending.empty();) {
             loop_.watch.tick();
             const int state = pending.front();
             pending.pop_front();
@@ -66,27 +76,31 @@ class MaxConstants {
                 [&](const JointMove<Z>& move) {
                     for (const Bound& bound : loop_.arena.network().edges[move.edges[0]].guard)
                         note(bound.i ? bound.i : bound.j, std::abs(static_cast<std::int64_t>(loop_.arena.scaled(bound.raw)) >> 1));
-                    if (largest_.try_emplace(move.target, none()).second) pending.push_back(move.target);
-                    before_[move.target].insert({state, move.resets});
+                    meet(move.target);
+                    std::pair<int, std::vector<int>> step{state, move.resets};
+                    auto& steps = before_[move.target];
+                    if (steps.empty() || steps.back() != step) steps.push_back(std::move(step));
                 },
                 note);
             largest_[state] = here;
         }
     }
 
-    // What a clock is compared with in a state counts before it, but for clocks that the step into it resets.
+    // What a clock is compared with in a state counts before it, but for clocks that the step into it resets. As a rule
+    // later states have higher numbers: these come first.
     void spread() {
-        std::deque<int> pending;
-        std::set<int> queued;
-        for (const auto& [state, largest] : largest_) {
-            pending.push_back(state);
-            queued.insert(state);
+        std::vector<int> pending;
+        std::vector<bool> queued(largest_.size(), false);
+        for (std::size_t state = 0; state < largest_.size(); ++state) {
+            if (largest_[state].empty()) continue;
+            pending.push_back(static_cast<int>(state));
+            queued[state] = true;
         }
         while (!pending.empty()) {
             loop_.watch.tick();
-            const int state = pending.front();
-            pending.pop_front();
-            queued.erase(state);
+            const int state = pending.back();
+            pending.pop_back();
+            queued[state] = false;
             const std::vector<std::int64_t>& here = largest_[state];
             for (const auto& [earlier, resets] : before_[state]) {
                 if (earlier == state) continue;
@@ -97,7 +111,10 @@ class MaxConstants {
                         there[x] = here[x];
                         changed = true;
                     }
-                if (changed && queued.insert(earlier).second) pending.push_back(earlier);
+                if (changed && !queued[earlier]) {
+                    queued[earlier] = true;
+                    pending.push_back(earlier);
+                }
             }
         }
     }
@@ -105,8 +122,8 @@ class MaxConstants {
     std::vector<std::int64_t> none() const { return std::vector<std::int64_t>(loop_.arena.dim, -1); }
 
     ClosedLoop<Z>& loop_;
-    std::unordered_map<int, std::vector<std::int64_t>> largest_;
-    std::unordered_map<int, std::set<std::pair<int, std::vector<int>>>> before_;
+    std::vector<std::vector<std::int64_t>> largest_;  // by state; empty: no move leads there
+    std::vector<std::vector<std::pair<int, std::vector<int>>>> before_;  // by state, the steps to it: from where, resets
 };
 
 }  // namespace pursue::proof

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Dict, List, Optional, Tuple
 
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
@@ -34,7 +34,7 @@ class NativeEngine(Engine):
     """The engine in C++17, see `module.cpp`.
 
     `small_budget` is the work, in zones, that a game gets as it is, before searches with few zones or few moves take
-    turns: some tenths of a second.
+    turns: some tenths of a second. 0: they take turns at once; else a reach game goes on as it is while that is cheap.
     """
 
     name: ClassVar[str] = "native"
@@ -54,6 +54,10 @@ class NativeEngine(Engine):
         largest = max([game.delta, *(abs(b >> 1) + 1 for b in times)])
         path = (len(game.clocks) + 2) * (2 * largest + 2 * game.delta + 2)
         return len(game.clocks) <= _CLOCKS and path < _NO_BOUND and all(-_VALUES <= v < _VALUES for v in values)
+
+    def giving_first(self, work: int) -> NativeEngine:
+        """With a larger `small_budget`."""
+        return replace(self, small_budget=max(self.small_budget, work))
 
     def solve(
         self,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <queue>
 #include <set>
@@ -78,12 +79,14 @@ class Fixpoint : public ZoneGraph<Z> {
     // only adds plays.
     std::map<int, std::vector<Piece<Z>>> followed_by_plays() {
         constexpr std::size_t most = 8;
-        std::map<int, Met> met;
+        std::vector<std::unique_ptr<Met>> met(nodes_.size());
         std::deque<std::pair<int, Z>> queue;
         const auto enter = [&](int k, Z z) {
-            const auto [here, fresh] = met.try_emplace(k);
-            Met& state = here->second;
-            if (fresh) meet(k, state);
+            if (!met[k]) {
+                met[k] = std::make_unique<Met>();
+                meet(k, *met[k]);
+            }
+            Met& state = *met[k];
             if (state.pieces.empty()) return;
             for (const Z& entry : state.entries)
                 if (includes(entry, z)) return;
@@ -99,7 +102,7 @@ class Fixpoint : public ZoneGraph<Z> {
             const Z entry = queue.front().second;
             queue.pop_front();
             this->check_limits();
-            Met& here = met.at(k);
+            Met& here = *met[k];
             const auto same = [&](const Z& other) { return includes(entry, other) && includes(other, entry); };
             if (std::none_of(here.entries.begin(), here.entries.end(), same)) continue;  // a larger one took its place
             const Played play = played(nodes_[k], entry, here);
@@ -113,11 +116,12 @@ class Fixpoint : public ZoneGraph<Z> {
             }
         }
         std::map<int, std::vector<Piece<Z>>> plans;
-        for (auto& [k, state] : met) {
+        for (std::size_t k = 0; k < met.size(); ++k) {
+            if (!met[k]) continue;
             std::vector<Piece<Z>> pieces;
-            for (std::size_t p = 0; p < state.pieces.size(); ++p)
-                if (state.used[p]) pieces.push_back(std::move(state.pieces[p]));
-            if (!pieces.empty()) plans.emplace(k, std::move(pieces));
+            for (std::size_t p = 0; p < met[k]->pieces.size(); ++p)
+                if (met[k]->used[p]) pieces.push_back(std::move(met[k]->pieces[p]));
+            if (!pieces.empty()) plans.emplace(static_cast<int>(k), std::move(pieces));
         }
         return plans;
     }

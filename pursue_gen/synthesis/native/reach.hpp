@@ -33,6 +33,7 @@ class Reach : public Fixpoint<Z> {
             if (!this->queue_.empty()) return Verdict::open;
             const bool won = this->iterate(budget - spent_);
             spent_ += this->work_;
+            evaluated_ += this->work_;
             if (won) return Verdict::won;
             if (!this->converged()) return Verdict::open;
             if (!open_states()) return Verdict::lost;
@@ -40,6 +41,9 @@ class Reach : public Fixpoint<Z> {
     }
 
     double work() const { return spent_; }  // of the last `resume`
+
+    // Whether an evaluation took so few zones, on average, that one which keeps fewer would hardly take less.
+    bool is_cheap() const { return evaluated_ <= cheap * static_cast<double>(this->evaluations()); }
 
     // Keeps what is not won in more zones from now on.
     void refine(std::size_t most) {
@@ -105,6 +109,7 @@ class Reach : public Fixpoint<Z> {
     }
 
     static constexpr double per_state = 24;  // the work of a budget that exploring a state stands for
+    static constexpr double cheap = 16;      // the work of an evaluation
 
     // What was won at a time of what was open (in a coarse search), and where which command is right.
     struct Step {
@@ -214,13 +219,16 @@ class Reach : public Fixpoint<Z> {
 
     std::size_t most_;
     const bool soonest_;
-    double spent_ = 0;  // of the budget, since `resume`
+    double spent_ = 0;      // of the budget, since `resume`
+    double evaluated_ = 0;  // the work of all evaluations
     int rank_ = 1;
     std::vector<std::vector<Step>> steps_;
 };
 
-// First the game as it is, for `small_budget`, which is enough for many. Then two searches take turns, each with twice the
-// work of its turn before: one keeps few zones per state, more of them where it ends without a win; what it wins is won.
+// First the game as it is, for `small_budget`, which is enough for many, and (unless that is 0) for as long as it only
+// explores or takes few zones for an evaluation: a search with fewer zones would do the same again. Then two searches take
+// turns, each with twice the work of its turn before: one keeps few zones per state, more of them where it ends without a
+// win; what it wins is won.
 // `soonest`: the one search with all moves, see Reach.
 template <class Z>
 std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMonitor& monitor, double small_budget,
@@ -237,8 +245,13 @@ std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMo
     const Verdict first = exact->resume(small_budget);
     if (first != Verdict::open) return {first == Verdict::won, std::move(exact)};
     std::size_t most = 1;
-    auto coarse = std::make_unique<Reach<Z>>(game, monitor, most);
+    std::unique_ptr<Reach<Z>> coarse;
+    bool alone = true;
     for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
+        if (alone && (small_budget <= 0 || !exact->is_cheap())) {
+            alone = false;
+            coarse = std::make_unique<Reach<Z>>(game, monitor, most);
+        }
         for (double left = budget; coarse && left > 0; left -= std::max(coarse->work(), 1.0)) {
             const Verdict verdict = coarse->resume(left);
             if (verdict == Verdict::won) return {true, std::move(coarse)};

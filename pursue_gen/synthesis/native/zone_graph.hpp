@@ -127,7 +127,8 @@ class ZoneGraph {
         nodes_[k].unfollowed.clear();
         const Discrete d = states_[k];
         joints_.enabled(d, enabled_);
-        const std::vector<int> preferred = full ? std::vector<int>{} : preferred_edges(d);
+        // What the controller does first is a plan, which takes longer than all else here.
+        const std::vector<int> preferred = full || !chooses() ? std::vector<int>{} : preferred_edges(d);
         bool chosen = false;
         for (const int j : enabled_) {
             const Joint& joint = joints_[j];
@@ -137,6 +138,13 @@ class ZoneGraph {
             else if (!joint.controllable) nodes_[k].unfollowed.push_back({j, node(joint.target(d)), unseen});
         }
         enqueue(k);
+    }
+
+    // Reach: whether the controller can do anything where these moves are enabled.
+    bool chooses() const {
+        return game_.kind == Kind::safety || std::any_of(enabled_.begin(), enabled_.end(), [&](int j) {
+                   return joints_[j].controllable;
+               });
     }
 
     std::vector<int> preferred_edges(const Discrete& d) const {
