@@ -9,6 +9,7 @@ once). `native` has the same in C++. See the design of the game for the rules.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
@@ -164,12 +165,17 @@ def _ranks_of(played: Part, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
 def pruned(strategy: Strategy, report: Report) -> Strategy:
     """The strategy without the blocks, commands and zones that no play reaches."""
     used = report.used
+    counts = Counter(b for b, _, _ in used)
 
     def kept(zones: Sequence[Zone], block: int, part: object) -> Tuple[Zone, ...]:
         return tuple([zone for n, zone in enumerate(zones) if (block, part, n) in used])
 
     blocks = []
     for b, block in enumerate(strategy.blocks):
+        sizes = [len(command.zones) for command in block.commands]
+        if all(sizes) and 0 < counts[b] == len(block.wait) + sum(sizes):  # as a rule
+            blocks.append(block)
+            continue
         commands = (Command(kept(c.zones, b, k), c.moves) for k, c in enumerate(block.commands))
         fewer = replace(block, wait=kept(block.wait, b, "wait"), commands=tuple(c for c in commands if c.zones))
         if fewer.wait or fewer.commands:
