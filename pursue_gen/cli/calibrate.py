@@ -33,7 +33,9 @@ def calibrate(
     output: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="FILE", help="Write the scenario with the proposal to FILE."
     ),
-    force: bool = typer.Option(False, "--force", help="Replace FILE if it is there already, also the scenario itself."),
+    force: bool = typer.Option(
+        False, "--force", help="Replace FILE and OUT if they are there already, also the scenario itself."
+    ),
     request: SolveRequest = REQUEST,
     time_unit: Optional[float] = typer.Option(
         None, "--time-unit", metavar="SECONDS", help="How long a time unit is; by default as recorded, or 1 second."
@@ -67,10 +69,10 @@ def calibrate(
     from pursue_gen.files import check_new, write_texts
     from pursue_gen.solving.inputs import findings_in, load_scenario
 
-    if output is not None:
-        check_new(output, force)
     if picture is not None:
         drawn.check_name(picture)
+    for target in filter(None, (output, picture)):
+        check_new(target, force)
     scenario = load_scenario(file)
     show(findings_in(file))
     options = _options(scenario, request, time_unit, step, share, outliers)

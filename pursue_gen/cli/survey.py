@@ -13,7 +13,7 @@ import typer
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import SCENARIO
 from pursue_gen.diagnostics import PursueError, as_json, error, usage_error
-from pursue_gen.files import shell_quoted, write_bytes
+from pursue_gen.files import check_new, shell_quoted, write_bytes
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -57,8 +57,7 @@ def survey(
     """
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
     for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
-        if file.exists() and not force:
-            raise usage_error(f"{file} is there already", "name another file, or replace it with --force")
+        check_new(file, force)
     _check_numbers({"--radius": radius, "--clearance": clearance, "--start": start, "--reserve": reserve}, 0.0)
     _check_numbers({"--tolerance": tolerance}, 0.0)
     _check_numbers({"--time-unit": time_unit, "--turning": turning, "--acceleration": acceleration}, 0.001)

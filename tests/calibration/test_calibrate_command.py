@@ -107,6 +107,19 @@ def test_no_file_that_is_there_is_replaced_unless_that_is_wanted(folder: Path, t
     assert "calibrate: 18 drives" in scenario.read_text(encoding="utf-8")
 
 
+def test_no_picture_that_is_there_is_replaced_unless_that_is_wanted(folder: Path, tmp_path: Path) -> None:
+    words = [folder / "floor.pur", folder / "drives.bag", "--no-solve", "--picture"]
+    there, link = tmp_path / "there.svg", tmp_path / "link.svg"
+    there.write_text("a picture of mine", encoding="utf-8")
+    link.symlink_to(there)
+    for target in (there, link):
+        done = called(*words, target)
+        assert done.status == 2 and "CLI003" in done.err and str(target) in done.err
+    assert there.read_text(encoding="utf-8") == "a picture of mine"
+    assert called(*words, there, "--force").status == 0
+    assert there.read_text(encoding="utf-8").startswith("<svg")
+
+
 @pytest.mark.parametrize("words", [["--time-unit", "0"], ["--step", "0"], ["--step", "x"], ["--share", "1"]])
 def test_options_that_cannot_be_meant_are_reported(folder: Path, words: List[str]) -> None:
     done = called(folder / "floor.pur", folder / "drives.bag", *words)
