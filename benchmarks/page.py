@@ -6,7 +6,7 @@ import re
 import textwrap
 from typing import Any, Callable, Dict, Mapping, Optional
 
-from benchmarks import command, random_page, tables, tchecker
+from benchmarks import agreement_page, command, random_page, tables, tchecker
 
 Results = Dict[str, Any]
 
@@ -72,6 +72,7 @@ PARTS: Dict[str, Callable[[Results], str]] = {
     "whole commands": lambda results: command.table(results["rows"]),
     "guaranteed times": lambda results: command.times_table(results["rows"]),
     "random games": lambda results: random_page.table(results["rows"]),
+    "agreement": agreement_page.table,
     "tchecker": lambda results: tchecker.table(results["rows"]),
     "families": lambda results: tables.families(results["rows"]),
 }
