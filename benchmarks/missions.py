@@ -1,4 +1,4 @@
-"""Patterns, stories and statements once on ROS, a mission in each generated workspace: `python -m benchmarks.missions`.
+"""Patterns, stories, statements and crowds on ROS, each once in its workspace: `python -m benchmarks.missions`.
 
 `--out docs` writes how they ended to docs/benchmarks/missions.json, which `python -m docs.patterns.make` shows. What is
 named (`patterns/visit`) is played alone, and replaces what is there of it. Missions run one after the other, in
@@ -19,11 +19,13 @@ import time
 from pathlib import Path
 from typing import Iterator, List, NamedTuple, Sequence, Tuple
 
+from benchmarks.families import FAMILIES
 from benchmarks.kills import outcome
 from benchmarks.ros_world import ROOT, World, world
 from benchmarks.synthesis import machine, version
 from pursue_gen.files import write_texts
-from pursue_gen.language import load
+from pursue_gen.language import load, parse
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay import check, game_of, read_recording
 from pursue_gen.replay.game import from_workspace
 from pursue_gen.replay.journal import Journal
@@ -45,6 +47,9 @@ STATEMENTS = {
     "together only_if, travel … takes": "hotel/late_supper",
 }
 """One scenario for each statement that neither patterns nor stories play, which is won because of it."""
+
+CROWDS = {"families/delivery_8": ("delivery", 8), "families/visitors_3": ("visitors", 3)}
+"""Members of the benchmarks' families that are won in stages: the name of the family, the size."""
 
 REQUEST = SolveRequest(reaction="0.1")
 FILE = "missions.json"
@@ -73,7 +78,17 @@ class Mission(NamedTuple):
 def names() -> List[str]:
     """All that are played, in order."""
     files = (path for folder in FOLDERS for path in sorted((ROOT / "scenarios" / folder).glob("*.pur")))
-    return [*(f"{path.parent.name}/{path.stem}" for path in files), *sorted(STATEMENTS.values())]
+    return [*(f"{path.parent.name}/{path.stem}" for path in files), *sorted(STATEMENTS.values()), *CROWDS]
+
+
+def scenario_of(name: str) -> Scenario:
+    """The scenario of that name, its patrols with periods. Raises PursueError where it has errors."""
+    if name not in CROWDS:
+        return settled(load(ROOT / "scenarios" / f"{name}.pur"), REQUEST)
+    member, size = CROWDS[name]
+    text = next(family.text(size) for family in FAMILIES if family.name == member)
+    title = name.rpartition("/")[2]
+    return settled(parse(text, f"{title}.pur", title), REQUEST)
 
 
 def build(workspace: Path, common: Path) -> None:
@@ -124,7 +139,7 @@ def measure(chosen: Sequence[str]) -> Iterator[Tuple[str, Mission]]:
     """Plays and judges these, one after the other."""
     with tempfile.TemporaryDirectory(prefix="missions_ws_") as home:
         for name in chosen:
-            promise = promised_of(settled(load(ROOT / "scenarios" / f"{name}.pur"), REQUEST), REQUEST)
+            promise = promised_of(scenario_of(name), REQUEST)
             scenario, won = promise.scenario, promise.solution
             folder, options = Path(home) / scenario.name, Options(reaction=won.rules.reaction)
             workspace = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder)
