@@ -1,10 +1,10 @@
 """From a map to missions, by the documented commands alone: `python -m benchmarks.from_map`.
 
-A floor of three rooms, two robots, a scenario of first guesses: `pursue-gen survey`, `ws`, `rosrun UI drive_legs`, one
-mission that is recorded, `pursue-gen calibrate`, `ws` again, and then the missions that count. No number is edited in
-between. The robots are fakes of move_base that drive on the map; their speeds, accelerations, turning and planning
-times and the durations of their actions are drawn from a seed, and all times vary. `--out docs` writes what was found
-to docs/benchmarks/from_map.json, and the table in docs/robots.md.
+A floor of three rooms, two robots, a scenario of first guesses: `pursue-gen survey`, `ws`, `rosrun UI drive_legs`,
+`pursue-gen calibrate`, `ws` again, and then the missions that count. No number is edited in between. The robots are
+fakes of move_base that drive on the map; their speeds, accelerations, turning and planning times and the durations of
+their actions are drawn from a seed, and all times vary. Each of the seeds is another pair of robots. `--out docs`
+writes what was found to docs/benchmarks/from_map.json, and the tables in docs/robots.md.
 
 All runs in simulated time; commands have the time that they have in life, as the clock stands still after messages.
 """
@@ -126,7 +126,7 @@ class Story:
         return said
 
     def drives(self, folder: str, times: int) -> Path:
-        """Has both robots drive all ways so often; the bag."""
+        """Has both robots drive all ways, and do their actions, so often; the bag."""
         with world(self.home) as there:
             self.place_robots(there, folder, "drives")
             self._start(there, "sim_clock", folder, f"rosrun UI sim_clock _speed:={DRIVES_SPEED} _step:=0.05")
@@ -134,7 +134,7 @@ class Story:
                 time.sleep(0.2)
             # The clock runs no faster than life before the first word of a mission.
             there.run(["rostopic", "pub", "--once", "/pursue/events", "std_msgs/String", "faster"])
-            command = f"rosrun UI drive_legs _times:={times}"
+            command = f"rosrun UI drive_legs _times:={times} _actions:={times}"
             self._start(there, "drive_legs", folder, command)
             self._wait(there, "drive_legs", command, LONGEST["drives"])
             print(there.log("drive_legs")[-1500:], flush=True)
@@ -201,13 +201,15 @@ def judge(bag: Path, workspace: Path) -> Mission:
 
 
 def driven(bag: Path) -> Dict[str, float]:
-    """How many drives are in a bag, how many of them failed, and the minutes of the robots' time that all took."""
+    """How many drives and actions are in a bag, how many of them failed, and the minutes of the robots' time that all
+    took."""
     record = read_recording(bag, drives=True)
     assert not isinstance(record, Journal)
     drives = record.drives
     minutes = (drives[-1].end - drives[0].start) / 60
     failed = sum(each.outcome != ARRIVED for each in drives)
-    return {"drives": len(drives), "failed": failed, "minutes": round(minutes, 1)}
+    actions = sum(bool(each.action) for each in drives)
+    return {"drives": len(drives) - actions, "actions": actions, "failed": failed, "minutes": round(minutes, 1)}
 
 
 def windows(scenario: Path) -> Dict[str, str]:
@@ -218,16 +220,13 @@ def windows(scenario: Path) -> Dict[str, str]:
 
 
 def played(home: Path, seed: int, times: int, missions: int) -> Dict[str, Any]:
-    """The whole story, in a folder of its own; what docs/benchmarks/from_map.json has of it."""
+    """The whole story of one pair of robots, in a folder of its own; what docs/benchmarks/from_map.json has of it."""
     story = Story(home, seed)
     story.command(f"pursue-gen survey map.yaml my_floor.pur --speed {SPEED}")
     story.workspace("my_floor_surveyed.pur", "first_ws")
     drives = story.drives("first_ws", times)
-    bag = story.mission("first_ws", "first")
-    first = judge(bag, home / "first_ws")
-    print(*first, sep="; ", flush=True)
     copy = "my_floor_calibrated.pur"
-    print(story.command(f"pursue-gen calibrate my_floor_surveyed.pur {drives} {bag} -o {copy}"), flush=True)
+    print(story.command(f"pursue-gen calibrate my_floor_surveyed.pur {drives} -o {copy}"), flush=True)
     said = story.workspace(copy, "ws")
     found = []
     for number in range(1, missions + 1):
@@ -244,20 +243,27 @@ def played(home: Path, seed: int, times: int, missions: int) -> Dict[str, Any]:
         "driven": driven(drives),
         "windows": {what: [before.get(what, ""), window] for what, window in after.items()},
         "promised": float(promised[1]) if promised else None,
-        "first": first._asdict(),
         "missions": [mission._asdict() for mission in found],
     }
 
 
 def tables(data: Dict[str, Any]) -> str:
-    """What was found: the windows, and the missions."""
-    heads = ("way or event", "first guess, survey", "calibrated")
-    text = markdown(heads, ((what, *both) for what, both in data["windows"].items()), left=3)
+    """What was found with each pair of robots, side by side: the windows, and the missions."""
+    pairs = data["pairs"]
+    guess, *_ = pairs
+    heads = ("way or event", "first guess, survey", *(f"calibrated, seed {pair['seed']}" for pair in pairs))
+    rows = [(what, before, *(pair["windows"][what][1] for pair in pairs)) for what, (before, _) in
+            guess["windows"].items()]  # fmt: skip
+    text = markdown(heads, rows, left=len(heads))
     lines = []
-    for number, mission in enumerate([data["first"], *data["missions"]]):
-        left = "; ".join(mission["left"]) or mission["why"]
-        lines.append((str(number or "first"), mission["outcome"], left or "nothing", f"{mission['seconds']:.0f}"))
-    return text + "\n" + markdown(("mission", "end", "what left the model", "time units"), lines, left=3)
+    for pair in pairs:
+        for number, mission in enumerate(pair["missions"], start=1):
+            left = "; ".join(mission["left"]) or mission["why"] or "nothing"
+            promised = f"{pair['promised']:.0f}" if pair["promised"] is not None else "none"
+            took = f"{mission['seconds']:.0f}"
+            lines.append((str(pair["seed"]), str(number), mission["outcome"], left, took, promised))
+    heads = ("seed", "mission", "end", "what left the model", "time units", "promised")
+    return text + "\n" + markdown(heads, lines, left=4)
 
 
 def filled(page: str, data: Dict[str, Any]) -> str:
@@ -270,21 +276,24 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--missions", type=int, default=10, help="how many count (10)")
     parser.add_argument("--times", type=int, default=10, help="how often each way is driven before (10)")
-    parser.add_argument("--seed", type=int, default=1, help="of the robots, and of all that varies (1)")
+    seeds = "of the robots, and of all that varies: a pair of robots each (1 2)"
+    parser.add_argument("--seed", type=int, nargs="+", default=[1, 2], help=seeds)
     parser.add_argument("--keep", type=Path, help="an empty folder for everything that is written on the way")
     parser.add_argument("--out", type=Path, help="the folder of robots.md and benchmarks/from_map.json")
     given = parser.parse_args(arguments)
+    pairs = []
     with tempfile.TemporaryDirectory(prefix="from_map_") as place:
-        home = (given.keep or Path(place)).resolve()
-        home.mkdir(parents=True, exist_ok=True)
-        found = played(home, given.seed, given.times, given.missions)
-    data = {"machine": machine(), "date": f"{datetime.date.today()}", "version": version(), **found}
+        for seed in given.seed:
+            home = (given.keep or Path(place)).resolve() / f"seed_{seed}"
+            home.mkdir(parents=True)
+            pairs.append(played(home, seed, given.times, given.missions))
+    data = {"machine": machine(), "date": f"{datetime.date.today()}", "version": version(), "pairs": pairs}
     print(tables(data))
     if given.out is not None:
         page = given.out / "robots.md"
         texts = {page: filled(page.read_text(encoding="utf-8"), data)}
         write_texts({**texts, given.out / "benchmarks" / FILE: json.dumps(data, indent=1, ensure_ascii=False) + "\n"})
-    return int(any(mission["outcome"] != "goal" for mission in data["missions"]))
+    return int(any(mission["outcome"] != "goal" for pair in pairs for mission in pair["missions"]))
 
 
 if __name__ == "__main__":

@@ -38,7 +38,8 @@ TOLERANCE = 0.1
 """Time units by which something may miss its window, as `replay` and the observer have it: messages take time."""
 
 KEPT = "kept"
-"""What the window rests on where the times are too few for a claim and keep to the present one, which stays."""
+"""What the window rests on where the times are too few for a claim, and the present one holds all that they could
+oblige to: it stays."""
 
 _SHORTEST = Fraction(1, 1000)
 """An event with a duration takes longer than this: 0 is none."""
@@ -224,7 +225,9 @@ def _finding(
     late = [time - float(present[1]) for time in times if time > present[1] + options.tolerance]
     basis = window.basis
     if basis == GUESSED and not (early or late or options.slack):
-        low, high, basis, widened = *present, KEPT, False
+        low, high = min(low, present[0]), max(high, present[1])  # nothing says that the present one is too wide
+        if (low, high) == present:
+            basis, widened = KEPT, False
     return Finding(
         what, tuple(samples), times, spread_of(times), far, present, (low, high), basis, len(early), len(late),
         max(early, default=0.0), max(late, default=0.0), *held_out(used, options.share), widened,

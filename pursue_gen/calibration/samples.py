@@ -8,7 +8,7 @@ from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.tga.names import agent_clock, going, is_doing, is_going
-from pursue_runtime.drives.report import ARRIVED, FAILED
+from pursue_runtime.drives.report import ARRIVED, FAILED, Drive
 from pursue_runtime.locations import action_of, in_words
 from pursue_runtime.state import WAITING, SystemState
 
@@ -87,14 +87,14 @@ def of_record(record: MissionRecord, scenario: Scenario, file: str = "") -> Samp
     stays.end()
     begun = min((drive.start for drive in record.drives), default=0.0)
     for drive in record.drives:
-        way = names.way(drive.robot, going(drive.a, drive.b))
-        if way is None:
-            stays.strangers.add(str(Way(drive.robot, drive.a, drive.b)))
+        what = names.driven(drive)
+        if what is None:
+            stays.strangers.add(drive.action or str(Way(drive.robot, drive.a, drive.b)))
         elif drive.outcome == ARRIVED:
-            stays.measured.append(Sample(way, drive.seconds, file, drive.start - begun))
+            stays.measured.append(Sample(what, drive.seconds, file, drive.start - begun))
         else:
             why = f"{drive.outcome}{f': {drive.text}' if drive.text else ''}"
-            stays.unused.append(Unused(way, drive.seconds, why, file, drive.outcome == FAILED))
+            stays.unused.append(Unused(what, drive.seconds, why, file, drive.outcome == FAILED))
     units = {state.unit for state in record.states}
     agents = {drive.robot for drive in record.drives}.union(*(state.locations for state in record.states[:1]))
     return Samples(
@@ -139,6 +139,12 @@ class _Names:
     def way(self, agent: str, location: str) -> Optional[Way]:
         """The way that an agent is on there; None where the scenario has none."""
         return self._ways.get((agent, location))
+
+    def driven(self, drive: Drive) -> Optional[Measured]:
+        """What a drive measures; None where the scenario has nothing like it."""
+        if drive.action:
+            return Work(drive.action) if drive.action in self._events else None
+        return self.way(drive.robot, going(drive.a, drive.b))
 
     def what(self, agent: str, location: str) -> Optional[Measured]:
         """What an agent does there; None where the scenario has nothing like it."""

@@ -84,7 +84,8 @@ def sentences(proposal: Proposal) -> Iterator[str]:
     if proposal.missing_events:
         some = ", ".join(shown(proposal.scenario, event) for event in proposal.missing_events[:_MANY])
         more = " …" if len(proposal.missing_events) > _MANY else ""
-        yield f"Not measured, so durations stay: {some}{more}. (Recorded missions measure actions, drives do not.)"
+        how = "rosrun UI drive_legs _actions:=5 does what robots do alone; recorded missions measure the rest"
+        yield f"Not measured, so durations stay: {some}{more}. ({how}.)"
     widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
     if widened:
         yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."
@@ -102,8 +103,9 @@ def _bases(share: float, needed: int) -> Dict[str, str]:
         COUNTED: f"counted: holds {percent} of later times, at a confidence of 95 %, however they are distributed.",
         FITTED: f"fitted: holds {percent} of later times, at a confidence of 95 %, if their logarithms are normally "
         f"distributed; without that assumption it takes {needed} times of a kind.",
-        KEPT: "kept: less than 5 times, all of them in the present window, which stays.",
-        GUESSED: "guessed: less than 5 times: from half the shortest to twice the longest. Nothing can be claimed.",
+        KEPT: "kept: less than 5 times, and the present window, which stays, is as wide as a guess or wider.",
+        GUESSED: "guessed: less than 5 times: from half the shortest to twice the longest, and no narrower than a "
+        "present window that holds them. Nothing can be claimed.",
     }
 
 

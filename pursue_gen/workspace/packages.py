@@ -68,7 +68,7 @@ NODES: Mapping[str, Mapping[str, Node]] = {
         "sim_clock": Node("nodes.sim_clock", "Simulated time, for missions that run faster than life."),
         "recorder": Node("nodes.recorder", "Records a mission in a bag."),
         "markers": Node("nodes.markers", "Shows the mission in rviz."),
-        "drive_legs": Node("nodes.drive_legs", "Drives robots along all ways, and records how long that takes."),
+        "drive_legs": Node("nodes.drive_legs", "Drives robots along all ways, and records how long all takes."),
     },
     "bringup": {"run_mission": Node("ui.run_mission", "Launches the mission, and exits with the verdict.")},
     "communication_manager": {"": Node("nodes.communication_manager", "")},

@@ -1,4 +1,4 @@
-"""What is published of each drive on `pursue/drives`, as JSON."""
+"""What is published of each drive, and of each action, on `pursue/drives`, as JSON."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ DRIVES = "pursue/drives"
 """The topic (std_msgs/String)."""
 
 ARRIVED, FAILED, LATE, INTERRUPTED = "arrived", "failed", "late", "interrupted"
-"""How a drive ends: the robot is there; it gave up; it was not there in the time that it had; somebody stopped it."""
+"""How a drive or an action ends: the robot is there, or it is done; the robot gave up; it was not there in the time
+that it had; somebody stopped it."""
 OUTCOMES = (ARRIVED, FAILED, LATE, INTERRUPTED)
 
 _FORMAT = 1
@@ -19,7 +20,8 @@ _MOST_GOALS = 1000
 
 
 class Drive(NamedTuple):
-    """A drive of a robot from `a` to `b`, from `start` to `end` (seconds of ROS time).
+    """A drive of a robot from `a` to `b`, from `start` to `end` (seconds of ROS time). Where `action` names an event it
+    is that event at `a`, which is `b` too.
 
     `goals`: how many it took, as failed ones are sent again; `text`: why it ended otherwise than ARRIVED.
     """
@@ -32,6 +34,7 @@ class Drive(NamedTuple):
     outcome: str = ARRIVED
     goals: int = 1
     text: str = ""
+    action: str = ""
 
     @property
     def seconds(self) -> float:
@@ -43,6 +46,8 @@ def format_drive(drive: Drive) -> str:
     """The text of a drive."""
     data: Dict[str, Any] = {"format": _FORMAT, "robot": drive.robot, "from": drive.a, "to": drive.b}
     data.update(start=round(drive.start, 6), end=round(drive.end, 6), outcome=drive.outcome, goals=drive.goals)
+    if drive.action:
+        data["action"] = drive.action
     if drive.text:
         data["text"] = drive.text
     return json.dumps(data)
@@ -58,14 +63,16 @@ def parse_drive(text: str) -> Optional[Drive]:
         return None
     values: List[Any] = [data.get(key) for key in ("robot", "from", "to", "start", "end")]
     robot, a, b, start, end = values
-    goals, why = data.get("goals", 1), data.get("text", "")
-    if not all(isinstance(name, str) and name for name in (robot, a, b)) or not isinstance(why, str):
+    goals, why, action = data.get("goals", 1), data.get("text", ""), data.get("action", "")
+    if not all(isinstance(name, str) and name for name in (robot, a, b)):
+        return None
+    if not isinstance(why, str) or not isinstance(action, str):
         return None
     if not _is_time(start) or not _is_time(end) or end < start:
         return None
     if not isinstance(goals, int) or isinstance(goals, bool) or not 0 <= goals <= _MOST_GOALS:
         return None
-    return Drive(robot, a, b, float(start), float(end), data["outcome"], goals, why)
+    return Drive(robot, a, b, float(start), float(end), data["outcome"], goals, why, action)
 
 
 def _is_time(value: Any) -> bool:

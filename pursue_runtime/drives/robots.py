@@ -6,6 +6,7 @@ import os
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional
 
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.drives.actions import Rules, acts_of
 from pursue_runtime.drives.session import Plan
 from pursue_runtime.drives.tour import Way
 from pursue_runtime.locations import is_movement
@@ -21,12 +22,14 @@ Folder = Callable[[str], Optional[str]]
 
 
 class Driven(NamedTuple):
-    """A robot, where it begins, where it is sent for each place, and what it drives."""
+    """A robot, where it begins, where it is sent for each place, and what it drives and does; `rules` are shared by
+    all robots."""
 
     name: str
     start: str
     poses: Table
     plan: Plan
+    rules: Rules
 
 
 def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[Driven]:
@@ -42,16 +45,18 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
             raise DataError(f"~robots has {name!r}; expected some of {', '.join(robots)}")
     times, limit = whole(given, "times", 5, least=1), number(given, "limit", 300.0, above=True)
     pause, start = number(given, "pause", 1.0), text(given, "start")
+    actions, rules = whole(given, "actions", 0), Rules(model)
     places, own = read_poses(read(POSES)).places, _own_poses(read, folder)
     found: List[Driven] = []
     for name in wanted:
-        ways, poses = ways_of(robots[name]), {**places, **own.get(name, {})}
-        if not ways:
+        ways, poses = tuple(ways_of(robots[name])), {**places, **own.get(name, {})}
+        acts = acts_of(robots[name], model) if actions else ()
+        if not ways and not acts:
             continue
-        begins = start if start and not found else robots[name].initial
+        begins = start if start and ways and not any(each.plan.ways for each in found) else robots[name].initial
         if begins not in poses:
             raise DataError(f"~start is {begins!r}; expected one of {', '.join(poses)}")
-        found.append(Driven(name, begins, poses, Plan(tuple(ways), times, limit, pause)))
+        found.append(Driven(name, begins, poses, Plan(ways, times, limit, pause, acts, actions), rules))
     if not found:
         raise DataError(f"no way for {', '.join(wanted) or 'anybody'}: no robot of this scenario is mobile")
     return found

@@ -1,8 +1,8 @@
-"""All ways of one robot, driven so many times each: what it is sent, and what is measured. Without ROS.
+"""All ways of one robot, driven so many times each, and its actions: what is sent, and what is measured. Without ROS.
 
 Goals, retries and arrivals are those of a mission: `Navigation` is shown a state in which the robot is on its way, and
 the word with which it would report the end is the end of the drive. Times are seconds of ROS time, `real` of the
-monotonic clock.
+monotonic clock. An action goes on from the moment in which it is sent to the word that reports its end.
 """
 
 from __future__ import annotations
@@ -14,53 +14,69 @@ from pursue_runtime.controller.goal import Answer, Goal, Movement
 from pursue_runtime.controller.navigation import Log, Navigation, View
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, Rules, location_of
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
-from pursue_runtime.drives.tour import Way, next_way
+from pursue_runtime.drives.tour import Way, next_way, towards
 from pursue_runtime.locations import movement
 from pursue_runtime.words import HELD, parse_report, parse_word
 
-MOST_FAILURES = 2
-"""So often a way is tried that fails; then it is given up."""
-
 
 class Plan(NamedTuple):
-    """What is to be driven: each of the `ways` `times` times. `limit`: the seconds that one drive may take; `pause`:
-    the seconds between two of them."""
+    """What is to be driven: each of the `ways` `times` times. `limit`: the seconds that one drive or action may take;
+    `pause`: the seconds between two of them. `acts` are to be done too, each `actions` times."""
 
     ways: Tuple[Way, ...]
     times: int = 5
     limit: float = 300.0
     pause: float = 1.0
+    acts: Tuple[Act, ...] = ()
+    actions: int = 0
 
 
 class Due(NamedTuple):
-    """What is to be done now: a goal to send, the id of a goal to call back, a drive that has ended."""
+    """What is to be done now: a goal to send, the id of a goal to call back, a drive that has ended, an action."""
 
     goal: Optional[Goal] = None
     cancel: Optional[str] = None
     drive: Optional[Drive] = None
+    act: Optional[Act] = None
 
 
 @dataclass
 class _Leg:
-    """A drive that is under way; `counts`: it is one of the plan, and not one to a place to begin at."""
+    """A drive that is under way, or an action (`act`); `counts`: it is one of the plan, and not one to a place to begin
+    at."""
 
     a: str
     b: str
     start: float
     counts: bool
     goals: int = 0
+    act: Optional[Act] = None
+
+    @property
+    def location(self) -> str:
+        """The location of the robot in a mission that would be so far."""
+        return movement(self.a, self.b) if self.act is None else location_of(self.act)
 
 
 class Session:
-    """The drives of one robot.
+    """The drives and actions of one robot.
 
     It begins with a drive to `start`, which does not count, and so it goes on after a failed one: to where that began,
-    or to another place. A robot that another node sends elsewhere is left to that.
+    or to another place. A robot that another node sends elsewhere is left to that. Where the tour passes a place at
+    which an action is left that the `rules` allow, it is done there.
     """
 
     def __init__(
-        self, robot: str, places: Mapping[str, Place], start: str, plan: Plan, settings: Settings, log: Log
+        self,
+        robot: str,
+        places: Mapping[str, Place],
+        start: str,
+        plan: Plan,
+        settings: Settings,
+        log: Log,
+        rules: Optional[Rules] = None,
     ) -> None:
         self.robot, self.plan = robot, plan
         self.is_over = False
@@ -70,7 +86,8 @@ class Session:
         self._places, self._log = places, log
         self._failures: Dict[Way, int] = {}
         self._leg: Optional[_Leg] = None
-        self._place = ""  # where it is, "": not known
+        self._acts = Acts(robot, plan.acts, plan.actions, rules)
+        self._place = "" if plan.ways else start  # where it is, "": not known
         self._tries = [start, *(place for place in places if place != start)]  # where it may begin
         self._next_at = float("-inf")
         self._seq = 0
@@ -84,7 +101,7 @@ class Session:
     @property
     def location(self) -> str:
         """The location of the robot in a mission that would be so far; "" where it stands."""
-        return movement(self._leg.a, self._leg.b) if self._leg is not None else ""
+        return self._leg.location if self._leg is not None else ""
 
     # From the robot ---------------------------------------------------------------------------------------------------
 
@@ -101,12 +118,16 @@ class Session:
         self._nav.on_position(position, now)
 
     def on_word(self, text: str) -> None:
-        """Takes a word on pursue/events: a robot may report by one that it has arrived, from wherever, or failed."""
+        """Takes a word on pursue/events: a robot may report by one that it has arrived, from wherever, or failed; and
+        whoever does an action reports its end."""
         report, word, leg = parse_report(text), parse_word(text), self._leg
         if leg is None:
             return
-        ends = {f"{self.robot}_{movement(a, leg.b)}2{leg.b}" for a in (leg.a, *self._places)}
-        arrives = word is not None and word.event in ends
+        if leg.act is not None:
+            arrives = word is not None and word.agent in ("", self.robot) and word.event == leg.act.event + DONE
+        else:
+            ends = {f"{self.robot}_{movement(a, leg.b)}2{leg.b}" for a in (leg.a, *self._places)}
+            arrives = word is not None and word.event in ends
         if arrives or (report is not None and report.agent == self.robot):
             self._word = text
 
@@ -120,16 +141,22 @@ class Session:
             return Due()
         leg = self._leg
         assert leg is not None, "a drive has begun"
-        due = self._nav.due(now, real)
-        leg.goals += due.goal is not None
-        word, self._word = self._word or due.word, None
+        goal: Optional[Goal] = None
+        if leg.act is None:
+            due = self._nav.due(now, real)
+            goal, self._word = due.goal, self._word or due.word
+        elif not leg.goals:
+            leg.goals = 1
+            return Due(act=leg.act)
+        leg.goals += goal is not None
+        word, self._word = self._word, None
         if word is not None:
             return self._ended(leg, word, now)
         if now >= leg.start + self.plan.limit:
-            cancel = self.goal
-            drive = self._end(leg, LATE, f"not there after {self.plan.limit:g} s", now)
-            return Due(cancel=cancel, drive=drive)
-        return Due(goal=due.goal)
+            cancel = self.goal or None
+            what = "not there" if leg.act is None else "not done"
+            return Due(cancel=cancel, drive=self._end(leg, LATE, f"{what} after {self.plan.limit:g} s", now))
+        return Due(goal=goal)
 
     def next_moment(self) -> Optional[float]:
         """When to call `due` again; None: not before the next input."""
@@ -137,14 +164,14 @@ class Session:
             return None
         if self._leg is None:
             return self._next_at
-        moment = self._nav.next_moments()[0]
+        moment = self._nav.next_moments()[0] if self._leg.act is None else None
         limit = self._leg.start + self.plan.limit
         return limit if moment is None else min(moment, limit)
 
     def stop(self, now: float) -> Due:
         """Ends it at once: what is measured stays."""
         self._stop("stopped")
-        leg, cancel = self._leg, self.goal
+        leg, cancel = self._leg, self.goal or None
         if leg is None:
             return Due()
         return Due(cancel=cancel, drive=self._end(leg, INTERRUPTED, "", now))
@@ -156,21 +183,29 @@ class Session:
             failed = self._failures.get(way, 0)
             text = f"{self.robot} from {way[0]} to {way[1]}: {len(times)} of {self.plan.times} drives{took}"
             yield text + (f"; {failed} failed" if failed else "")
+        yield from self._acts.summary()
 
     @property
     def is_complete(self) -> bool:
-        """True where each way was driven so often as was wanted."""
-        return all(len(times) >= self.plan.times for times in self.measured.values())
+        """True where each way was driven, and each action done, so often as was wanted."""
+        return self._acts.is_complete and all(len(times) >= self.plan.times for times in self.measured.values())
 
     # Drives -----------------------------------------------------------------------------------------------------------
 
     def _begin(self, now: float) -> bool:
-        """Begins the next drive; False where there is none."""
+        """Begins the next drive or action; False where there is none."""
+        self._word = None
+        self._seq += 1
         if self._place:
             way = next_way(self._place, self._left(), self._usable())
+            act = self._acts.next(self._place, again=way is None)
+            if act is not None:
+                self._leg = _Leg(act.place, act.place, now, counts=True, act=act)
+                return True
+            way = way or towards(self._place, self._acts.places(), self._usable())
             if way is None:
-                missing = not self.is_complete
-                self._stop("the rest cannot be reached, or failed too often" if missing else "")
+                why = "the rest cannot be reached, failed too often, or needs something else to be done before"
+                self._stop("" if self.is_complete else why)
                 return False
             self._leg = _Leg(*way, now, counts=True)
         elif self._tries:
@@ -178,10 +213,8 @@ class Session:
         else:
             self._stop("it gets to no place")
             return False
-        self._seq += 1
         leg = self._leg
-        way_there = Movement(movement(leg.a, leg.b), self._places[leg.b])
-        self._word = None
+        way_there = Movement(leg.location, self._places[leg.b])
         self._nav.on_state(View(way_there.location, way_there, seq=self._seq), now)
         self._nav.start(way_there, now)
         return True
@@ -197,16 +230,21 @@ class Session:
         return Due(cancel=cancel, drive=self._end(leg, FAILED, report.text, now))
 
     def _end(self, leg: _Leg, outcome: str, text: str, now: float) -> Optional[Drive]:
-        """The drive is over; what it is on `pursue/drives`, None where it does not count."""
-        drive = Drive(self.robot, leg.a, leg.b, leg.start, now, outcome, leg.goals, text)
+        """The drive or action is over; what it is on `pursue/drives`, None where it does not count."""
+        name = "" if leg.act is None else leg.act.event
+        drive = Drive(self.robot, leg.a, leg.b, leg.start, now, outcome, leg.goals, text, name)
         self._leg = None
+        self._next_at = now + self.plan.pause
+        if leg.act is not None:
+            self._end_act(leg.act, drive)
+            return drive
         arrived = outcome == ARRIVED
         self._place = leg.b if arrived else ""
-        self._next_at = now + self.plan.pause
+        self._acts.arrived()
         self._nav.on_state(View(self._place, seq=self._seq), now)
         if arrived and leg.counts:
             self.measured.setdefault((leg.a, leg.b), []).append(drive.seconds)
-            count = sum(len(times) for times in self.measured.values())
+            count = sum(min(len(times), self.plan.times) for times in self.measured.values())
             all_ = self.plan.times * len(self.plan.ways)
             self._log("info", f"{self.robot} from {leg.a} to {leg.b}: {drive.seconds:.2f} s ({count} of {all_})")
         elif not arrived:
@@ -216,6 +254,14 @@ class Session:
             self._failures[leg.a, leg.b] = self._failures.get((leg.a, leg.b), 0) + 1
             self._tries = [leg.a, *(place for place in self._places if place != leg.a)]
         return drive if leg.counts else None
+
+    def _end_act(self, act: Act, drive: Drive) -> None:
+        if drive.outcome == ARRIVED:
+            self._acts.done(act, drive.seconds)
+            self._log("info", f"{self.robot} does {act}: {drive.seconds:.2f} s")
+        else:
+            self._acts.failed(act)
+            self._log("warn", f"{self.robot} does {act}: {drive.outcome}{f', {drive.text}' if drive.text else ''}")
 
     def _left(self) -> Dict[Way, int]:
         """How often each way is still to be driven."""

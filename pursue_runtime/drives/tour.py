@@ -28,7 +28,7 @@ def next_way(place: str, left: Mapping[Way, int], usable: Collection[Way]) -> Op
             reached = _reached(way[1], rest if ways is None else ways)
             if all(each[0] in reached for each in rest):
                 return way
-    return here[0] if here else _towards(place, {way[0] for way in wanted}, usable)
+    return here[0] if here else towards(place, {way[0] for way in wanted}, usable)
 
 
 def _reached(place: str, ways: Iterable[Way]) -> Set[str]:
@@ -43,8 +43,8 @@ def _reached(place: str, ways: Iterable[Way]) -> Set[str]:
     return found
 
 
-def _towards(place: str, goals: Collection[str], ways: Iterable[Way]) -> Optional[Way]:
-    """The first way of a shortest route to one of the goals."""
+def towards(place: str, goals: Collection[str], ways: Iterable[Way]) -> Optional[Way]:
+    """The first way of a shortest route to one of the goals, which are elsewhere; None where there is no route."""
     from_each = _by_start(ways)
     first: Dict[str, Way] = {}
     open_: Deque[str] = deque([place])

@@ -1,7 +1,8 @@
-"""Drives the robots of a mission along all ways, without the mission, and records how long that takes: for
-`pursue-gen calibrate`. One robot after the other; the others stand.
+"""Drives the robots of a mission along all ways, without the mission, has them do their actions if that is wanted, and
+records how long all that takes: for `pursue-gen calibrate`. One robot after the other; the others stand.
 
-Parameters: ~robots (names; all by default), ~times (how often each way, 5), ~start (where the first robot begins; by
+Parameters: ~robots (names; all by default), ~times (how often each way, 5), ~actions (how often each action
+that a robot does alone, 0), ~start (where the first robot begins; by
 default each where the scenario has it), ~limit (seconds that a drive may take, 300), ~pause (seconds between two of
 them, 1), ~file (a path; by default pursue/<scenario>/drives.bag under ROS_HOME; no file is ever
 overwritten, the name gets a number), ~config, and how robots are connected, as for controllers: ~goals (action), ~ends
@@ -81,7 +82,7 @@ class DriveLegs:
         rospy.on_shutdown(self._stop)
 
     def run(self) -> int:
-        """Runs until all robots are done; the exit status is 0 where each way was driven so often as was wanted."""
+        """Runs until all robots are done; the exit status is 0 where all is measured so often as was wanted."""
         rospy.loginfo("recording %s", self.path)
         try:
             self._next_robot()
@@ -104,7 +105,8 @@ class DriveLegs:
         for session in self._done:
             for text in session.summary():
                 rospy.loginfo("%s", text)
-        rospy.loginfo("%d drives are in %s: pursue-gen calibrate SCENARIO.pur %s", self._count, self.path, self.path)
+        text = "%d drives and actions are in %s: pursue-gen calibrate SCENARIO.pur %s"
+        rospy.loginfo(text, self._count, self.path, self.path)
 
     # One robot after the other ----------------------------------------------------------------------------------------
 
@@ -116,13 +118,15 @@ class DriveLegs:
             robot = self._waiting.pop(0)
             settings = read_settings(robot.name, self._given)
             places = {poi: place_of(poi, pose) for poi, pose in robot.poses.items()}
-            session = Session(robot.name, places, robot.start, robot.plan, settings, self._log)
+            session = Session(robot.name, places, robot.start, robot.plan, settings, self._log, robot.rules)
             take = self._on_result, self._on_statuses, self._on_position
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
             self._patient_until = time.monotonic() + PATIENCE
-            ways = len(robot.plan.ways)
-            self._log("info", f"{robot.name} drives {ways} ways {robot.plan.times} times each, from {robot.start} on")
+            ways, acts = len(robot.plan.ways), len(robot.plan.acts)
+            also = f", and does {acts} actions {robot.plan.actions} times each" if acts else ""
+            text = f"{robot.name} drives {ways} ways {robot.plan.times} times each, from {robot.start} on{also}"
+            self._log("info", text)
         link.watch()
         self._alarm.set(None, 0.0)
 
@@ -168,6 +172,8 @@ class DriveLegs:
             link.cancel(due.cancel)
         if due.goal is not None:
             link.go(due.goal, robot.poses[due.goal.movement.place.poi])
+        if due.act is not None:
+            link.do(due.act.event, session.location)
         if due.drive is not None:
             self._publish(due.drive)
 

@@ -64,8 +64,10 @@ def test_windows_are_read_and_shown_with_the_missions(tmp_path: Path) -> None:
     found = from_map.windows(scenario)
     assert found == {"fetch": "2 to 5", "bot1 from a to b": "3.5 to 6"}
     mission = {"outcome": "goal", "why": "", "seconds": 81.4, "left": ["bot1 was late"]}
-    data = {"windows": {"fetch": ["3", "2 to 5"]}, "first": mission, "missions": [{**mission, "left": []}]}
+    pair = {"seed": 1, "promised": 100.4, "windows": {"fetch": ["3", "2 to 5"]}, "missions": [mission]}
+    other = {**pair, "seed": 2, "windows": {"fetch": ["3", "1 to 9"]}, "missions": [{**mission, "left": []}]}
+    data = {"pairs": [pair, other]}
     page = from_map.filled("before\n<!-- measured: from_map -->\nold\n<!-- end -->\nafter\n", data)
-    assert "| fetch | 3 | 2 to 5 |" in page and "| first | goal | bot1 was late | 81 |" in page
-    assert "| 1 | goal | nothing | 81 |" in page and "old" not in page
+    assert "| fetch | 3 | 2 to 5 | 1 to 9 |" in page and "| 1 | 1 | goal | bot1 was late | 81 | 100 |" in page
+    assert "| 2 | 1 | goal | nothing | 81 | 100 |" in page and "old" not in page
     assert from_map.filled(page, data) == page

@@ -105,6 +105,16 @@ reach_objective: do lift
     assert [(sample.what, sample.seconds) for sample in found.measured] == [(Work("lift"), 4.5)]
 
 
+def test_actions_without_a_mission_are_measured_like_drives(tmp_path: Path) -> None:
+    done = Drive("bot", "shelf", "shelf", 100.0, 103.5, action="fetch")
+    other = Drive("bot", "shelf", "shelf", 200.0, 201.0, action="dance")
+    file = write_drives(tmp_path / "drives.bag", [done, done._replace(outcome="late"), other])
+    found, _ = samples_in([file], floor())
+    assert [(sample.what, sample.seconds) for sample in found.measured] == [(Work("fetch"), 3.5)]
+    assert [(each.what, each.why) for each in found.unused] == [(Work("fetch"), "late")]
+    assert found.strangers == ("dance",)
+
+
 def test_drives_are_measured_and_failed_ones_are_listed(tmp_path: Path) -> None:
     failed = Drive("bot", "shelf", "desk", 200.0, 260.0, "failed", 3, "aborted")
     cut = Drive("bot", "shelf", "desk", 300.0, 301.0, "interrupted")

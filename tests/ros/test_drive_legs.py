@@ -21,13 +21,13 @@ PUBLISHES = "rostopic pub -l pursue/state pursue_msgs/SystemState '{}'"
 WAYS = ["bot1 from a to c", "bot1 from b to c", "bot1 from c to a", "bot1 from c to b"]
 
 
-def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_measured(
+def test_one_robot_after_the_other_drives_all_ways_and_acts_and_ctrl_c_keeps_what_was_measured(
     ros: Ros, tmp_path: Path
 ) -> None:
     workspace = robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
     log, bag = tmp_path / "log", tmp_path / "drives.bag"
     log.touch()
-    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _pause:=0.05 _file:={bag}"
+    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _actions:=1 _pause:=0.05 _file:={bag}"
     with ros.master() as there:
         mission = ros.start("source devel/setup.bash; exec " + PUBLISHES, workspace, tmp_path / "mission", **there)
         try:
@@ -38,7 +38,7 @@ def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_mea
         finally:
             end(mission)
         wait_for(lambda: bool(ros.run(named, workspace, **there).returncode), log, "a state is still published")
-        robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3}, bot2={"plays": ["never"]})
+        robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3, "acts": 0.3}, bot2={"plays": ["never"]})
         try:
             drives = ros.start(command, workspace, log, **there)
             try:
@@ -50,9 +50,10 @@ def test_one_robot_after_the_other_drives_all_ways_and_ctrl_c_keeps_what_was_mea
             wait_for(lambda: robots.heard("bot2") == ["goal c", "cancel"], log, "bot2 was not called back")
         finally:
             robots.end()
-    assert len(robots.heard("bot1")) == 5, "to its start, and four ways"
+    heard = [line.split()[0] for line in robots.heard("bot1")]
+    assert (heard.count("goal"), heard.count("action")) == (5, 1), "to its start, four ways, its action"
     found, findings = samples_in([bag], load(str(SCENARIO)))
-    assert sorted(str(sample.what) for sample in found.measured) == WAYS and findings == ()
+    assert sorted(str(sample.what) for sample in found.measured) == [*WAYS, "bot1_inb"] and findings == ()
     assert all(sample.seconds > 0.29 for sample in found.measured)
     assert not list(tmp_path.glob("*.active"))
     assert "bot1 from c to b: 1 of 1 drives" in log.read_text()

@@ -12,6 +12,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.drives.actions import Act
 from pursue_runtime.drives.robots import Driven, driven_robots
 
 TEXT = """\
@@ -21,9 +22,13 @@ poi "exit" //[9, 0, 0, 0, 0, 0, 1]
 connect hall and lab distance 5
 connect lab and exit distance 4 one_way
 event "scan" location lab
-agent "bot1" controllable mobile 1 location hall can_do scan
-agent "bot2" controllable mobile 1 location lab
-agent "arm" controllable location lab
+event "fetch" location lab duration 2
+event "drop" location exit duration 2
+event "lift" collaborative together location lab duration 1
+rule "parcel": fetch before drop
+agent "bot1" controllable mobile 1 location hall can_do scan, drop, lift
+agent "bot2" controllable mobile 1 location lab reacts_to lift
+agent "arm" controllable location lab can_do fetch
 agent "guest" mobile 1 location hall
 reach_objective: do scan
 """
@@ -69,10 +74,24 @@ def test_parameters_say_which_robots_how_often_and_from_where(workspace: Path) -
     assert (found.plan.times, found.plan.limit, found.plan.pause) == (3, 60.0, 0.0)
 
 
+def test_robots_do_what_needs_nobody_else_in_the_order_of_the_rules(workspace: Path) -> None:
+    bot1, bot2, arm = robots(workspace, actions=2)
+    drop, fetch = Act("drop", "exit"), Act("fetch", "lab")
+    assert (bot1.plan.acts, bot2.plan.acts, arm.plan.acts) == ((drop,), (), (fetch,))
+    assert arm.plan.ways == () and arm.start == "lab" and arm.plan.actions == 2
+    rules = bot1.rules
+    assert rules is arm.rules and not rules.allow("bot1", drop) and rules.allow("arm", fetch)
+    rules.done("arm", fetch)
+    assert rules.allow("bot1", drop) and not rules.allow("arm", fetch)
+    rules.done("bot1", drop)
+    assert rules.allow("arm", fetch) and not rules.allow("bot1", drop)
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
         ({"robots": "guest"}, "expected some of bot1, bot2, arm"),
+        ({"actions": -1}, "~actions is -1; expected a whole number of at least 0"),
         ({"robots": "arm"}, "no robot of this scenario is mobile"),
         ({"times": 0}, "~times is 0; expected a whole number of at least 1"),
         ({"limit": 0}, "~limit is 0; expected a number greater than 0"),

@@ -10,6 +10,7 @@ import pytest
 from pursue_runtime.controller.goal import Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.drives.actions import Act
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive, format_drive, parse_drive
 from pursue_runtime.drives.session import Plan, Session
 from pursue_runtime.drives.tour import Way
@@ -31,6 +32,9 @@ class Robot:
         self.drives: List[Drive] = []
         self.goals: List[str] = []
         self.cancelled: List[str] = []
+        self.acted: List[str] = []
+        self.silent: Tuple[str, ...] = ()  # what it does not report
+        self._words: List[Tuple[float, str]] = []
         self._answers: List[Tuple[float, int, str, str, int]] = []
 
     def run(self, until: float = 10_000.0) -> None:
@@ -48,10 +52,16 @@ class Robot:
             self.cancelled.append(due.cancel)
         if due.drive is not None:
             self.drives.append(due.drive)
+        if due.act is not None:
+            self.acted.append(str(due.act))
+            assert self.session.location == f"doing_{due.act.event}_in_{self.at}"
+            words = [] if due.act.event in self.silent else ["someone_elseDONE", f"bot:{due.act.event}DONE"]
+            self._words = [(self.now + 2.5, word) for word in words]
         if self.session.is_over:
             return False
         if due.goal is None and due.drive is None:
             moments = [self._answers[0][0]] if self._answers else []
+            moments += [moment for moment, _ in self._words]
             moment = self.session.next_moment()
             moments += [] if moment is None else [moment]
             self.now = max(self.now, min(moments))
@@ -61,6 +71,8 @@ class Robot:
                 _, _, name, to, status = heapq.heappop(self._answers)
                 self.at = to if status == SUCCEEDED else self.at
                 self.answer(name, status)
+            while self._words and self._words[0][0] <= self.now:
+                self.session.on_word(self._words.pop(0)[1])
         return True
 
     def take(self, goal: Goal) -> None:
@@ -181,9 +193,69 @@ def test_arrivals_may_be_words() -> None:
     assert session.due(19.0, 19.0).drive is None and session.is_over
 
 
+FETCH, DROP = Act("fetch", "c"), Act("drop", "a")
+
+
+class Turns:
+    """Rules: drop after fetch, in turns; as `pursue_runtime.drives.actions.Rules`."""
+
+    def __init__(self) -> None:
+        self.next = FETCH
+
+    def allow(self, robot: str, act: Act) -> bool:
+        return act == self.next
+
+    def done(self, robot: str, act: Act) -> None:
+        self.next = DROP if act == FETCH else FETCH
+
+
+def acting(times: int, actions: int, ways: Tuple[Way, ...] = WAYS, *silent: str) -> Robot:
+    plan = Plan(ways, times, 20.0, 1.0, (DROP, FETCH), actions)
+    session = Session("bot", PLACES, "a", plan, RESULT, lambda level, text: None, Turns())  # type: ignore[arg-type]
+    found = Robot(session)
+    found.silent = silent
+    return found
+
+
+def test_actions_are_done_where_the_tour_passes_and_in_the_order_of_the_rules() -> None:
+    found = acting(3, 2)
+    found.run()
+    assert found.session.is_complete and not found.session.problem
+    assert found.acted == ["fetch at c", "drop at a"] * 2
+    acts = [drive for drive in found.drives if drive.action]
+    assert [(drive.action, drive.a, drive.b, drive.outcome) for drive in acts[:2]] == [
+        ("fetch", "c", "c", ARRIVED), ("drop", "a", "a", ARRIVED)
+    ]  # fmt: skip
+    assert all(drive.seconds == pytest.approx(2.5) for drive in acts)
+    assert "bot does fetch at c: 2 of 2 times, 2.5 to 2.5 s" in found.session.summary()
+
+
+def test_more_is_driven_where_actions_are_left_when_all_ways_are_done() -> None:
+    found = acting(1, 3)
+    found.run()
+    assert found.session.is_complete and len(found.acted) == 6
+
+
+def test_an_action_that_nobody_reports_is_given_up_and_what_follows_it_is_not_done() -> None:
+    found = acting(2, 2, WAYS, "fetch")
+    found.run()
+    assert found.acted == ["fetch at c"] * 2 and "to be done before" in found.session.problem
+    late = [(drive.outcome, drive.text) for drive in found.drives if drive.action]
+    assert late == [(LATE, "not done after 20 s")] * 2
+    assert all(len(times) == 2 for times in found.session.measured.values())
+
+
+def test_a_robot_that_does_not_drive_does_its_actions_where_it_stands() -> None:
+    plan = Plan((), 1, 20.0, 1.0, (FETCH,), 3)
+    found = Robot(Session("bot", PLACES, "c", plan, RESULT, lambda level, text: None), at="c")
+    found.run()
+    assert found.acted == ["fetch at c"] * 3 and found.goals == [] and found.session.is_complete
+
+
 @pytest.mark.parametrize("outcome", [ARRIVED, FAILED])
-def test_what_is_published_of_a_drive_is_read_again(outcome: str) -> None:
-    drive = Drive("bot", "a", "b", 1.5, 7.25, outcome, 2, "why" if outcome == FAILED else "")
+@pytest.mark.parametrize("action", ["", "fetch"])
+def test_what_is_published_of_a_drive_is_read_again(outcome: str, action: str) -> None:
+    drive = Drive("bot", "a", "b", 1.5, 7.25, outcome, 2, "why" if outcome == FAILED else "", action)
     assert parse_drive(format_drive(drive)) == drive
 
 
@@ -196,6 +268,7 @@ def test_what_is_published_of_a_drive_is_read_again(outcome: str) -> None:
         '{"format": 1, "robot": "", "from": "a", "to": "b", "start": 1, "end": 2, "outcome": "arrived"}',
         '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 1, "end": 2, "outcome": "flew"}',
         '{"format": 1, "robot": "b", "from": "a", "to": "b", "start": 1, "end": 1e400, "outcome": "late"}',
+        '{"format": 1, "robot": "b", "from": "a", "to": "a", "start": 1, "end": 2, "outcome": "late", "action": 3}',
     ],
 )  # fmt: skip
 def test_what_is_no_drive_is_not_taken_for_one(text: str) -> None:
