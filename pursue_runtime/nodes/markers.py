@@ -10,8 +10,9 @@ from typing import Any, Dict, List, Optional
 
 import rospy
 from geometry_msgs.msg import Point
+from std_msgs.msg import String
 
-from pursue_runtime.data import Package
+from pursue_runtime.data import DataError, Package
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
@@ -30,9 +31,11 @@ from pursue_runtime.nodes.robot_link import needed
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import text
 from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import parse_plan
 from pursue_runtime.ui.markers import ARROW, BALL, DISC, LINES, TEXT, Mark, Picture, read_spots
 from pursue_runtime.ui.page import read_floor_plan
-from pursue_runtime.words import MARKERS
+from pursue_runtime.ui.strategies import strategies_in, strategies_of
+from pursue_runtime.words import MARKERS, PLAN
 
 HEIGHTS = {LINES: 0.0, DISC: 0.01, ARROW: 0.04, BALL: 0.1, TEXT: 0.2}
 """Metres above the map: what lies above the rest is seen from above."""
@@ -50,13 +53,14 @@ class MarkersNode:
         settings = source.read("ui.yaml")
         plan = read_floor_plan(source.read("poses.yaml"), settings)
         self.frame = text(rospy.get_param("~", {}), "map_frame", "map")
-        self.picture = Picture(model, plan, read_spots(settings, plan))
+        self.picture = Picture(model, plan, read_spots(settings, plan), strategies_of(source))
         self.lock = threading.Lock()
         self.shown: List[Mark] = []
         self.state: Optional[SystemState] = None
         self.publisher = rospy.Publisher(MARKERS, self.messages.MarkerArray, queue_size=1, latch=True)
         self.show(None)
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
+        subscribe(PLAN, String, self.on_plan, self.ending, queue_size=10)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
         Diagnostics(self.report, self.ending, Links(states, pulses, ending=self.ending, lost=self.master_lost))
 
@@ -65,6 +69,19 @@ class MarkersNode:
         if self.membership.takes(state):
             with self.lock:
                 self.show(state)
+
+    def on_plan(self, message: String) -> None:
+        """Take a new plan: what is next in it is shown as soon as it is in force."""
+        try:
+            plan = parse_plan(message.data)
+            strategies = strategies_in(plan)
+        except DataError as problem:
+            rospy.logerr("cannot use the new plan: %s", problem)
+            return
+        if plan.get("mission", "") in ("", self.membership.source.mission):
+            with self.lock:
+                self.picture.add_plan(plan["plan"], strategies)
+                self.show(self.state)
 
     def show(self, state: Optional[SystemState]) -> None:
         """Publish what there is to show, if it is something new."""

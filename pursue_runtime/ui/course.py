@@ -22,12 +22,14 @@ _MARGIN = 0.05  # time units inside an open bound, as in mission_view
 
 
 class Step(NamedTuple):
-    """An event to come: when, whose it is, what that is (`go to b`, `arrive at b`), and whether it is a command."""
+    """An event to come: when, whose it is, what that is (`go to b`, `arrive at b`), whether it is a command, and the
+    agent's location then."""
 
     after: float
     agent: str
     does: str
     commanded: bool
+    location: str
 
 
 def course(model: Model, strategies: Sequence[Strategy], state: SystemState) -> List[Step]:
@@ -59,7 +61,8 @@ def _steps(model: Model, strategies: Sequence[Strategy], here: Position, lost: "
         passed += delay
         automaton = model.automaton(agent)
         if automaton.kind in ACTING:
-            yield Step(passed, agent, possibility(model, automaton, taken[0].edge), commanded)
+            edge = taken[0].edge
+            yield Step(passed, agent, possibility(model, automaton, edge), commanded, edge.target)
         here = model.after(taken, here)
         if here == before:
             return

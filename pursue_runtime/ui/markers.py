@@ -1,4 +1,4 @@
-"""What rviz shows of a mission: places, ways, spots, where each agent is, and where it goes.
+"""What rviz shows of a mission: places, ways, spots, where each agent is, where it goes, and what it does next.
 
 Coordinates and sizes are metres, in the frame of the map; colours are red, green and blue from 0 to 1.
 """
@@ -14,6 +14,8 @@ from pursue_runtime.locations import action_of, is_action, movement, place_of
 from pursue_runtime.model import Model
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
+from pursue_runtime.strategy import Strategy
+from pursue_runtime.ui.course import Step, course, first_commands
 from pursue_runtime.ui.page import FloorPlan
 
 Point = Tuple[float, float]
@@ -71,11 +73,19 @@ def read_spots(settings: Mapping[str, Any], plan: FloorPlan) -> Spots:
 class Picture:
     """What there is to show of one mission, by its states."""
 
-    def __init__(self, model: Model, plan: FloorPlan, spots: Spots) -> None:
+    def __init__(
+        self, model: Model, plan: FloorPlan, spots: Spots, strategies: Sequence[Strategy] = ()
+    ) -> None:
+        """`strategies`: those of all controllers, where they are known."""
         self._model, self._plan, self._spots = model, plan, spots
+        self._strategies: Dict[int, Sequence[Strategy]] = {0: strategies}
         self._size = _size(list(plan.places.values()))
         self._ways = {movement(a, b): (a, b) for a in plan.places for b in plan.places}
         self._still = [*self._way_marks(), *self._place_marks(), *self._spot_marks()]
+
+    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
+        """Take the strategies of a new plan."""
+        self._strategies[number] = strategies
 
     def marks(self, state: Optional[SystemState]) -> List[Mark]:
         """Return everything to show in a state; None: none has been received."""
@@ -84,10 +94,13 @@ class Picture:
         shown = [*self._still, *self._status_marks(status, reason)]
         if state is None:
             return shown
+        strategies = self._strategies.get(state.plan, ())
+        following = first_commands(course(self._model, strategies, state)) if strategies else {}
         crowd: Dict[Point, int] = {}  # how many are shown at a point
         for automaton in self._model.of_kind(*ACTING):
             location = state.locations.get(automaton.name, "")
-            shown += self._agent_marks(automaton.name, automaton.kind, location, state, crowd)
+            step = following.get(automaton.name)
+            shown += self._agent_marks(automaton.name, automaton.kind, location, state, crowd, step)
         return shown
 
     # What stays as it is ----------------------------------------------------------------------------------------------
@@ -129,9 +142,16 @@ class Picture:
         return [Mark("mission", TEXT, ((x, y),), 1.2 * self._size, DARK, "\n".join(lines))]
 
     def _agent_marks(
-        self, name: str, kind: str, location: str, state: SystemState, crowd: Dict[Point, int]
+        self,
+        name: str,
+        kind: str,
+        location: str,
+        state: SystemState,
+        crowd: Dict[Point, int],
+        step: Optional[Step],
     ) -> List[Mark]:
-        """An agent: a ball where it stands, or an arrow to where it goes, and what it does in words."""
+        """An agent: a ball where it stands, or an arrow to where it goes, what it does in words, and its next command
+        (`step`)."""
         here = place_of(location, [*self._plan.places, *self._ways])
         colour, what = self._look(name, kind, state)
         shown, does = self._model.shown(name), ""
@@ -149,6 +169,12 @@ class Picture:
         else:
             return []
         words = f"{shown}: {does}{what}" if does else shown + what
+        if step is not None:
+            words += f", then {step.does}" if does else f", next: {step.does}"
+            ahead = self._ways.get(step.location)
+            if ahead is not None:
+                line = self._spot(name, ahead[0]), self._spot(name, ahead[1])
+                marks.append(Mark("next", ARROW, line, self._size / 8, _pale(COLOURS[kind])))
         below = at[0], at[1] - 1.1 * self._size
         return [*marks, Mark("names", TEXT, (below,), 0.9 * self._size, colour, words)]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Tuple
@@ -11,7 +12,6 @@ from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
-from pursue_runtime.strategy import Strategy, read_strategies
 from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
@@ -19,13 +19,10 @@ from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts, Page, read_floor_plan
 from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
+from pursue_runtime.ui.strategies import strategies_in, strategies_of
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
-
-
-STRATEGIES = "strategies.yaml"
-"""The data file with the strategies of all controllers; missions with large ones have none."""
 
 
 FLOOR = "/floor.png"
@@ -60,12 +57,8 @@ class PageServer:
 
     def on_plan(self, plan: Mapping[str, Any]) -> None:
         """Take a new plan, as `parse_plan` returns it: what the page says of it needs its strategies."""
-        try:
-            parts = [*dict(plan["strategies"]).values(), *([plan["people"]] if plan.get("people") else [])]
-            strategies = [Strategy(part) for part in parts]
-        except (DataError, KeyError, TypeError, ValueError):
-            return  # the nodes that need it say what is wrong with it
-        self._page.add_plan(plan["plan"], strategies)
+        with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
+            self._page.add_plan(plan["plan"], strategies_in(plan))
 
     def on_positions(self, positions: Mapping[str, Sequence[float]]) -> None:
         """Show where robots really are: x and y in metres, yaw in radians."""
@@ -120,14 +113,6 @@ class PageServer:
         with self._node.lock:
             facts = self._node.facts()
         return facts.now if facts.live and facts.answers else None
-
-
-def strategies_of(source: Source) -> List[Strategy]:
-    """The strategies of all controllers, and of people, where the mission's data have them. Raises DataError."""
-    if not source.has(STRATEGIES):
-        return []
-    people = [Strategy(source.read("people.yaml"))] if source.has("people.yaml") else []
-    return [*read_strategies(source.read(STRATEGIES)), *people]
 
 
 ADDRESS = "PURSUE_PAGE"

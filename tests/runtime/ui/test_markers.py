@@ -9,6 +9,7 @@ import pytest
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
+from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.markers import (
     ARROW,
     BALL,
@@ -78,6 +79,27 @@ def test_a_command_is_an_arrow_to_where_the_robot_goes() -> None:
     assert [mark.points for mark in arrows] == [(PLACES["a"], PLACES["b"]), (SPOTS["bot2"]["b"], PLACES["a"])]
     texts = [mark.text for mark in shown(now, "names")]
     assert texts == ["bot: to the bank", "bot2: to a", "the thief", "boy: mend it"]
+
+
+def test_the_next_command_of_the_strategy_is_a_pale_arrow_and_stands_behind_what_the_robot_does() -> None:
+    back = {"do": "bot_b2a", "agent": "bot", "from": "b", "to": "going_b_to_a", "when": ["2 < Cbot"]}
+    there = {"do": "bot2_a2b", "agent": "bot2", "from": "a", "to": "going_a_to_b", "when": ["always"]}
+    table = [{"state": {"bot": "b", "bot2": "a"}, "commands": [there]},
+             {"state": {"bot": "b", "bot2": "going_a_to_b"}, "commands": [back]}]  # fmt: skip
+    given = {"commands_agents": ["bot", "bot2"], "reaction": "1/10", "strategy": table}
+    picture = Picture(MODEL, PLAN, SPOTS, [Strategy(given)])
+    now = at(bot="going_a_to_b")
+    to_b, to_a = shown(now, "next", picture)[::-1]
+    assert (to_b.kind, to_b.points) == (ARROW, (PLACES["a"], SPOTS["bot2"]["b"]))
+    assert to_a.points == (PLACES["b"], PLACES["a"]) and to_a.size < shown(now, "movements")[0].size
+    assert to_a.colour not in COLOURS.values()
+    names = [mark.text for mark in shown(now, "names", picture)]
+    assert names[:2] == ["bot: to the bank, then go to a", "bot2, next: go to the bank"]
+    assert shown(at("holding", bot="going_a_to_b"), "next", picture) == []
+    other = now._replace(plan=7)
+    assert shown(other, "next", picture) == [], "the strategy of a plan that has not come is not known"
+    picture.add_plan(7, [Strategy({**given, "strategy": table[:1]})])
+    assert [mark.points for mark in shown(other, "next", picture)] == [to_b.points]
 
 
 @pytest.mark.parametrize(("lists", "colour", "why"), [

@@ -11,9 +11,10 @@ from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import course
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
-from pursue_runtime.ui.page_server import PageServer, strategies_of
+from pursue_runtime.ui.page_server import PageServer
 from pursue_runtime.ui.reasons import reason_text, reasons
 from pursue_runtime.ui.statuses import Status
+from pursue_runtime.ui.strategies import strategies_of
 from tests.runtime.models import model_data, mover, state, worker
 
 DATA = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("arm", "robot"))
