@@ -1,10 +1,15 @@
-"""Where the robots really are, for the page: from amcl_pose or tf, as the parameters of their controllers say."""
+"""Where the robots really are, for the page: from amcl_pose or tf, as the parameters of their controllers say; and the
+paths that their move_base plans.
+
+Parameter ~path: the topic of a robot's path (nav_msgs/Path), "{robot}/move_base/NavfnROS/plan".
+"""
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
-from typing import Any, Callable, Dict, Iterable, Mapping, Optional
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -14,6 +19,7 @@ from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, start_thread, subscribe
 from pursue_runtime.nodes.robot_link import needed
+from pursue_runtime.parameters import text
 
 PERIOD = 0.5
 """Seconds of real time between two positions of a robot on the page."""
@@ -21,7 +27,15 @@ PERIOD = 0.5
 STALE = 3.0
 """Seconds of real time after which a transform that is not renewed does not say any more where a robot is."""
 
+PATH = "{robot}/move_base/NavfnROS/plan"
+"""Where move_base with its usual planner publishes its path."""
+
+MOST = 100
+"""So many points of a path are shown, about."""
+
 Positions = Mapping[str, Position]
+Paths = Mapping[str, Sequence[Tuple[float, float]]]
+"""robot → the points of the path that its move_base has planned last (metres on the map)."""
 
 
 def settings_of(robots: Iterable[str]) -> Dict[str, Settings]:
@@ -39,8 +53,9 @@ def settings_of(robots: Iterable[str]) -> Dict[str, Settings]:
     return found
 
 
-def watch_positions(robots: Iterable[str], ending: Ending, show: Callable[[Positions], None]) -> None:
-    """Call `show` with the positions of all robots that have one, in a thread, whenever one has changed."""
+def watch_positions(robots: Iterable[str], ending: Ending, show: Callable[[Positions, Paths], None]) -> None:
+    """Call `show` with the positions of all robots that have one, and their paths, in a thread, whenever one has
+    changed."""
     settings = settings_of(robots)
     if settings:
         watch = _Watch(settings, ending)
@@ -53,6 +68,7 @@ class _Watch:
     def __init__(self, settings: Mapping[str, Settings], ending: Ending) -> None:
         self._settings, self._ending = settings, ending
         self._poses: Dict[str, Position] = {}
+        self._paths: Dict[str, Sequence[Tuple[float, float]]] = {}
         self._renewed: Dict[str, Any] = {}  # robot → stamp of its newest transform, and when that came
         self._frames: Any = None
         if any("tf" in each.sources for each in settings.values()):
@@ -61,16 +77,30 @@ class _Watch:
             if "pose" in each.sources:
                 topic = f"{robot}/amcl_pose"
                 subscribe(topic, PoseWithCovarianceStamped, self._pose, ending, robot, queue_size=1, tcp_nodelay=True)
+        self._listen_to_paths()
 
-    def run(self, show: Callable[[Positions], None]) -> None:
+    def run(self, show: Callable[[Positions, Paths], None]) -> None:
         """Look at the positions, until the node ends."""
-        shown: Dict[str, Position] = {}
+        shown: Tuple[Positions, Paths] = {}, {}
         while not self._ending.called:
-            positions = self._positions()
-            if positions != shown:
-                show(positions)
-                shown = positions
+            found = self._positions(), dict(self._paths)
+            if found != shown:
+                show(*found)
+                shown = found
             time.sleep(PERIOD)
+
+    def _listen_to_paths(self) -> None:
+        """Of robots with move_base; without its messages there is no path to be had, either."""
+        with contextlib.suppress(DataError):
+            kind = needed("nav_msgs", "nav_msgs.msg", "a planned path").Path
+            for robot in self._settings:
+                topic = text(rospy.get_param("~", {}), "path", PATH).format(robot=robot)
+                subscribe(topic, kind, self._path, self._ending, robot, queue_size=1, tcp_nodelay=True)
+
+    def _path(self, message: Any, robot: str) -> None:
+        frame = message.header.frame_id or (message.poses[0].header.frame_id if message.poses else "")
+        if frame.lstrip("/") == self._settings[robot].map_frame.lstrip("/"):
+            self._paths[robot] = thinned([(each.pose.position.x, each.pose.position.y) for each in message.poses])
 
     def _listen_to_tf(self) -> None:
         try:
@@ -108,6 +138,14 @@ class _Watch:
         if stamp == last and stamp > 0.0 and now > since + STALE:
             return None
         return _position(found.transform.translation, found.transform.rotation)
+
+
+def thinned(points: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:
+    """Some points of a path, to a centimetre, the last one among them; none of one that is not on any map."""
+    if not all(map(math.isfinite, sum(points, ()))):
+        return []
+    step = 1 + len(points) // MOST
+    return [(round(x, 2), round(y, 2)) for x, y in [*points[:-1:step], *points[-1:]]]
 
 
 def _position(at: Any, turn: Any) -> Position:

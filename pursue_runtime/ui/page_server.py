@@ -47,7 +47,7 @@ class PageServer:
     def __init__(self, page: Page, node: PageNode) -> None:
         self._page, self._node = page, node
         self._shown = 0
-        self._positions: Dict[str, List[float]] = {}
+        self._real: Dict[str, Dict[str, Any]] = {"positions": {}, "paths": {}}
         self._missions: List[Dict[str, Any]] = []
         self.web: Any = None
 
@@ -60,10 +60,15 @@ class PageServer:
         with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
             self._page.add_plan(plan["plan"], strategies_in(plan))
 
-    def on_positions(self, positions: Mapping[str, Sequence[float]]) -> None:
-        """Show where robots really are: x and y in metres, yaw in radians."""
-        self._positions = {name: list(position) for name, position in positions.items()}
-        self.web.send({"type": "positions", "positions": self._positions})
+    def on_positions(
+        self, positions: Mapping[str, Sequence[float]], paths: Mapping[str, Sequence[Sequence[float]]]
+    ) -> None:
+        """Show where robots really are (x and y in metres, yaw in radians), and the paths that they have planned."""
+        self._real = {
+            "positions": {name: list(position) for name, position in positions.items()},
+            "paths": {name: [list(point) for point in path] for name, path in paths.items()},
+        }
+        self.web.send({"type": "positions", **self._real})
 
     def end(self, at: float, verdict: Tuple[int, str]) -> None:
         """Show the end of the mission; `verdict` is the exit status and a sentence."""
@@ -100,7 +105,7 @@ class PageServer:
         with self._node.lock:
             view = self._page.view(self._node.facts())
             shown = {"scene": self._page.scene(), "view": view, "log": self._page.log, "missions": self._missions}
-            return {"type": "hello", **shown, "positions": self._positions}
+            return {"type": "hello", **shown, **self._real}
 
     def on_message(self, message: Any) -> str:
         """Take a message of a page. Raises ValueError where it is not a request."""

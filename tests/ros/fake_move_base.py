@@ -32,6 +32,11 @@ from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped, Tran
 from move_base_msgs.msg import MoveBaseActionFeedback, MoveBaseActionGoal, MoveBaseActionResult
 from std_msgs.msg import String
 
+try:
+    from nav_msgs.msg import Path
+except ImportError:
+    Path = None
+
 STEP = 0.05
 """Seconds between two positions of a robot that moves, and between two feedback messages."""
 
@@ -161,10 +166,12 @@ class FakeMoveBase:
             topic = f"{self.name}/move_base"
             self.results = rospy.Publisher(f"{topic}/result", MoveBaseActionResult, queue_size=50)
             self.feedback = rospy.Publisher(f"{topic}/feedback", MoveBaseActionFeedback, queue_size=50)
+            self.plans = rospy.Publisher(f"{topic}/NavfnROS/plan", Path, queue_size=1) if Path is not None else None
             self.statuses = rospy.Publisher(f"{topic}/status", GoalStatusArray, queue_size=50, latch=True)
             goals = rospy.Subscriber(f"{topic}/goal", MoveBaseActionGoal, self.on_goal, queue_size=50)
             cancel = rospy.Subscriber(f"{topic}/cancel", GoalID, self.on_cancel, queue_size=50)
-            self.process += [self.results, self.feedback, self.statuses, goals, cancel]
+            plans = [] if self.plans is None else [self.plans]
+            self.process += [self.results, self.feedback, self.statuses, goals, cancel, *plans]
             self.server = True
         self.show_status()
         self.say("up")
@@ -225,10 +232,18 @@ class FakeMoveBase:
         elif play == "stuck":
             self.gives_up = rospy.get_time() + self.recovery
         elif play != "never":
+            self.show_plan(target)
             self.body.go((target.position.x, target.position.y, yaw), self.travel)
         if play == "stale":
             old = GoalID(rospy.Time.now() - rospy.Duration(60.0), "of_long_ago")
             self.publish_result(GoalStatus(old, GoalStatus.SUCCEEDED, "Goal reached."))
+
+    def show_plan(self, target: Pose) -> None:
+        """Publish the path that is planned."""
+        if self.plans is not None:
+            message = Path(poses=[PoseStamped(pose=self.body.pose()), PoseStamped(pose=target)])
+            message.header.frame_id = "map"
+            self.plans.publish(message)
 
     def on_cancel(self, message: GoalID) -> None:
         with self.lock:

@@ -46,7 +46,7 @@ def documented() -> str:
 
 
 def next_position(address: str, robot: str, start: Any) -> Any:
-    """Where the page is said that a robot is: as soon as that is more than 0.2 m from its start."""
+    """Where the page is said that a robot is, and its path: as soon as that is more than 0.2 m from its start."""
     from tornado.httpclient import HTTPRequest
     from tornado.websocket import websocket_connect
 
@@ -58,7 +58,7 @@ def next_position(address: str, robot: str, start: Any) -> Any:
             position = message.get("positions", {}).get(robot)
             if position is not None and math.dist(position[:2], start) > 0.2:
                 page.close()
-                return position
+                return position, message["paths"].get(robot)
 
     return asyncio.run(asyncio.wait_for(received(), PATIENCE))
 
@@ -82,9 +82,11 @@ def test_the_documented_line_wins_the_mission_on_robots_with_move_base(ros: Ros,
         cleanup.callback(end, launch)
         until(lambda: "The page is at" in log.read_text(errors="replace"), "the page")
         (address,) = set(re.findall(r"The page is at (http://\S+)", log.read_text(errors="replace")))
-        x, y, _ = next_position(address, "bot1", poses["c"][:2])
+        (x, y, _), path = next_position(address, "bot1", poses["c"][:2])
         between = [sorted((poses["c"][axis], poses["b"][axis])) for axis in (0, 1)]
         assert all(low - 0.1 <= value <= high + 0.1 for value, (low, high) in zip((x, y), between)), "on its way to b"
+        if not ros.run("python3 -c 'import nav_msgs.msg'", ros.home).returncode:
+            assert path is not None and math.dist(path[-1], poses["b"][:2]) < 0.1
         assert launch.wait(2 * PATIENCE) == 0, log.read_text()[-8000:]
     assert "The goal is reached" in log.read_text(), log.read_text()[-8000:]
 

@@ -61,16 +61,16 @@ function remark(text) {
 function take(message) {
   if (message.type === "hello") {
     setScene(message.scene);
-    setPositions(message.positions || {});
     setMissions(message.missions);
     if (!message.log.some((entry) => entry.n === heard)) forgetLog();
     setView(message.view);
+    setPositions(message.positions || {}, message.paths || {});
     addLog(message.log);
   } else if (message.type === "view") {
     setView(message.view);
     addLog(message.log);
   } else if (message.type === "positions") {
-    setPositions(message.positions);
+    setPositions(message.positions, message.paths || {});
   } else if (message.type === "missions") {
     setMissions(message.missions);
   } else if (message.type === "tick") {

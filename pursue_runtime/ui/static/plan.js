@@ -6,6 +6,7 @@ const POI = 14; // half the height of a point of interest
 const AROUND = 1.5; // metres of floor plan that are shown around the places
 const map = { points: new Map(), marks: new Map(), places: [], lengths: [], moving: false, last: 0, width: 0, height: 0 };
 let positions = new Map(); // robot → where it really is: x, y in metres, yaw in radians
+let paths = new Map(); // robot → what its navigation has planned: points in metres, and of which of its movements that is
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 function setMap() {
@@ -38,7 +39,7 @@ function setMap() {
   drawPlaces(picture, names, under);
   drawLengths(picture);
   for (const { name, kind } of scene.agents) {
-    const path = draw("line", under, { class: "path" }), lead = draw("line", under, { class: `lead ${kind}` });
+    const path = draw("polyline", under, { class: "path" }), lead = draw("line", under, { class: `lead ${kind}` });
     const dot = draw("path", under, { class: `dot ${kind}` });
     const group = labelled(picture, `mark ${kind}`, shown(name), 22, 4);
     group.dataset.agent = name;
@@ -127,8 +128,13 @@ function join(lead, point, box) { // a line to a label that is not at its point
 
 // Where robots really are ----------------------------------------------------------------------------------------------
 
-function setPositions(fresh) {
+function setPositions(fresh, planned) {
   positions = new Map(Object.entries(fresh)); // names may be those of any property
+  const before = paths;
+  paths = new Map(Object.entries(planned).map(([name, points]) => {
+    const last = before.get(name), same = last && JSON.stringify(last.points) === JSON.stringify(points);
+    return [name, same ? last : { points, of: view && view.agents.find((agent) => agent.name === name) }];
+  }));
   showReal();
   if (!map.moving) animate(performance.now());
 }
@@ -159,7 +165,14 @@ function pointOf(agent, now) { // on the picture: where it is known to be, else 
   return { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), away: POI + 4 };
 }
 
-function showDot(mark, point, to, named) { // the point itself, with its heading, and what is left of its way
+function remaining(agent, point) { // of its planned path, from where it is; null where there is none for this movement
+  const path = paths.get(agent.name);
+  if (!path || !path.of || path.of.to !== agent.to || Math.abs(path.of.since - agent.since) > 0.5) return null;
+  const points = path.points.map(([x, y]) => map.at(x, y)), away = points.map(({ x, y }) => Math.hypot(x - point.x, y - point.y));
+  return [point, ...points.slice(away.indexOf(Math.min(...away)) + 1)];
+}
+
+function showDot(mark, agent, point, to, named) { // the point itself, with its heading, and what is left of its way
   const round = "M4 0A4 4 0 1 1 -4 0A4 4 0 1 1 4 0Z", arrowed = "M10 0L-6 7L-3 0L-6 -7Z", headed = point.yaw !== undefined;
   mark.dot.style.display = to || headed || !named ? "" : "none";
   mark.dot.setAttribute("d", headed ? arrowed : round);
@@ -168,7 +181,8 @@ function showDot(mark, point, to, named) { // the point itself, with its heading
   const ahead = to && headed && mark.kind !== "agent";
   mark.path.style.display = ahead ? "" : "none";
   if (!ahead) return;
-  for (const [key, value] of Object.entries({ x1: point.x, y1: point.y, x2: to.x, y2: to.y })) mark.path.setAttribute(key, value.toFixed(1));
+  const line = remaining(agent, point) || [point, to];
+  mark.path.setAttribute("points", line.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" "));
 }
 
 // Labels -------------------------------------------------------------------------------------------------------------
@@ -221,7 +235,7 @@ function animate(moment) {
     mark.group.classList.toggle("lost", agent.lost);
     if (!point) continue;
     const target = settle(mark, point, taken);
-    showDot(mark, point, to, target !== null);
+    showDot(mark, agent, point, to, target !== null);
     if (target === null) { // there is no room for its name; the list has it
       mark.group.style.display = mark.lead.style.display = "none";
       mark.x = null;

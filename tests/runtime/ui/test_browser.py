@@ -607,16 +607,25 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
                      "i.ownerSVGElement.createSVGPoint(); p.x = 0; p.y = i.height.baseVal.value; "
                      "return p.matrixTransform(i.getCTM()); })())")  # fmt: skip
     assert box == pytest.approx(corner, abs=0.5), "its lower left corner is at its origin"
-    node.board.on_positions({"bot": (3.0, 2.0, 1.5)})
+    node.board.on_positions({"bot": (3.0, 2.0, 1.5)}, {})
     page.wait("!document.getElementById('real').hidden")
     at = page.value("(({x, y}) => `translate(${x.toFixed(1)} ${y.toFixed(1)})`)(map.at(3, 2))")
     page.wait(f"document.querySelector('.dot.robot').getAttribute('transform').startsWith({at!r})")
     assert page.value("document.querySelector('.path').style.display") == "", "and what is left of its way"
+    line = "[...document.querySelector('.path').points].map(({x, y}) => [x, y])"
+    assert len(page.value(line)) == 2, "straight, as no plan of its navigation is known"
+    node.board.on_positions({"bot": (3.0, 2.0, 1.5)}, {"bot": [(0.0, 0.0), (3.1, 2.0), (3.0, 4.0), (9.0, 4.0)]})
+    page.wait(f"{line}.length === 3")
+    ends = page.value("[map.at(3, 2), map.at(9, 4)].map(({x, y}) => [x, y])")
+    assert page.value(line)[::2] == [pytest.approx(end, abs=0.1) for end in ends], "only what is ahead of it"
     assert page.text("[data-agent=thief] text") == "thief ?" and page.text("[data-agent=bot] text") == "bot"
     for dark in (False, True):
         page.dark(dark)
         page.wait(f"{COVERED}.length === 0")  # as soon as nobody glides any more
-    node.board.on_positions({})
+    node.show(3, 12.0, bot="b")
+    node.show(4, 13.0, clock=0.0, bot="going_b_to_a")
+    page.wait(f"{line}.length === 2")  # the plan is that of another movement
+    node.board.on_positions({}, {})
     page.wait("document.getElementById('real').hidden")
     assert page.complaints == []
 
