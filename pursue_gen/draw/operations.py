@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.draw import fields
 from pursue_gen.draw.fields import Values, refused
 from pursue_gen.draw.places import lengths_per_metre, positions, with_all_positions
-from pursue_gen.draw.poses import metres, with_position
+from pursue_gen.draw.poses import metres, with_position, with_spot
 from pursue_gen.draw.statement_edits import (
     PARTS,
     added,
@@ -27,6 +27,7 @@ from pursue_gen.draw.statement_edits import (
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.poses import read_poses
 from pursue_gen.language.usable import reserved
 from pursue_gen.lsp.completion import HOLE
 from pursue_gen.lsp.document import Document
@@ -94,6 +95,20 @@ def _move_place(document: Document, values: Values) -> Done:
     number = _declared(document, "POI", name)
     pose = parts_of(document.statements[number]).get("POSE")
     return with_part(document, number, "POSE", with_position(str(pose[0]) if pose else None, x, y, yaw)), number
+
+
+def _move_spot(document: Document, values: Values) -> Done:
+    """{name, robot, x, y}: the robot's own spot at the place is there."""
+    name, robot = fields.name_of(values, "name"), fields.name_of(values, "robot")
+    x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
+    number = _declared(document, "POI", name)
+    pose = parts_of(document.statements[number]).get("POSE")
+    if pose is None or not read_poses(str(pose[0]), Span("", 1, 1, 1, 1)).spots:
+        raise refused(f"no robot has a spot of its own at {name}", "choose it again")
+    comment = with_spot(str(pose[0]), robot, x, y)
+    if comment is None:
+        raise refused(f"{robot} has no spot of its own at {name}", "choose it again")
+    return with_part(document, number, "POSE", comment), number
 
 
 def _connect(document: Document, values: Values) -> Done:
@@ -331,6 +346,7 @@ def _new_name(document: Document, values: Values, stem: str) -> str:
 _OPERATIONS: Mapping[str, Callable[[Document, Values], Done]] = {
     "add place": _add_place,
     "move place": _move_place,
+    "move spot": _move_spot,
     "connect": _connect,
     "add agent": _add_agent,
     "add event": _add_event,

@@ -7,7 +7,7 @@ import re
 from typing import Optional
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.poses import read_poses
+from pursue_gen.language.poses import read_poses, robots_in
 from pursue_gen.language.scenario import Pose
 
 _OWN = re.compile(r"//[ \t]*\[([^\]]*)(\]?)")
@@ -29,6 +29,16 @@ def with_position(comment: Optional[str], x: float, y: float, yaw: Optional[floa
     else:
         z, direction = "0", _direction(yaw or 0.0)
     return f"//[{place}, {z}, {direction}]{comment[own.end():]}"
+
+
+def with_spot(comment: str, robot: str, x: float, y: float) -> Optional[str]:
+    """The comment of a pose with another position (metres) of a robot's own spot; None where the robot has none."""
+    for name, start, end in robots_in(comment):
+        if name == robot:
+            opening, _, rest = comment[start:end].partition("[")
+            _, _, *direction = rest.split(",")
+            return f"{comment[:start]}{opening}[{metres(x)}, {metres(y)},{','.join(direction)}{comment[end:]}"
+    return None
 
 
 def heading(pose: Pose) -> float:

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.skipif(program() is None, reason="there is no Chromium:
 
 HOSTILE = "<img src=x onerror=window.hacked=1>"
 SMALL = f"""poi "a" label "{HOSTILE}" //[0, 0, 0, 0, 0, 0, 1] // the door
-poi "b" //[4, 0, 0, 0, 0, 0, 1]
+poi "b" //[4, 0, 0, 0, 0, 0, 1] bot [4, 1, 0, 0, 0, 0, 1]
 
 connect a and b distance 4
 
@@ -100,7 +100,7 @@ def point(there: Browser, across: float, down: float) -> List[float]:
 def at(there: Browser, place: str) -> List[float]:
     """Where a place is in the window."""
     found: List[float] = there.value(
-        f"(() => {{ scrollTo(0, 0); const r = document.querySelector('.place[data-key={place}] .dot')"
+        f"(() => {{ scrollTo(0, 0); const r = document.querySelector('#plan [data-key={place}] :is(.dot, .ring)')"
         ".getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()"
     )
     return found
@@ -263,6 +263,16 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
         there.key("ArrowRight", ARROW_RIGHT, modifiers=8)
         says(there, " //[5.1, 0, 0, 0, 0, 0, 1]")
         assert there.value("document.activeElement.dataset.key") == "b"
+        there.value("document.querySelector('.spot').focus()")
+        there.key("ArrowRight", ARROW_RIGHT)
+        says(there, " bot [4.1, 1, 0, 0, 0, 0, 1]")
+        assert there.value("document.activeElement.dataset.key") == "b bot"
+        there.key("z", 90, modifiers=CTRL)
+        says(there, " bot [4, 1, 0, 0, 0, 0, 1]")
+        there.press(*at(there, '"b bot"'), *point(there, 0.5, 0.25))
+        there.wait("!document.getElementById('text').value.includes(' bot [4, 1,')")
+        there.key("z", 90, modifiers=CTRL)
+        says(there, " //[5.1, 0, 0, 0, 0, 0, 1] bot [4, 1, 0, 0, 0, 0, 1]")
         there.value("document.querySelector('.way').focus()")
         there.key("Delete", DELETE)
         there.wait("!document.getElementById('text').value.includes('connect')")
@@ -309,6 +319,9 @@ def test_fingers_move_places_and_the_ground(there: Browser, tmp_path: Path) -> N
         there.touch([[bx, by], [bx, by - 30], [bx, by - 60]])
         there.wait("!document.getElementById('text').value.includes('//[4, 0,')")
         assert there.value("document.getElementById('text').value.split('\\n')[1]").split(",")[0].endswith("//[4")
+        x, y = at(there, '"b bot"')
+        there.touch([[x, y], [x - 30, y], [x - 60, y]])
+        there.wait("!document.getElementById('text').value.includes(' bot [4, 1,')")
         there.touch([at(there, "a")])
         there.wait("document.getElementById('field-name') && document.getElementById('field-name').value === 'a'")
         before = abs(at(there, "a")[0] - at(there, "b")[0])

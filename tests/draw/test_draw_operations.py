@@ -92,6 +92,12 @@ def test_a_place_that_moves_keeps_its_height_its_direction_and_what_stands_behin
     assert "//[7, 8, 0.5, 0, 0, 1, 0] bot" in done(text, "move place", name="a", x=7, y=8, yaw=180)
 
 
+def test_a_robots_spot_moves_and_the_rest_of_the_comment_stays() -> None:
+    text = 'poi "a" //[1, 2, 0, 0, 0, 0, 1] bot [3, 4, 0.5, 0, 0, 0.6, 0.8] porter [5, 6, 0, 0, 0, 0, 1] by the door\n'
+    assert done(text, "move spot", name="a", robot="bot", x=7, y=8.25) == text.replace("[3, 4,", "[7, 8.25,")
+    assert done(text, "move spot", name="a", robot="porter", x=-1, y=0) == text.replace("[5, 6,", "[-1, 0,")
+
+
 @pytest.mark.parametrize(
     ("behind", "expected"),
     [
@@ -204,6 +210,7 @@ def test_a_text_with_an_error_is_not_changed() -> None:
         {"do": "add place", "x": 1e9, "y": 2}, {"do": "add place", "x": 1, "y": 2, "name": 'a" poi "b'},
         {"do": "add place", "x": 1, "y": 2, "name": ["a"]}, {"do": "move place", "name": "nowhere", "x": 1, "y": 1},
         {"do": "move place", "name": "room", "x": 1, "y": 1, "yaw": "north"},
+        {"do": "move spot", "name": "room", "robot": "ghost", "x": 1, "y": 1},
         {"do": "connect", "a": "room", "b": "room"},
         {"do": "connect", "a": "room", "b": "nowhere"}, {"do": "connect", "a": "room", "b": "a", "distance": "x"},
         {"do": "add agent", "location": "nowhere"}, {"do": "rename", "kind": "thing", "name": "room", "new": "x"},
@@ -252,6 +259,7 @@ OPERATION = st.one_of(
     st.fixed_dictionaries({"do": st.just("add place"), "x": COORDINATE, "y": COORDINATE}),
     st.fixed_dictionaries({"do": st.just("move place"), "name": NAME, "x": COORDINATE, "y": COORDINATE,
                            "yaw": st.none() | COORDINATE}),
+    st.fixed_dictionaries({"do": st.just("move spot"), "name": NAME, "robot": NAME, "x": COORDINATE, "y": COORDINATE}),
     st.fixed_dictionaries({"do": st.just("connect"), "a": NAME, "b": NAME, "one_way": st.booleans()}),
     st.fixed_dictionaries({"do": st.just("add agent"), "location": NAME}),
     st.fixed_dictionaries({"do": st.just("add event"), "location": st.just("") | NAME}),

@@ -13,6 +13,15 @@ export function placeNamed(name) {
   return state.view.places.find((one) => one.name === name) || null;
 }
 
+// What can be moved: a place, or a robot's own spot at one.
+export function movable({ kind, key }) {
+  if (kind === "place") return placeNamed(key);
+  if (kind !== "spot") return null;
+  const [name, robot] = key.split(" ");
+  const place = placeNamed(name);
+  return (place && place.spots.find((one) => one.robot === robot)) || null;
+}
+
 export function fitAll() {
   const points = state.view.places.map((one) => ({ x: one.x, y: one.y }));
   fit([...points, ...corners(state.opened.floor)]);
@@ -38,6 +47,7 @@ export function draw() {
     ...ways.map((way) => drawnWay(way, ends(way, at))),
     ...rubber(at),
     ...state.view.places.map((place) => drawnPlace(place, at.get(place.name))),
+    ...state.view.places.flatMap((place) => place.spots.map((spot) => drawnSpot(place, spot))),
     ...lengths.filter((one) => one !== null),
     ...names,
     ...travellers(ways, at),
@@ -156,17 +166,24 @@ function drawnPlace(place, at) {
   const look = { class: "heading", x1: at.x, y1: at.y, x2: at.x + 16 * Math.cos(turn), y2: at.y + 16 * Math.sin(turn) };
   const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun"];
   const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}`;
-  const spots = place.spots.map((spot) => {
-    const beside = toScreen(spot.x, spot.y);
-    return svg("circle", { class: "spot", cx: beside.x, cy: beside.y, r: 5 });
-  });
   return svg(
     "g",
     { class: kinds.filter(Boolean).join(" "), "data-key": place.name, tabindex: 0, role: "button", "aria-label": words },
-    ...spots,
     svg("circle", { class: "reach", cx: at.x, cy: at.y, r: 22 }),
     svg("line", look),
     svg("circle", { class: "dot", cx: at.x, cy: at.y, r: 9 }),
+  );
+}
+
+function drawnSpot(place, spot) {
+  const { x, y } = toScreen(spot.x, spot.y);
+  const words = `spot of ${spot.robot} at ${shown(place)}: ${spot.x.toFixed(2)}, ${spot.y.toFixed(2)}`;
+  return svg(
+    "g",
+    { class: "spot", "data-key": `${place.name} ${spot.robot}`, tabindex: 0, role: "button", "aria-label": words },
+    svg("title", {}, words),
+    svg("circle", { class: "near", cx: x, cy: y, r: 12 }),
+    svg("circle", { class: "ring", cx: x, cy: y, r: 5 }),
   );
 }
 

@@ -1,13 +1,13 @@
 // Mouse, fingers and keys on the picture.
 import { pan, size, toMap, zoom } from "./camera.js";
 import { byId } from "./elements.js";
-import { draw, fitAll, pending, placeNamed } from "./plan.js";
+import { draw, fitAll, movable, pending } from "./plan.js";
 import { all, change, look, say, select, selected, state } from "./state.js";
 
 const plan = byId("plan");
 const STILL = 6; // pixels that a click may move
 const pointers = new Map();
-let gesture = null; // { kind: "tap" | "place" | "pan" | "way" | "pinch", … }
+let gesture = null; // { kind: "tap" | "drag" | "pan" | "way" | "pinch", … }
 
 export function tool() {
   return document.querySelector("input[name=tool]:checked").value;
@@ -15,9 +15,21 @@ export function tool() {
 
 function target(event) {
   const element = document.elementFromPoint(event.clientX, event.clientY);
-  const found = element && element.closest("#plan .place, #plan .way, #plan .row");
-  if (found && found.dataset.kind) return { kind: found.dataset.kind, key: found.dataset.name };
-  return found && { kind: found.classList.contains("place") ? "place" : "way", key: found.dataset.key };
+  return hitBy(element && element.closest("#plan .place, #plan .way, #plan .spot, #plan .row"));
+}
+
+function hitBy(element) {
+  if (element && element.dataset.kind) return { kind: element.dataset.kind, key: element.dataset.name };
+  return element && { kind: ["place", "spot"].find((one) => element.classList.contains(one)) || "way", key: element.dataset.key };
+}
+
+// A spot is at a place: for all but moving it, that is meant.
+const placeOf = (hit) => (hit && hit.kind === "spot" ? { kind: "place", key: hit.key.split(" ")[0] } : hit);
+
+// Writes that a place or a spot is elsewhere.
+function moveTo({ kind, key }, x, y) {
+  const [name, robot] = key.split(" ");
+  change(kind === "place" ? { do: "move place", name, x, y } : { do: "move spot", name, robot, x, y });
 }
 
 const rounded = (metres) => Math.round(metres * 100) / 100;
@@ -35,7 +47,8 @@ function typeName(byFinger) {
   };
 }
 
-function use(hit, point, byFinger) {
+function use(found, point, byFinger) {
+  const hit = placeOf(found);
   const name = hit && hit.kind === "place" ? hit.key : null;
   if (tool() === "place" && !name) {
     change({ do: "add place", x: rounded(point.x), y: rounded(point.y) }, typeName(byFinger));
@@ -80,16 +93,17 @@ function down(event) {
   }
 }
 
-// What was a click becomes a drag: of a place, which was perhaps not grasped in its middle, of a way, or of the ground.
+// What was a click becomes a drag: of a place or a spot, which was perhaps not grasped in its middle, of a way, or of
+// the ground.
 function begin(drag) {
-  const place = drag.hit && drag.hit.kind === "place" && placeNamed(drag.hit.key);
-  drag.kind = place && tool() === "way" ? "way" : place && tool() === "select" ? "place" : "pan";
-  if (drag.kind !== "place") return;
+  const thing = drag.hit && movable(drag.hit);
+  drag.kind = thing && tool() === "way" ? "way" : thing && tool() === "select" ? "drag" : "pan";
+  if (drag.kind !== "drag") return;
   const grasped = toMap(drag.x, drag.y);
-  drag.beside = { x: place.x - grasped.x, y: place.y - grasped.y };
+  drag.beside = { x: thing.x - grasped.x, y: thing.y - grasped.y };
 }
 
-// Where a place is that is dragged.
+// Where that is what is dragged.
 function dragged(drag, event) {
   const { x, y } = toMap(event.clientX, event.clientY);
   return { x: rounded(x + drag.beside.x), y: rounded(y + drag.beside.y) };
@@ -108,11 +122,11 @@ function move(event) {
   const far = Math.hypot(event.clientX - gesture.x, event.clientY - gesture.y) > STILL;
   if (gesture.kind === "tap" && far) begin(gesture);
   if (gesture.kind === "tap" || gesture.kind === "done") return;
-  if (gesture.kind === "place") {
-    const place = placeNamed(gesture.hit.key);
-    if (place) Object.assign(place, dragged(gesture, event));
+  if (gesture.kind === "drag") {
+    const thing = movable(gesture.hit);
+    if (thing) Object.assign(thing, dragged(gesture, event));
   } else if (gesture.kind === "way") {
-    pending.from = gesture.hit.key;
+    pending.from = placeOf(gesture.hit).key;
     pending.to = { x: event.clientX, y: event.clientY };
   } else {
     pan(event.clientX - gesture.lastX, event.clientY - gesture.lastY);
@@ -141,10 +155,11 @@ function up(event) {
     look(); // what was dragged goes back
   } else if (ended.kind === "tap") {
     use(ended.hit, toMap(event.clientX, event.clientY), event.pointerType === "touch");
-  } else if (ended.kind === "place") {
-    change({ do: "move place", name: ended.hit.key, ...dragged(ended, event) });
+  } else if (ended.kind === "drag") {
+    const { x, y } = dragged(ended, event);
+    moveTo(ended.hit, x, y);
   } else if (ended.kind === "way") {
-    const hit = target(event);
+    const hit = placeOf(target(event));
     stepOfWay(hit && hit.kind === "place" ? hit.key : null);
   }
 }
@@ -152,33 +167,32 @@ function up(event) {
 // Keys -------------------------------------------------------------------------------------------------------------
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-let moved = null; // a place that arrows have moved, and the timer after which that is written
+let moved = null; // a place or a spot that arrows have moved, and the timer after which that is written
 
-function moveBy(key, [dx, dy], step) {
-  const place = placeNamed(key);
-  if (!place) return;
-  if (moved && moved.key !== key) writeMove();
-  place.x = rounded(place.x + dx * step);
-  place.y = rounded(place.y + dy * step);
+function moveBy(hit, [dx, dy], step) {
+  const thing = movable(hit);
+  if (!thing) return;
+  if (moved && moved.hit.key !== hit.key) writeMove();
+  thing.x = rounded(thing.x + dx * step);
+  thing.y = rounded(thing.y + dy * step);
   if (moved) clearTimeout(moved.timer);
-  moved = { key, x: place.x, y: place.y, timer: setTimeout(writeMove, 300) };
+  moved = { hit, x: thing.x, y: thing.y, timer: setTimeout(writeMove, 300) };
   draw();
 }
 
 function writeMove() {
   if (!moved) return;
   clearTimeout(moved.timer);
-  const { key, x, y } = moved;
+  const { hit, x, y } = moved;
   moved = null;
-  change({ do: "move place", name: key, x, y });
+  moveTo(hit, x, y);
 }
 
 function pressed(event) {
-  const focused = event.target.closest(".place, .way");
-  const hit = focused && { kind: focused.classList.contains("place") ? "place" : "way", key: focused.dataset.key };
+  const hit = hitBy(event.target.closest("#plan .place, #plan .way, #plan .spot"));
   const arrow = ARROWS[event.key];
   if (arrow && !event.ctrlKey && !event.altKey) {
-    if (hit && hit.kind === "place") moveBy(hit.key, arrow, event.shiftKey ? 1 : 0.1);
+    if (hit && movable(hit)) moveBy(hit, arrow, event.shiftKey ? 1 : 0.1);
     else pan(-40 * arrow[0], 40 * arrow[1]);
     draw();
   } else if (event.key === "Enter" || event.key === " ") {
