@@ -111,6 +111,11 @@ class Navigation:
         return self._at.position
 
     @property
+    def was_taken_back(self) -> bool:
+        """Return True if another node sent the robot elsewhere on this trip, and its goal was sent again."""
+        return self._trip is not None and self._trip.replaced > 0
+
+    @property
     def is_open(self) -> bool:
         """Return True while the robot may get goals and actions."""
         return (self._view.running or self._view.returning) and not self._view.held

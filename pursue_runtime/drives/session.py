@@ -64,8 +64,9 @@ class Session:
     """The drives and actions of one robot.
 
     It begins with a drive to `start`, which does not count, and so it goes on after a failed one: to where that began,
-    or to another place. A robot that another node sends elsewhere is left to that. Where the tour passes a place at
-    which an action is left that the `rules` allow, it is done there.
+    or to another place. A robot whose goal another node cancels is left to that; a drive on which another node sent it
+    elsewhere is made once more. Where the tour passes a place at which an action is left that the `rules` allow, it is
+    done there.
     """
 
     def __init__(
@@ -221,6 +222,10 @@ class Session:
 
     def _ended(self, leg: _Leg, word: str, now: float) -> Due:
         report = parse_report(word)
+        if report is None and leg.act is None and self._nav.was_taken_back:
+            drive = self._end(leg, INTERRUPTED, "another node sent it elsewhere on its way", now)
+            self._place = leg.b  # it is there all the same
+            return Due(drive=drive)
         if report is None:
             return Due(drive=self._end(leg, ARRIVED, "", now))
         if report.event == HELD:
@@ -246,7 +251,8 @@ class Session:
             self.measured.setdefault((leg.a, leg.b), []).append(drive.seconds)
             count = sum(min(len(times), self.plan.times) for times in self.measured.values())
             all_ = self.plan.times * len(self.plan.ways)
-            self._log("info", f"{self.robot} from {leg.a} to {leg.b}: {drive.seconds:.2f} s ({count} of {all_})")
+            took = f"{drive.seconds:.2f} s{f', with {leg.goals} goals' if leg.goals > 1 else ''}"
+            self._log("info", f"{self.robot} from {leg.a} to {leg.b}: {took} ({count} of {all_})")
         elif not arrived:
             whence = f" from {leg.a}" if leg.a else ""
             self._log("warn", f"{self.robot}{whence} to {leg.b}: {outcome}{f', {text}' if text else ''}")

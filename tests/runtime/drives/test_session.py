@@ -14,6 +14,7 @@ from pursue_runtime.drives.actions import Act
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive, format_drive, parse_drive
 from pursue_runtime.drives.session import Plan, Session
 from pursue_runtime.drives.tour import Way
+from pursue_runtime.locations import movement
 
 PLACES = {name: Place(name, float(x), 0.0) for x, name in enumerate("abc")}
 WAYS: Tuple[Way, ...] = (("a", "b"), ("b", "a"), ("b", "c"), ("c", "b"))
@@ -146,13 +147,28 @@ def test_what_was_measured_stays_when_it_is_stopped() -> None:
     assert found.session.stop(found.now) == found.session.due(found.now, found.now)
 
 
-def test_a_robot_that_a_person_sends_elsewhere_is_left_to_that() -> None:
+def test_a_robot_that_a_person_calls_back_is_left_to_that() -> None:
     found = robot()
     found.run(until=110.0)
     found.answer(found.session.goal, PREEMPTED)
     found.run()
     assert found.drives[-1].outcome == INTERRUPTED
     assert "preempted" in found.session.problem and not found.session.is_complete
+
+
+def test_a_drive_on_which_another_node_sent_the_robot_elsewhere_is_made_once_more() -> None:
+    found = robot()
+    found.run(until=110.0)
+    ours, way = found.session.goal, found.session.location
+    found.answer(ours, PREEMPTED)
+    theirs = [Answer(ours, found.now, PREEMPTED), Answer("of another node", found.now, 1)]
+    found.session.on_status(theirs, found.now, found.now)
+    found.run()
+    disturbed = [drive for drive in found.drives if drive.outcome != ARRIVED]
+    assert [(movement(drive.a, drive.b), drive.outcome, drive.goals) for drive in disturbed] == [(way, INTERRUPTED, 2)]
+    assert "another node" in disturbed[0].text
+    assert found.session.is_complete and not found.session.problem
+    assert all(set(times) == {TAKES[way]} for way, times in found.session.measured.items())
 
 
 def test_a_robot_that_gets_nowhere_ends_it() -> None:
