@@ -10,14 +10,20 @@
     element.append(...children);
     return element;
   };
-  const state = (n) => { const [places, values, wait, ours, others, goal] = book.states[n]; return { places, values, wait, ours, others, goal }; };
+  const state = (n) => { const [places, values, wait, ours, others, goal, done] = book.states[n]; return { places, values, wait, ours, others, goal, done }; };
   const step = ([who, text, target, when]) => ({ who: book.automata[who].shown, number: who, text: book.texts[text], target, when });
   const place = (k, p) => book.automata[k].places[p][0];
-  const where = (s) => agents.map((k) => `${book.automata[k].shown} ${place(k, s.places[k])}`).join("; ");
+  // In stages a situation speaks of some only; the last place of the others stands for all.
+  const free = (k, p) => book.parts.length > 0 && p === book.automata[k].places.length - 1;
+  const where = (s) => {
+    const seen = agents.filter((k) => !free(k, s.places[k]));
+    const parts = seen.map((k) => `${book.automata[k].shown} ${place(k, s.places[k])}`);
+    return [...parts, ...(seen.length < agents.length ? ["the others wherever they are"] : [])].join("; ");
+  };
   const rest = (s) => [
-    ...book.automata.map((a, k) => [a, k]).filter(([a, k]) => !agents.includes(k) && a.kind !== "states")
+    ...book.automata.map((a, k) => [a, k]).filter(([a, k]) => !agents.includes(k) && a.kind !== "states" && !free(k, s.places[k]))
       .map(([a, k]) => `${a.shown}: ${place(k, s.places[k])}`),
-    ...book.variables.map((name, k) => `${name}: ${s.values[k] ? "true" : "false"}`)].join("; ");
+    ...book.variables.map((name, k) => `${name}: ${s.values[k] ? "true" : "false"}`).filter((_, k) => s.values[k] >= 0)].join("; ");
   const changed = (s, t) => {
     const parts = [...s.places.keys()].filter((k) => s.places[k] !== t.places[k])
       .map((k) => `${book.automata[k].shown}${agents.includes(k) ? "" : ":"} ${place(k, t.places[k])}`);
@@ -49,6 +55,7 @@
     if (before !== undefined) parts.push(make("p", { className: "kind" }, where(s)));
     if (rest(s)) parts.push(make("p", { className: "kind" }, rest(s)));
     if (s.goal) return [...parts, make("p", { className: "goal" }, "The goal is reached.")];
+    if (s.done) return [...parts, make("p", { className: "goal" }, "This part is done; the next stage begins when all parts of this one are.")];
     const list = make("ul");
     s.ours.map(step).forEach((c) => list.append(make("li", {}, order(c), card(c.target, n))));
     if (s.wait.length || !s.ours.length) list.append(make("li", {}, waiting(s)));
@@ -118,9 +125,13 @@
     for (const k of query.places.keys()) query.of.delete(k);
     return query;
   };
+  // A situation has to speak of one who is asked about.
   const matching = (query) => [...book.states.keys()].filter((n) => {
     const s = state(n);
-    return [...query.places].every(([k, good]) => good.has(s.places[k])) && [...query.values].every(([k, v]) => s.values[k] === v);
+    const asked = [...(query.of.size ? query.of : query.places.keys())];
+    if (asked.length && asked.every((k) => free(k, s.places[k]))) return false;
+    return [...query.places].every(([k, good]) => good.has(s.places[k]) || free(k, s.places[k])) &&
+      [...query.values].every(([k, v]) => s.values[k] === v || s.values[k] < 0);
   });
   const repeated = (query) => {
     const parts = [...query.places].map(([k, good]) => `${book.automata[k].name} is ${[...good].map((p) => place(k, p)).join(" or ") || "nowhere"}`);
@@ -131,7 +142,8 @@
   // The answer: in few words for each agent that was asked about, then the situations. -------------------------------
   const answer = (query) => {
     const found = matching(query);
-    const open = found.filter((n) => !state(n).goal);
+    const open = found.filter((n) => !state(n).goal && !state(n).done);
+    const goals = found.filter((n) => state(n).goal).length;
     const out = at("found");
     out.replaceChildren();
     const box = make("div", { className: "strategy-answer" });
@@ -139,7 +151,7 @@
       box.append(make("p", {}, `Not understood: ${query.unknown.join(", ")}. Names are: ` +
         `${agents.map((k) => book.automata[k].name).join(", ")}; where they can be is listed under “Choose places”.`));
     box.append(make("p", {}, `${found.length} ${found.length === 1 ? "situation" : "situations"} of the strategy: ${repeated(query)}.` +
-      (found.length > open.length ? ` In ${found.length - open.length} of them the goal is reached.` : "") +
+      (goals ? ` In ${goals} of them the goal is reached.` : "") +
       (found.length ? "" : " This never happens while the strategy is followed.")));
     for (const k of query.of) if (open.length) box.append(summed(k, open));
     out.append(box);
@@ -161,7 +173,7 @@
     const name = book.automata[k].name;
     const lines = new Map();
     const add = (rank, text, n, parts) => { if (!lines.has(text)) lines.set(text, { rank, parts, in: new Set() }); lines.get(text).in.add(n); };
-    for (const n of found) {
+    for (const n of found.filter((one) => !free(k, state(one).places[k]))) {
       const s = state(n);
       const own = s.ours.map(step).filter((c) => c.number === k);
       own.forEach((c) => add(0, `${c.text} ${c.when}`, n, [`${name} ${c.text}: `, ...times(c.when)]));
@@ -180,7 +192,7 @@
   const selects = book.automata.map((a, k) => {
     if (a.places.length < 2) return null;
     const select = make("select", {}, make("option", { value: "" }, "anywhere"));
-    a.places.forEach((p, n) => select.append(make("option", { value: n }, p[0])));
+    a.places.forEach((p, n) => free(k, n) || select.append(make("option", { value: n }, p[0])));
     if (!agents.includes(k)) select.firstChild.textContent = "any";
     at("choose").append(make("label", {}, a.shown, select));
     return select;
@@ -203,7 +215,35 @@
     event.preventDefault();
     if (at("question").value.trim()) answer(understand(at("question").value)); else at("found").replaceChildren();
   });
-  at("tree").append(card(0));
-  at("tree").firstChild.open = true;
+  // Without stages one situation is the start. In stages each part begins where the stage before has ended. --------
+  const situations = (begin, end) => {
+    const some = [...Array(end - begin).keys()].map((k) => begin + k).filter((n) => !state(n).goal && !state(n).done);
+    const box = make("details", {}, make("summary", {}, `It begins in one of these ${some.length} situations`));
+    const list = make("div");
+    const more = make("button", { type: "button" }, "Show more");
+    const show = () => {
+      list.append(...some.splice(0, AT_ONCE).map((n) => card(n)));
+      more.hidden = !some.length;
+    };
+    more.addEventListener("click", show);
+    box.addEventListener("toggle", () => { if (box.open && !list.firstChild) show(); });
+    box.append(list, more);
+    return box;
+  };
+  const together = (count) => (count > 1 ? `; its ${count} parts are played at the same time` : "");
+  const stages = book.parts.length ? book.parts[book.parts.length - 1][0] + 1 : 0;
+  book.parts.forEach(([stage, who, until, first], k) => {
+    if (!k || book.parts[k - 1][0] !== stage) {
+      const count = book.parts.filter((part) => part[0] === stage).length;
+      const begins = stage ? "when stage " + stage + " is done" : "from the start";
+      at("tree").append(make("h4", {}, `Stage ${stage + 1} of ${stages}, ${begins}${together(count)}`));
+    }
+    const end = k + 1 < book.parts.length ? book.parts[k + 1][3] : book.states.length;
+    const names = who.map((name) => book.automata.find((a) => a.name === name).shown).join(" and ");
+    at("tree").append(make("p", {}, make("span", { className: "who" }, names), `${names ? " play" + (who.length > 1 ? "" : "s") : "Played"} until “${until}”.`),
+      stage ? situations(first, end) : card(first));
+  });
+  if (!stages) at("tree").append(card(0));
+  if (!stages) at("tree").firstChild.open = true;
   at("live").hidden = false;
 })();

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import List, Optional
 
+from pursue_gen.diagnostics import counted
 from pursue_gen.drawing.look import safe
 from pursue_gen.report import graphviz
 from pursue_gen.report.graphviz import Graph, arrow, node
@@ -20,6 +21,7 @@ def section(strategy: StrategyData) -> Section:
     parts = [
         f"<p>The strategy knows {states:,} situations and gives {commands:,} commands in them. Open a situation to see "
         "what is commanded, under which clocks, what is waited for, and where each of these leads.</p>",
+        *_stages(strategy),
         *_left_out(strategy),
         "<noscript><p>The search and the tree need JavaScript, which is switched off in this browser.</p></noscript>",
         '<div id="strategy-live" hidden>',
@@ -35,6 +37,17 @@ def section(strategy: StrategyData) -> Section:
     ]
     body = "\n".join(parts)
     return Section("strategy", "The strategy", body, asset("strategy.css"), asset("strategy.js"))
+
+
+def _stages(strategy: StrategyData) -> List[str]:
+    if not strategy.parts:
+        return []
+    stages = strategy.parts[-1].stage + 1
+    text = (
+        f"It is played in {counted(stages, 'stage')}, one after the other. A part of a stage speaks only of those who "
+        "matter to it: all others may be anywhere and do whatever they can, and its commands are right all the same."
+    )
+    return [f"<p>{text}</p>"]
 
 
 def _left_out(strategy: StrategyData) -> List[str]:
@@ -101,11 +114,15 @@ def _picture(strategy: StrategyData) -> List[str]:
 
 def _state(strategy: StrategyData, number: int, situation: Situation) -> str:
     lines = [f"#{number}"]
-    for (name, kind, places), place in zip(strategy.automata, situation.places):
-        if kind in ("robot", "person", "other"):
+    for k, ((name, kind, places), place) in enumerate(zip(strategy.automata, situation.places)):
+        if kind in ("robot", "person", "other") and not strategy.is_free(k, place):
             lines.append(f"{strategy.labels.get(name, name)} {places[place][0]}")
     if situation.goal:
         lines[0] += " goal reached"
-    if situation.wait or (not situation.commands and not situation.goal):
+    elif situation.done:
+        lines[0] += " part done"
+    ended = situation.goal or situation.done
+    if situation.wait or (not situation.commands and not ended):
         lines.append("(wait)" if not situation.commands else "(else wait)")
-    return node(f"strategy-graph-s{number}", "\n".join(lines), peripheries=2 if number == 0 or situation.goal else 1)
+    begins = number in {0, *(part.first for part in strategy.parts if part.stage == 0)}
+    return node(f"strategy-graph-s{number}", "\n".join(lines), peripheries=2 if begins or ended else 1)

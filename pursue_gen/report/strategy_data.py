@@ -13,7 +13,7 @@ from pursue_gen.partition.split import UI
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
-from pursue_gen.synthesis.strategy import DiscreteState, Strategy, Zone
+from pursue_gen.synthesis.strategy import DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga import names
 from pursue_gen.tga.objectives import stated
 
@@ -35,9 +35,10 @@ class Transition:
 
 @dataclass(frozen=True)
 class Situation:
-    """A discrete state: `places` are locations' numbers, `values` those of the scenario's states (0 or 1).
+    """A discrete state: `places` are locations' numbers, `values` those of the scenario's states (0, 1 or UNKNOWN).
 
-    `wait`: zones in which no command is due; `others`: the uncontrollable moves. `goal`: the goal is reached.
+    `wait`: zones in which no command is due; `others`: the uncontrollable moves. `goal`: the goal is reached; `done`:
+    so is what the part of a stage is played for.
     """
 
     places: Tuple[int, ...]
@@ -46,6 +47,17 @@ class Situation:
     commands: Tuple[Transition, ...] = ()
     others: Tuple[Transition, ...] = ()
     goal: bool = False
+    done: bool = False
+
+
+@dataclass(frozen=True)
+class StagePart:
+    """A part of a stage (counted from 0): the robots that play it, the words for what ends it, its first situation."""
+
+    stage: int
+    who: Tuple[str, ...]
+    until: str
+    first: int
 
 
 @dataclass(frozen=True)
@@ -53,7 +65,8 @@ class StrategyData:
     """All situations, the initial one first; zones as (words, exact text).
 
     `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`. `left_out`: the
-    automata that the strategy does not speak of, as they cannot matter.
+    automata that the strategy does not speak of, as they cannot matter. `parts`: of a strategy in stages; the last
+    place of each automaton then stands for all: the part does not speak of it.
     """
 
     automata: Tuple[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]], ...]
@@ -63,10 +76,18 @@ class StrategyData:
     situations: Tuple[Situation, ...]
     left_out: Tuple[str, ...] = ()
     labels: Mapping[str, str] = field(default_factory=dict)
+    parts: Tuple[StagePart, ...] = ()
 
+    def is_free(self, automaton: int, place: int) -> bool:
+        """True if a situation with this place does not speak of the automaton."""
+        return bool(self.parts) and place == len(self.automata[automaton][2]) - 1
+
+
+UNKNOWN = -1
+"""The value of a state that a part does not speak of."""
 
 _ANYWHERE: Tuple[str, Tuple[str, ...]] = ("anywhere", ())
-"""The place of an automaton that a stage does not name."""
+"""The place of an automaton that a part does not name."""
 
 
 def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
@@ -80,9 +101,9 @@ def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> Strat
         for a in builder.game.automata
     )
     situations = builder.situations()
-    shown = (state.name for state in scenario.states if names.state_value(state.name) in builder.game.variables)
     left_out = tuple(a.name for a in won.network.automata if a.name not in {a.name for a in builder.game.automata})
-    return StrategyData(automata, tuple(shown), owners, tuple(builder.zones), situations, left_out, scenario.labels)
+    shown = tuple(builder.shown)
+    return StrategyData(automata, shown, owners, tuple(builder.zones), situations, left_out, scenario.labels)
 
 
 def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tuple[str, ...]]:
@@ -96,47 +117,76 @@ def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tupl
 
 
 def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
-    """The situations of each stage, one after the other; whom a stage does not name may be anywhere."""
+    """The situations of each part of each stage, one after the other; whom a part does not name may be anywhere."""
+    named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
+    every = [automaton.name for automaton in won.network.automata if automaton.name in named]
     words = _Builder(scenario, replace(won, strategy=Strategy(())))
-    zones: List[Tuple[str, str]] = []
-    situations: List[Situation] = []
-    every = [automaton.name for automaton in won.network.automata]
-    for stage, milestones in enumerate(won.strategy.stages):
-        blocks = tuple(won.strategy.blocks[n] for place in milestones for n in won.strategy.numbers_of(stage, place))
-        own = replace(won, objective=replace(won.objective, goal=(milestones[0],)), strategy=Strategy(blocks))
-        builder = _Builder(scenario, replace(own, network=own.part), words.words)
-        found = builder.situations()
-        is_last = stage == len(won.strategy.stages) - 1
-        at = [every.index(automaton.name) for automaton in builder.game.automata]
-        situations += [
-            _shifted(some, at, words.nowhere, len(zones), len(situations), some.goal and is_last) for some in found
-        ]
-        zones += builder.zones
     automata = tuple(
         (a.name, _kind(scenario, a.name), (*(words.place(a.name, place) for place in a.locations), _ANYWHERE))
         for a in words.game.automata
+        if a.name in named
     )
-    variables: Tuple[str, ...] = ()
+    values = {name for block in won.strategy.blocks for name, _ in block.state.values}
+    shown = [state.name for state in scenario.states if names.state_value(state.name) in values]
+    free = Situation(tuple(len(places) - 1 for _, _, places in automata), (UNKNOWN,) * len(shown))
+    zones: List[Tuple[str, str]] = []
+    situations: List[Situation] = []
+    parts: List[StagePart] = []
+    for stage, milestones in enumerate(won.strategy.stages):
+        for place in milestones:
+            blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(stage, place))
+            own = replace(won, objective=replace(won.objective, goal=(place,)), strategy=Strategy(blocks))
+            builder = _Builder(scenario, replace(own, network=own.part), words.words)
+            at = [every.index(automaton.name) for automaton in builder.game.automata]
+            which = [shown.index(name) for name in builder.shown]
+            is_last = stage == len(won.strategy.stages) - 1
+            who = tuple(name for name, kind, _ in (automata[k] for k in at) if kind == "robot")
+            parts.append(StagePart(stage, who, _until(scenario, words.words, place), len(situations)))
+            moved = _Moved(free, at, which, len(zones), len(situations), is_last)
+            situations += [moved.situation(some) for some in builder.situations()]
+            zones += builder.zones
+    left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
     owners = _owners(scenario, won, reach_obj)
-    return StrategyData(automata, variables, owners, tuple(zones), tuple(situations), (), scenario.labels)
+    found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)
+    return StrategyData(automata, tuple(shown), owners, *found)
 
 
-def _shifted(
-    some: Situation, at: Sequence[int], nowhere: Sequence[int], zones: int, before: int, goal: bool
-) -> Situation:
-    """A situation of a stage among those of all: numbers of zones and situations count on, as do those of automata."""
-    places = list(nowhere)
-    for k, place in zip(at, some.places):
-        places[k] = place
+def _until(scenario: Scenario, words: Words, place: Place) -> str:
+    """The words for what ends a part of a stage."""
+    name, value = place
+    for state in scenario.states:
+        if names.state_value(state.name) == name:
+            return f"{scenario.shown(state.name)}: {'true' if value == '1' else 'false'}"
+    return f"{shown_name(name, _kind(scenario, name))}: {words.place(name, value)}"
 
-    def moved(steps: Sequence[Transition]) -> Tuple[Transition, ...]:
+
+@dataclass(frozen=True)
+class _Moved:
+    """Situations of a part among those of all: numbers of zones and situations count on, automata have others."""
+
+    free: Situation
+    at: Sequence[int]
+    which: Sequence[int]
+    zones: int
+    before: int
+    is_last: bool
+
+    def situation(self, some: Situation) -> Situation:
+        """The situation; of whom the part does not name nothing is known."""
+        places, values = list(self.free.places), list(self.free.values)
+        for k, place in zip(self.at, some.places):
+            places[k] = place
+        for k, value in zip(self.which, some.values):
+            values[k] = value
+        wait = tuple(n + self.zones for n in some.wait)
+        ours, others = self._steps(some.commands), self._steps(some.others)
+        return Situation(tuple(places), tuple(values), wait, ours, others, some.goal and self.is_last, some.goal)
+
+    def _steps(self, steps: Sequence[Transition]) -> Tuple[Transition, ...]:
         return tuple(
-            Transition(at[step.who], step.words, tuple(n + zones for n in step.when), step.target + before)
-            for step in steps
+            Transition(self.at[s.who], s.words, tuple(n + self.zones for n in s.when), s.target + self.before)
+            for s in steps
         )
-
-    wait = tuple(n + zones for n in some.wait)
-    return Situation(tuple(places), (), wait, moved(some.commands), moved(some.others), goal)
 
 
 def as_json(data: StrategyData) -> Dict[str, Any]:
@@ -147,10 +197,11 @@ def as_json(data: StrategyData) -> Dict[str, Any]:
         return [[s.who, texts.setdefault(s.words, len(texts)), s.target, list(s.when)] for s in some]
 
     situations = [
-        [list(s.places), list(s.values), list(s.wait), steps(s.commands), steps(s.others), int(s.goal)]
+        [list(s.places), list(s.values), list(s.wait), steps(s.commands), steps(s.others), int(s.goal), int(s.done)]
         for s in data.situations
     ]
     return {
+        "parts": [[part.stage, list(part.who), part.until, part.first] for part in data.parts],
         "automata": [
             {"name": name, "shown": data.labels.get(name) or shown_name(name, kind), "kind": kind, "places": places}
             for name, kind, places in data.automata
@@ -173,13 +224,9 @@ class _Builder:
         self._zone_numbers: Dict[Zone, int] = {}
         self._places = [{name: k for k, name in enumerate(a.locations)} for a in self.game.automata]
         self._blocks = {self._state(block.state): block for block in won.strategy.blocks}
-        shown = [names.state_value(state.name) for state in scenario.states]
-        self._shown = [self.game.variables.index(name) for name in shown if name in self.game.variables]
-
-    @property
-    def nowhere(self) -> Tuple[int, ...]:
-        """For each automaton the number behind those of its locations."""
-        return tuple(len(automaton.locations) for automaton in self.game.automata)
+        variables = self.game.variables
+        self.shown = [state.name for state in scenario.states if names.state_value(state.name) in variables]
+        self._shown = [variables.index(names.state_value(name)) for name in self.shown]
 
     def place(self, automaton: str, location: str) -> Tuple[str, Tuple[str, ...]]:
         """A place in words, and its parts where it is an agent's."""

@@ -9,6 +9,7 @@ from typing import Iterator, List
 
 import pytest
 
+from benchmarks.families import deliver_by_robots
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario
@@ -192,3 +193,20 @@ def test_nothing_is_wider_than_the_screen(there: Browser, tmp_path: Path, catch:
     there.wait("document.querySelectorAll('#strategy-found .state ul').length > 0")
     assert there.value("document.documentElement.scrollWidth <= innerWidth")
     assert there.picture(True).startswith(b"\x89PNG") and there.complaints == []
+
+
+@needs_browser
+def test_stages_are_shown_one_after_the_other_with_those_they_speak_of(there: Browser, tmp_path: Path) -> None:
+    opened(there, tmp_path, won_page(parse(deliver_by_robots(3), "delivery.pur", "delivery")))
+    tree = there.text("#strategy-tree")
+    assert "Stage 1 of 2, from the start; its 3 parts are played at the same time" in tree
+    assert "bot2 plays until “rule2: next: report”." in tree
+    assert "bot2 at depot; the others wherever they are" in tree and "anywhere" not in tree
+    assert "Stage 2 of 2, when stage 1 is done" in tree and "It begins in one of these 2 situations" in tree
+    assert "never happens" in answer_to(there, "bot2 at room1")
+    answer = answer_to(there, "what will bot2 do if bot1 goes to hub?")
+    assert "9 situations" in answer and "bot2 sets off from hub to room2" in answer and "anywhere" not in answer
+    assert "no command: it is at room2" not in answer, "its part is done there"
+    there.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    there.wait("document.querySelectorAll('#strategy-found .state ul').length > 0")
+    assert there.value("document.documentElement.scrollWidth <= innerWidth") and there.complaints == []
