@@ -43,9 +43,11 @@ class Graph:
         """The node of a free point."""
         return int(self.regions[math.floor(point[1]), math.floor(point[0])])
 
-    def searched(self, nodes: List[int]) -> Tuple[Array, Array]:
-        """For each of these nodes: the length from it to every node (inf: none), and the node before that."""
-        return csgraph.dijkstra(self.steps, indices=nodes, return_predecessors=True)  # type: ignore[no-any-return]
+    def searched(self, nodes: List[int], most: float = math.inf) -> Tuple[Array, Array]:
+        """For each of these nodes: the length from it to every node (inf: none, or more than `most`), and the node
+        before that."""
+        found: Tuple[Array, Array] = csgraph.dijkstra(self.steps, indices=nodes, return_predecessors=True, limit=most)
+        return found
 
 
 def graph_of(grid: Grid, nodes: int = NODES) -> Graph:
@@ -54,11 +56,12 @@ def graph_of(grid: Grid, nodes: int = NODES) -> Graph:
     regions, count = _regions(grid.free, block)
     points, main = _points(regions, count, block)
     touching = _touching(regions, block, count)
-    pairs = np.unique(np.concatenate([touching, _around(main, count)]))
+    pairs = _distinct(np.concatenate([touching, _around(main, count)]))
     a, b = pairs // count, pairs % count
     seen = _seen(grid.free, points[a], points[b])
     lengths = np.hypot(*(points[a] - points[b]).T) * np.where(seen, 1.0, _DETOUR)
-    wanted = seen | np.isin(pairs, touching, assume_unique=True)
+    wanted = seen
+    wanted[np.searchsorted(pairs, touching)] = True
     a, b, lengths = a[wanted], b[wanted], lengths[wanted]
     both = np.concatenate([a, b]), np.concatenate([b, a])
     steps = sparse.csr_matrix((np.concatenate([lengths, lengths]), both), shape=(count, count))
@@ -80,16 +83,32 @@ def _regions(free: Array, block: int) -> Tuple[Array, int]:
 
 def _points(regions: Array, count: int, block: int) -> Tuple[Array, Array]:
     """The point of each node, nearest to the middle of its block, and for each block the node nearest to its middle."""
-    cells = np.zeros((count, 2), dtype=np.int64)
-    main = np.full((regions.shape[0] // block, regions.shape[1] // block), -1, dtype=np.int64)
+    cells = np.full((count, 2), -1, dtype=np.int64)
+    rows, columns = (size // block for size in regions.shape)
+    main = np.full(rows * columns, -1, dtype=np.int64)
     middle = (block - 1) / 2
-    inside = [(row, column) for row in range(block) for column in range(block)]
-    for row, column in sorted(inside, key=lambda one: -math.hypot(one[0] - middle, one[1] - middle)):
-        here = regions[row::block, column::block]
-        y, x = np.nonzero(here >= 0)
-        cells[here[y, x]] = np.column_stack([x * block + column, y * block + row])  # the last one stays
-        main[y, x] = here[y, x]
-    return cells + 0.5, main
+    inside = [(row, column) for row in range(block)[::-1] for column in range(block)[::-1]]
+    left = _counts(regions, count, block)  # how many regions of each block have no point yet
+    open_ = np.flatnonzero(left)
+    for row, column in sorted(inside, key=lambda one: math.hypot(one[0] - middle, one[1] - middle)):
+        y, x = open_ // columns * block + row, open_ % columns * block + column
+        here = regions[y, x]
+        new = (here >= 0) & (cells[here, 0] < 0)
+        cells[here[new]] = np.column_stack([x[new], y[new]])
+        first = new & (main[open_] < 0)
+        main[open_[first]] = here[first]
+        left[open_[new]] -= 1
+        open_ = open_[left[open_] > 0]
+    return cells + 0.5, main.reshape(rows, columns)
+
+
+def _counts(regions: Array, count: int, block: int) -> Array:
+    """How many regions each block has, row by row."""
+    rows, columns = (size // block for size in regions.shape)
+    blocks = np.arange(rows * columns).reshape(rows, columns).repeat(block, axis=0).repeat(block, axis=1)
+    of = np.zeros(count + 1, dtype=np.int64)
+    of[regions] = blocks  # the last one is that of no region
+    return np.bincount(of[:count], minlength=rows * columns)
 
 
 def _touching(regions: Array, block: int, count: int) -> Array:
@@ -98,7 +117,13 @@ def _touching(regions: Array, block: int, count: int) -> Array:
     for turned in (regions, regions.T):
         a, b = turned[block - 1 : -1 : block], turned[block::block]
         found.append(_pairs(a, b, count))
-    return np.unique(np.concatenate(found))
+    return _distinct(np.concatenate(found))
+
+
+def _distinct(numbers: Array) -> Array:
+    """The numbers in order, each once."""
+    ordered = np.sort(numbers)
+    return ordered[np.flatnonzero(np.diff(ordered, prepend=-1))]
 
 
 def _around(main: Array, count: int) -> Array:
@@ -135,11 +160,17 @@ def _seen_along(free: Array, a: Array, b: Array) -> Array:
     (u, v), (to_u, to_v) = a.T, b.T
     slope = np.divide(to_v - v, to_u - u, out=np.zeros_like(u), where=to_u > u)
     first, last = np.floor(u).astype(np.int64), np.floor(to_u).astype(np.int64)
-    found = np.ones(len(u), dtype=np.bool_)
-    for step in range(int((last - first).max(initial=-1)) + 1):
-        column = np.minimum(first + step, last)
+    found = np.zeros(len(u), dtype=np.bool_)
+    open_ = np.arange(len(u))  # the lines that are free so far, and go on
+    while len(open_):
+        column = first
         enter = v + slope * (np.maximum(column, u) - u)
         leave = v + slope * (np.minimum(column + 1, to_u) - u)
-        for rows in touched(enter, leave):
-            found &= free[rows, column]
+        is_free = np.all([free[rows, column] for rows in touched(enter, leave)], axis=0)
+        found[open_[is_free & (column == last)]] = True
+        goes_on = is_free & (column < last)
+        first = column + 1
+        open_, first, last, u, v, to_u, slope = (
+            one[goes_on] for one in (open_, first, last, u, v, to_u, slope)
+        )
     return found

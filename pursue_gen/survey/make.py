@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
@@ -29,6 +30,9 @@ MOST_PLACES = 200
 
 _STOREY = 0.5
 """Metres in height by which places on different floors differ: this map is of one floor."""
+
+_LONGER = 1.3
+"""So much longer than by way of the places a path in the graph is between spots beside them, at most, more or less."""
 
 _OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
 """Errors that a scenario has because it has no ways yet."""
@@ -266,7 +270,7 @@ class _Work:
                 if points == (self.plan.places.get(a), self.plan.places.get(b)):
                     route = self.plan.route(a, b)
                 else:
-                    route = self._between.both(*points)
+                    route = self._between.both(*points)  # which is the same line in both directions
                 if route is not None:
                     yield (robot, a, b, *window(route, (start, end), speed, drive))
 
@@ -288,7 +292,19 @@ class _Work:
 
     @cached_property
     def _between(self) -> Routes:
-        return self.plan.routes((pose.x, pose.y) for pose in self._standing.values())
+        """The paths of robots that do not stand at the poses of both places."""
+        pairs, longest = [], 0.0
+        for way in self.scenario.connections:
+            straight = self.route(way)
+            for robot in self.options.drive.speeds:
+                poses = [self._standing.get((robot, place)) for place in (way.a, way.b)]
+                points = [(pose.x, pose.y) for pose in poses if pose is not None]
+                places = [self.plan.places.get(place) for place in (way.a, way.b)]
+                if straight is not None and len(points) == 2 and points != places:
+                    pairs.append((points[0], points[1]))
+                    aside = sum(math.dist(point, place) for point, place in zip(points, places) if place is not None)
+                    longest = max(longest, straight.length + aside)
+        return self.plan.routes(pairs, _LONGER * longest)
 
 
 def _compared(scenario: Scenario, ways: Mapping[Connection, SurveyedWay]) -> Dict[Connection, float]:

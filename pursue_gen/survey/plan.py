@@ -36,10 +36,12 @@ class Plan:
         """The path from one place to another; None if there is none. It is the same line in both directions."""
         return self._routes.both(self.places[a], self.places[b])
 
-    def routes(self, points: Iterable[Point]) -> Routes:
-        """The paths between other points of the map, those among them that the centre of a robot can be at."""
+    def routes(self, pairs: Iterable[Tuple[Point, Point]], most: float) -> Routes:
+        """The paths between pairs of other points of the map, those among them that the centre of a robot can be at;
+        `most`: metres, more or less, that none of these paths is longer than."""
         grid = self._graph.grid
-        return Routes(self._graph, [point for point in points if grid.is_free(grid.cell(*point))])
+        sources = (min(pair) for pair in pairs)
+        return Routes(self._graph, [point for point in sources if grid.is_free(grid.cell(*point))], most)
 
     def crossed(self, a: str, b: str) -> List[str]:
         """The other places at which a robot would be in the way of one that goes from a to b, in their order there."""

@@ -42,18 +42,19 @@ class Route:
 class Routes:
     """The paths from some points of a grid to any others; the searches for all of them are made at once."""
 
-    def __init__(self, graph: Graph, sources: Sequence[Point]) -> None:
-        """`sources`: free points of the map (metres)."""
-        self._graph = graph
+    def __init__(self, graph: Graph, sources: Sequence[Point], most: float = math.inf) -> None:
+        """`sources`: free points of the map (metres). Paths of more than `most` metres are looked for one by one."""
+        self._graph, self._is_limited = graph, most < math.inf
         self._sources = {source: number for number, source in enumerate(dict.fromkeys(sources))}
         nodes = [graph.node(graph.grid.cell(*source)) for source in self._sources]
-        found: Tuple[Array, Array] = graph.searched(nodes) if nodes else ([], [])
+        found: Tuple[Array, Array] = graph.searched(nodes, most / graph.grid.settings.resolution) if nodes else ([], [])
         self._lengths, self._before = found
         self._found: Dict[Tuple[Point, Point], Optional[Route]] = {}
         self._joined: Callable[[int, int], List[Point]] = lru_cache(maxsize=None)(self._joined_anew)
 
     def both(self, a: Point, b: Point) -> Optional[Route]:
-        """The path from one of the sources to another; the same line in both directions. None if there is none."""
+        """The path between two points, the lesser of which is a source; the same line in both directions. None if there
+        is none."""
         if a > b:
             back = self.both(b, a)
             return None if back is None else back.reversed()
@@ -73,6 +74,9 @@ class Routes:
         if source not in self._sources or not grid.is_free(grid.cell(*target)):
             return None
         number, node = self._sources[source], self._graph.node(grid.cell(*target))
+        if self._is_limited and not math.isfinite(self._lengths[number][node]):
+            lengths, before = self._graph.searched([self._graph.node(grid.cell(*source))])
+            self._lengths[number], self._before[number] = lengths[0], before[0]
         if not math.isfinite(self._lengths[number][node]):
             return None
         nodes = [node]

@@ -111,6 +111,12 @@ def test_legs_of_a_building_add_up() -> None:
         assert length[a, c] <= 1.02 * (length[a, b] + length[b, c])
 
 
+def test_a_path_that_is_longer_than_was_expected_is_found_all_the_same() -> None:
+    graph = graph_of(grid_of(ground_of(three_rooms()), 0.3), 2000)
+    far, near = (1.0, 1.0), (11.0, 5.0)
+    assert Routes(graph, [far], 1.0).route(far, near) == Routes(graph, [far]).route(far, near) is not None
+
+
 @pytest.mark.parametrize("nodes", [10**6, 3000, 300, 30])
 def test_a_door_that_is_just_wide_enough_stays_open_however_coarse_the_search(nodes: int) -> None:
     start, end = (1.0, 1.0), (11.0, 5.0)
