@@ -22,9 +22,10 @@ from pursue_gen.calibration.windows import (
 )
 from pursue_gen.diagnostics import counted
 from pursue_gen.language.checks import check_reading
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.parser import read, without_errors
-from pursue_gen.language.rewriting import Edit, Rewriting, edited
+from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario, Window
 from pursue_gen.replay.record import MissionRecord
 

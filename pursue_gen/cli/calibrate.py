@@ -14,10 +14,10 @@ import typer
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import usage_error
-from pursue_gen.files import shell_quoted
+from pursue_gen.files import check_new, shell_quoted, write_texts
 
 if TYPE_CHECKING:
-    from pursue_gen.calibration.proposal import Options
+    from pursue_gen.calibration.proposal import Options, Proposal
     from pursue_gen.calibration.solved_again import Verdict
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.solving.request import SolveRequest
@@ -62,17 +62,12 @@ def calibrate(
     The times are those of movements and actions in recorded missions, and those of drives that were measured without a
     mission (rosrun UI drive_legs). Needs no ROS.
     """
-    from pursue_gen.calibration import picture as drawn
     from pursue_gen.calibration import texts
     from pursue_gen.calibration.proposal import propose
     from pursue_gen.calibration.recordings import samples_in
-    from pursue_gen.files import check_new, write_texts
     from pursue_gen.solving.inputs import findings_in, load_scenario
 
-    if picture is not None:
-        drawn.check_name(picture)
-    for target in filter(None, (output, picture)):
-        check_new(target, force)
+    _check_targets(output, picture, force)
     scenario = load_scenario(file)
     show(findings_in(file))
     options = _options(scenario, request, time_unit, step, share, outliers)
@@ -88,12 +83,32 @@ def calibrate(
     elif verdicts:
         print("", *texts.changed(*verdicts), sep="\n")
     if picture is not None:
-        drawn.write(proposal, verdicts, picture)
-        info(f"{picture} shows the times")
-    if output is None:
+        _draw(proposal, verdicts, picture)
+    if output is not None:
+        _write(proposed, output)
+    else:
         words = ["pursue-gen", "calibrate", str(file), *map(str, recordings), "-o", f"{file.stem}_calibrated.pur"]
         suggest(shlex.join(words))
-        return
+
+
+def _check_targets(output: Optional[Path], picture: Optional[Path], force: bool) -> None:
+    """Raises PursueError (exit status 2) for what cannot be written, or is there already."""
+    from pursue_gen.calibration.picture import check_name
+
+    if picture is not None:
+        check_name(picture)
+    for target in filter(None, (output, picture)):
+        check_new(target, force)
+
+
+def _draw(proposal: Proposal, verdicts: Tuple[Verdict, ...], picture: Path) -> None:
+    from pursue_gen.calibration.picture import write
+
+    write(proposal, verdicts, picture)
+    info(f"{picture} shows the times")
+
+
+def _write(proposed: Scenario, output: Path) -> None:
     write_texts({output: proposed.text})
     info(f"{output} has the proposed windows")
     suggest(f"pursue-gen ws {shell_quoted(output)}")

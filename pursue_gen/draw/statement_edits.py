@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from typing import Dict, List, Mapping, Optional, Tuple
 
 from lark import Token
 
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.lsp.document import Document, Edit, applied
+from pursue_gen.language.rewriting import REMARK
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.edits import written
 from pursue_gen.lsp.statements import deleted, inserted
 from pursue_gen.lsp.tokens import Statement, are_names, end_of
 
@@ -21,9 +23,6 @@ PARTS: Mapping[str, Tuple[str, ...]] = {
 """The parts of a statement by the word that begins each, in the order in which they stand."""
 
 Part = Tuple[Token, ...]
-
-_REMARK = re.compile(r"(?://|/\*)[ \t]*(?:survey|calibrate): ")
-"""As `language.rewriting` writes them, of the commands that measure."""
 
 
 def parts_of(statement: Statement) -> Dict[str, Part]:
@@ -58,7 +57,7 @@ def with_part(document: Document, number: int, kind: str, words: Optional[str]) 
     found = parts_of(statement)
     text = words if words is None or kind == "POSE" else f"{KEYWORDS[kind]} {words}".rstrip()
     old = found.get(kind, ())
-    edits = [Edit(token.start_pos or 0, end_of(token), "") for token in old]
+    edits = [written(token, "") for token in old]
     if text is not None and old:
         edits[0] = Edit(edits[0].start, edits[0].end, text)
     elif text is not None:
@@ -82,15 +81,14 @@ def without_remark(document: Document, number: int) -> Document:
     end = document.statements[number].end
     line = document.positions.line_end(document.positions.line_of(end))
     behind = (comment for comment in document.comments if end <= (comment.start_pos or 0) < line)
-    remarks = [comment for comment in behind if _REMARK.match(comment)]
-    return changed(document, *(Edit(one.start_pos or 0, end_of(one), "") for one in remarks))
+    remarks = [comment for comment in behind if REMARK.match(comment)]
+    return changed(document, *(written(one, "") for one in remarks))
 
 
 def restated(document: Document, number: int, words: str) -> Document:
     """The text with other words in the place of a statement's."""
     first, *others = document.statements[number].tokens
-    edits = [Edit(first.start_pos or 0, end_of(first), words)]
-    return changed(document, *edits, *(Edit(token.start_pos or 0, end_of(token), "") for token in others))
+    return changed(document, written(first, words), *(written(token, "") for token in others))
 
 
 def added(document: Document, words: str) -> Tuple[Document, int]:
@@ -106,7 +104,7 @@ def without(document: Document, numbers: List[int]) -> Document:
     for number in numbers:
         statement = document.statements[number]
         if any(statement.start < (comment.start_pos or 0) < statement.end for comment in document.comments):
-            edits += [Edit(token.start_pos or 0, end_of(token), "") for token in statement.tokens]
+            edits += [written(token, "") for token in statement.tokens]
         else:
             edits += deleted(document, statement)
     return changed(document, *edits)
@@ -114,4 +112,4 @@ def without(document: Document, numbers: List[int]) -> Document:
 
 def changed(document: Document, *edits: Edit) -> Document:
     """The document after edits that do not overlap."""
-    return Document(applied(document.text, edits), document.file, document.named)
+    return Document(edited(document.text, edits), document.file, document.named)

@@ -8,38 +8,20 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
-from typing import Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.formatter_items import BLOCK, LINE, Item, items_of
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.poses import end_of_poses
 from pursue_gen.language.scenario import Connection, Event, Poi, Pose, Scenario, Travel
 from pursue_gen.language.syntax import cut
 
-_REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
+REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
+"""Begins a remark."""
+
 _STATEMENTS = ("poi", "connection", "agent", "travel")
-
-
-@dataclass(frozen=True)
-class Edit:
-    """text[start:end] is replaced by `text`."""
-
-    start: int
-    end: int
-    text: str
-
-
-def edited(text: str, edits: Iterable[Edit]) -> str:
-    """The text after all the edits, whose offsets are those of the text before; they do not overlap."""
-    parts: List[str] = []
-    done = 0
-    for edit in sorted(edits, key=lambda one: (one.start, one.end)):
-        assert edit.start >= done, "edits overlap"
-        parts += [text[done : edit.start], edit.text]
-        done = edit.end
-    return "".join([*parts, text[done:]])
 
 
 class Rewriting:
@@ -77,7 +59,7 @@ class Rewriting:
     def written_by(self, span: Span) -> Optional[str]:
         """The command that wrote the numbers of the statement around this place, as its remark says; None: a person."""
         remark = self._remark(self._end(self._offset(span)))
-        match = _REMARK.match(remark.text) if remark is not None else None
+        match = REMARK.match(remark.text) if remark is not None else None
         return match["command"] if match else None
 
     def _window(self, span: Span, word: str, numbers: Sequence[Number], remark: str) -> List[Edit]:
@@ -146,7 +128,7 @@ class Rewriting:
         for item in self._items[bisect_right(self._starts, end - 1) :]:
             if item.breaks or not item.is_comment:
                 return None
-            if _REMARK.match(item.text):
+            if REMARK.match(item.text):
                 return item
         return None
 

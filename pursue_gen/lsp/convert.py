@@ -7,9 +7,10 @@ from typing import Iterable, List, Optional, Sequence, Tuple
 from lsprotocol import types as lsp
 
 from pursue_gen.diagnostics import Diagnostic, Severity
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.lsp.completion import Completion
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import Fix
 from pursue_gen.lsp.outline import Fold, Symbol
 from pursue_gen.lsp.tokens import Occurrence

@@ -19,15 +19,6 @@ from pursue_gen.lsp.tokens import COMMENTS, Occurrence, Statement, all_tokens, o
 
 
 @dataclass(frozen=True)
-class Edit:
-    """text[start:end] becomes `text`."""
-
-    start: int
-    end: int
-    text: str
-
-
-@dataclass(frozen=True)
 class Document:
     """A scenario as it is being written. `file` is what messages call it; `text` has newlines as its line ends.
 
@@ -140,10 +131,3 @@ class Document:
     @property
     def _name(self) -> Optional[str]:
         return PurePosixPath(self.file).stem if self.named else "untitled"
-
-
-def applied(text: str, edits: Tuple[Edit, ...]) -> str:
-    """The text after edits that do not overlap."""
-    for edit in sorted(edits, key=lambda e: (e.start, e.end), reverse=True):
-        text = text[: edit.start] + edit.text + text[edit.end :]
-    return text

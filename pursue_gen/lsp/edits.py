@@ -6,7 +6,8 @@ from typing import Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.language.edits import Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.tokens import Statement, end_of
 
 

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Callable, Dict, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.language.edits import Edit
 from pursue_gen.lsp import fixes_meaning as meaning
 from pursue_gen.lsp import fixes_numbers as numbers
 from pursue_gen.lsp import fixes_syntax as syntax
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.tokens import Statement
 
 Proposal = Tuple[str, Tuple[Edit, ...]]

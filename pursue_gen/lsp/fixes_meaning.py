@@ -8,15 +8,17 @@ from typing import Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import destinations_from
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.messages import MAY_BE_NAMES, RESERVED
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.usable import proposal, well_formed
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.edits import bare as _bare
 from pursue_gen.lsp.edits import behind as _behind
 from pursue_gen.lsp.edits import cut as _cut
 from pursue_gen.lsp.edits import first as _token
 from pursue_gen.lsp.edits import pair as _pair
+from pursue_gen.lsp.edits import written
 from pursue_gen.lsp.navigation import rename
 from pursue_gen.lsp.statements import deleted, inserted, ordered
 from pursue_gen.lsp.tokens import Occurrence, Statement, end_of
@@ -111,7 +113,7 @@ def one_instead_of_zero(
     pair = _pair(part, word)
     if pair is None:
         return
-    yield f"Write {pair[0]} 1", (Edit(pair[1].start_pos or 0, end_of(pair[1]), "1"),)
+    yield f"Write {pair[0]} 1", (written(pair[1], "1"),)
     if word in ("DURATION", "MOBILE"):
         means = "it takes no time" if word == "DURATION" else "it does not move"
         yield f"Delete {pair[0]}: {means}", (_cut(document, pair[0], pair[1]),)

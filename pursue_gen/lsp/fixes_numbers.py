@@ -10,9 +10,10 @@ from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumption_checks import MOST_TIMES as MOST_ASSUMED
 from pursue_gen.language.assumption_checks import SHORTEST_STAY
 from pursue_gen.language.checks import MOST_TIMES
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.numbers import exact, read_number
 from pursue_gen.language.scenario import Avoid
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.edits import bare, cut, first, pair, written
 from pursue_gen.lsp.edits import behind as added
 from pursue_gen.lsp.statements import deleted, inserted

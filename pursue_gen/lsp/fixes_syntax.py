@@ -8,9 +8,11 @@ from typing import Iterator, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.messages import KEYWORDS, QUOTES, RESERVED, name_meant
 from pursue_gen.language.usable import proposal
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
+from pursue_gen.lsp.edits import written
 from pursue_gen.lsp.tokens import DECLARED, Statement, accepts, end_of
 
 Proposal = Tuple[str, Tuple[Edit, ...]]
@@ -57,7 +59,7 @@ def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement
         yield "Delete this )", (Edit(at, end_of(token), ""),)
     elif part.kind == "OBJECTIVE" and token.type == "DO":
         first = next(one for one in part.tokens if one.type == "OBJECTIVE")
-        edit = Edit(first.start_pos or 0, end_of(first), KEYWORDS["REACH_OBJECTIVE"])
+        edit = written(first, KEYWORDS["REACH_OBJECTIVE"])
         yield "Write reach_objective: do …", (edit,)
     elif part.kind == "RULE" and token.type in ("BEFORE", "OR"):
         yield from _brackets(part, wrong)
@@ -70,7 +72,7 @@ def _unfinished(part: Statement) -> Iterator[Proposal]:
             yield f"Add the missing {sign}", (_behind(part.tokens[-1], sign),)
     for index, token in enumerate(part.tokens):
         if token.type == "LPAR" and "$END" in accepts(part.tokens[:index] + part.tokens[index + 1 :]):
-            yield "Delete this (", (Edit(token.start_pos or 0, end_of(token), ""),)
+            yield "Delete this (", (written(token, ""),)
             return
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.names import KINDS, check_names
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Poi, Scenario
-from pursue_gen.lsp.document import Document, Edit, applied
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.tokens import Occurrence
 
 
@@ -63,7 +64,7 @@ def _check_new(document: Document, new: str) -> None:
 
 def _check_after(document: Document, edits: Tuple[Edit, ...]) -> None:
     """Refuses names that are fine alone, but collide with others in what is generated."""
-    after = read(applied(document.text, edits), document.file, document.scenario.name).partial
+    after = read(edited(document.text, edits), document.file, document.scenario.name).partial
     if after is None:
         return
     before = {finding.message for finding in check_names(document.scenario)}

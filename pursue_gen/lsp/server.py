@@ -15,11 +15,12 @@ from pygls.exceptions import JsonRpcException
 
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.edits import Edit
 from pursue_gen.language.formatter import format_text
 from pursue_gen.lsp import convert
 from pursue_gen.lsp.checker import Checker
 from pursue_gen.lsp.completion import complete
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import fixes
 from pursue_gen.lsp.hover import hover
 from pursue_gen.lsp.map_preview import picture

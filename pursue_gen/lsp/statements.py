@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, List, Tuple
 
-from pursue_gen.lsp.document import Document, Edit
+from pursue_gen.language.edits import Edit
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.tokens import Statement
 
 _ORDER = (

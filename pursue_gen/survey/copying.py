@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
-from pursue_gen.language.rewriting import Edit, Rewriting, edited
+from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 
 SURVEY = "survey"

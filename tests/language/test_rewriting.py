@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import parse
-from pursue_gen.language.rewriting import Edit, Rewriting, edited
+from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Pose, Scenario
 
 TEXT = """// the floor

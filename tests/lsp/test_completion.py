@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.parser import read
 from pursue_gen.lsp.completion import complete, fill_in
-from pursue_gen.lsp.document import Document, Edit, applied
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import FORMS, MEANINGS
 from pursue_gen.lsp.tokens import COMMENTS, accepts
 
@@ -97,7 +98,7 @@ def test_robots_that_may_have_a_pose_of_their_own(comment: str, names: List[str]
 def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     plain, at = marked(f'poi "a" //[1, 2, 0, 0, 0, 0, 1] bo| the hall\n{ROBOTS}')
     item = complete(Document.of(plain, "x.pur"), at)[1]
-    changed = applied(plain, (Edit(item.start, item.end, item.insert),))
+    changed = edited(plain, (Edit(item.start, item.end, item.insert),))
     assert changed.splitlines()[0] == 'poi "a" //[1, 2, 0, 0, 0, 0, 1] bot2 [1, 2, 0, 0, 0, 0, 1] the hall'
     assert read(changed, "x.pur").diagnostics == ()
 
@@ -146,7 +147,7 @@ def test_between_the_quotes_of_a_declaration_stand_names_that_are_used_only() ->
     for text in (uses + 'poi "|', uses + 'poi "|"', uses + 'poi "th|"'):
         plain, at = marked(text)
         (item,) = complete(Document.of(plain, "x.pur"), at)
-        assert applied(plain, (Edit(item.start, item.end, item.insert),)).endswith('poi "there"')
+        assert edited(plain, (Edit(item.start, item.end, item.insert),)).endswith('poi "there"')
     assert labels(uses + 'event "|') == ["e"]
 
 
@@ -189,7 +190,7 @@ def test_an_agent_may_be_called_human() -> None:
 def test_a_name_in_the_middle_of_a_word_replaces_all_of_it() -> None:
     plain, at = marked(SMALL.replace("then hand", "then ha|nx"))
     item = next(item for item in complete(Document.of(plain, "x.pur"), at) if item.label == "hand")
-    assert "if work then hand within" in applied(plain, (Edit(item.start, item.end, item.insert),))
+    assert "if work then hand within" in edited(plain, (Edit(item.start, item.end, item.insert),))
 
 
 @settings(deadline=None, max_examples=150)

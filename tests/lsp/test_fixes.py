@@ -8,7 +8,8 @@ from typing import List
 import pytest
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.lsp.document import Document, applied
+from pursue_gen.language.edits import edited
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import _PROPOSERS, Fix, fixes
 from pursue_gen.lsp.tokens import COMMENTS
 
@@ -135,7 +136,7 @@ def test_each_proposal_mends_its_finding(case: str) -> None:
     proposals = [fix for fix in found(text) if fix.finding.code == code]
     assert proposals
     for fix in proposals:
-        after = findings(applied(text, fix.edits))
+        after = findings(edited(text, fix.edits))
         assert fix.finding.message not in [f.message for f in after if f.code == code], fix.title
         syntax = [f.message for f in after if f.code < "PML1"]
         assert len(syntax) <= len([f for f in findings(text) if f.code < "PML1"]), (fix.title, syntax)
@@ -151,7 +152,7 @@ def test_the_preferred_proposals_one_after_the_other_make_it_sound(case: str) ->
         preferred = [fix for fix in found(text) if fix.preferred]
         if not preferred:
             break
-        text = applied(text, preferred[0].edits)
+        text = edited(text, preferred[0].edits)
     assert [f.message for f in findings(text)] == []
 
 
@@ -190,7 +191,7 @@ control : A<>reachObj.win
 poi "a" //[0, 0, 0, 0, 0, 0, 1]
 """
     (fix,) = [fix for fix in found(text) if fix.finding.code == "PML190"]
-    after = applied(text, fix.edits)
+    after = edited(text, fix.edits)
     assert (
         after
         == """\
@@ -219,5 +220,5 @@ control : A<>reachObj.win
 
 def test_new_statements_stand_with_their_kind() -> None:
     (fix,) = [fix for fix in found(MISTAKES["PML147"]) if fix.finding.code == "PML147"]
-    lines = applied(MISTAKES["PML147"], fix.edits).split("\n")
+    lines = edited(MISTAKES["PML147"], fix.edits).split("\n")
     assert lines[3:5] == ["connect a and b distance 3", "connect a and attic distance 1"]

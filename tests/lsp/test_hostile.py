@@ -9,8 +9,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.edits import edited
 from pursue_gen.lsp.completion import complete
-from pursue_gen.lsp.document import Document, applied
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import fixes
 from pursue_gen.lsp.hover import hover
 from pursue_gen.lsp.map_preview import picture
@@ -62,7 +63,7 @@ def test_no_question_fails(text: str, data: st.DataObject) -> None:
     for fix in fixes(document, 0, len(document.text)):
         for edit in fix.edits:
             assert 0 <= edit.start <= edit.end <= len(document.text)
-        assert Document.of(applied(document.text, fix.edits), "x.pur").findings is not None
+        assert Document.of(edited(document.text, fix.edits), "x.pur").findings is not None
 
 
 @settings(deadline=None, max_examples=100)
@@ -71,7 +72,7 @@ def test_no_question_fails(text: str, data: st.DataObject) -> None:
 @example('"a" poi "a" /*')
 def test_sorting_loses_nothing(text: str) -> None:
     document = Document.of(text, "x.pur")
-    after = Document.of(applied(document.text, ordered(document)), "x.pur")
+    after = Document.of(edited(document.text, ordered(document)), "x.pur")
     assert sorted(map(str, after.tokens)) == sorted(map(str, document.tokens))
 
 

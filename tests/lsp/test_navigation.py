@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, parse
-from pursue_gen.lsp.document import Document, applied
+from pursue_gen.language.edits import edited
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.navigation import definition, rename, same_name
 
 from .scenarios import SCENARIOS, SMALL
@@ -47,7 +48,7 @@ def test_a_use_as_the_wrong_kind_still_leads_to_the_declaration() -> None:
 def test_renaming_changes_every_occurrence_and_nothing_else() -> None:
     text = SMALL + "// hand in hand with handy\n"
     document = Document.of(text, "x.pur")
-    renamed = applied(text, rename(document, at(text, "within 20\nreach_objective: do ha"), "give"))
+    renamed = edited(text, rename(document, at(text, "within 20\nreach_objective: do ha"), "give"))
     assert "// hand in hand with handy" in renamed
     assert 'event "give" collaborative' in renamed and "then give within" in renamed
     assert "hand" not in renamed.replace("// hand in hand with handy", "")
@@ -60,7 +61,7 @@ def test_renaming_a_robot_changes_its_poses() -> None:
     document = Document.of(text, "x.pur")
     (declared,) = definition(document, at(text, f"man {pose} bo"))
     assert text[declared.start - 7 : declared.end + 1] == 'agent "bot"'
-    renamed = applied(text, rename(document, at(text, 'agent "bo'), "cart"))
+    renamed = edited(text, rename(document, at(text, 'agent "bo'), "cart"))
     assert f"man {pose} cart {pose}, not bot\n" in renamed and 'agent "cart"' in renamed
 
 
@@ -101,7 +102,7 @@ def test_the_same_name_changes_nothing() -> None:
 
 def test_renaming_works_beside_a_broken_statement() -> None:
     text = SMALL + "connect a and\n"
-    renamed = applied(text, rename(Document.of(text, "x.pur"), at(text, 'poi "'), "door"))
+    renamed = edited(text, rename(Document.of(text, "x.pur"), at(text, 'poi "'), "door"))
     assert renamed.endswith("connect door and\n")
     assert "location door" in renamed
 
@@ -111,8 +112,8 @@ def test_renaming_works_beside_a_broken_statement() -> None:
 def test_there_and_back_gives_the_same_text(name: str, data: st.DataObject) -> None:
     document = Document.of(SCENARIOS[name], name + ".pur")
     place = data.draw(st.sampled_from(document.occurrences))
-    once = applied(document.text, rename(document, place.start, "somethingNew"))
+    once = edited(document.text, rename(document, place.start, "somethingNew"))
     assert {f.code for f in check(parse(once, name + ".pur"))} == {f.code for f in document.findings}
     other = Document.of(once, name + ".pur")
     where = next(o.start for o in other.occurrences if o.name == "somethingNew")
-    assert applied(once, rename(other, where, place.name)) == document.text
+    assert edited(once, rename(other, where, place.name)) == document.text
