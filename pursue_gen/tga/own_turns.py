@@ -18,18 +18,19 @@ from pursue_gen.tga.rules import rule_automaton
 @dataclass(frozen=True)
 class OwnTurn:
     """An agent's turn in a rule. `variable` holds the number of a location of `order`, which is no automaton of the
-    network: it says what leads from one number to the next.
+    network: it says what leads from one number to the next. `shown`: what people read for the agent.
     """
 
     rule: Rule
     agent: str
+    shown: str
     variable: str
     order: Automaton
 
     @property
     def name(self) -> str:
         """What people call it."""
-        return f"{self.rule.name} of {self.agent}"
+        return f"{self.rule.name} of {self.shown}"
 
 
 def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
@@ -38,7 +39,7 @@ def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
     for rule in scenario.rules:
         for agent in scenario.bound_by(rule):
             order, _ = rule_automaton(rule, lasting)
-            yield OwnTurn(rule, agent.name, names.own_turn(rule.name, agent.name), order)
+            yield OwnTurn(rule, agent.name, agent.shown, names.own_turn(rule.name, agent.name), order)
 
 
 def bound(automaton: Automaton, turns: Sequence[OwnTurn]) -> Automaton:

@@ -32,9 +32,9 @@ reach_objective: do seal and unload after 5 within 60
 """
 
 
-def shown() -> Dict[str, Dict[str, str]]:
+def shown(text: str = TEXT) -> Dict[str, Dict[str, str]]:
     """label → texts"""
-    scenario = parse(TEXT, "x.pur", "x")
+    scenario = parse(text, "x.pur", "x")
     network = translate(scenario)
     found = statuses(scenario, network)
     places = {each.name: {place.name for place in each.locations} for each in network.automata}
@@ -49,6 +49,11 @@ def test_a_count_is_what_is_left() -> None:
     assert list(shown()["call"].values()) == [
         "may be done 2 more times", "may be done 1 more time", "may not be done any more"
     ]  # fmt: skip
+
+
+def test_the_turn_of_an_agent_with_a_label_has_its_label() -> None:
+    words = shown(TEXT.replace('agent "bot"', 'agent "bot" label "Porter 1"'))
+    assert "bag of Porter 1" in words and "bag of bot" not in words
 
 
 def test_a_turn_is_what_has_been_done_and_what_is_next() -> None:
