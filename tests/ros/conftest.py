@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Iterator
 
 import pytest
+from preloaded import preloaded
 from ros_world import NEEDED, Ros, generated, lay_over, make, make_whole
 
 Build = Callable[..., Path]
 
 
 @pytest.fixture(scope="session")
-def ros(tmp_path_factory: pytest.TempPathFactory) -> Ros:
+def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ros]:
     """ROS 1 of this machine; the test is skipped where there is none."""
     base = tmp_path_factory.getbasetemp()
     shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "shared"
@@ -27,7 +28,8 @@ def ros(tmp_path_factory: pytest.TempPathFactory) -> Ros:
     modules = found.run(f"python3 -c 'import {wanted}'", found.home)
     if modules.returncode:
         pytest.skip(f"ROS 1 is not complete here: {modules.stdout.strip().splitlines()[-1]}")
-    return found
+    with preloaded(tmp_path_factory.mktemp("preloaded"), found.environment["PATH"]) as found.preloaded:
+        yield found
 
 
 BUILDS = {("thesis/scenario_1", "distributed"): make_whole, ("thesis/scenario_1", "centralized"): make}

@@ -305,7 +305,7 @@ def launched(
             with open(folder / "topics.jsonl", "wb") as topics, open(folder / "topic_logger.log", "wb") as log:
                 run.logger = subprocess.Popen(
                     ["python3", str(LOGGER), *robots],
-                    env={**ros.sourced(workspace / "devel/setup.bash"), **there},
+                    env={**ros.for_missions(workspace), **there},
                     stdin=subprocess.PIPE,
                     stdout=topics,
                     stderr=log,

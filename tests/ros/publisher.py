@@ -17,6 +17,9 @@ import rospy
 import yaml
 from genpy.message import fill_message_args
 
+PATIENCE = 120.0
+"""Seconds after which nobody is expected to subscribe any more."""
+
 
 def number_of_subscribers(topic: str) -> int:
     """How many nodes are subscribed to it, as the master knows."""
@@ -34,8 +37,9 @@ def main() -> None:
         publisher = publishers[topic]
         message = publisher.data_class()
         fill_message_args(message, [yaml.safe_load(text)])
+        deadline = time.monotonic() + PATIENCE
         while publisher.get_num_connections() < max(1, number_of_subscribers(publisher.resolved_name)):
-            if rospy.is_shutdown():
+            if rospy.is_shutdown() or time.monotonic() > deadline:
                 sys.exit(1)
             time.sleep(0.02)
         publisher.publish(message)

@@ -43,9 +43,10 @@ class Person:
         time.sleep(self.chance.uniform(0.0, 5 * UNIT))
 
     def resume(self, robot: str) -> None:
-        """Lets a robot go on that is held."""
+        """Lets a robot go on that is held. One that was called back before it said that it has its goal is not."""
         self.wait(lambda: f"publish {robot}:_resume_" in self.log.read_text(), f"{robot} is not held")
-        self.robots.publish("pursue/events", "std_msgs/String", RESUME.format(robot=robot))
+        if self.mission.poll() is None:
+            self.robots.publish("pursue/events", "std_msgs/String", RESUME.format(robot=robot))
 
     def restarts(self, robot: str) -> None:
         """move_base is killed on the way, and started again."""

@@ -1,0 +1,98 @@
+"""Programs that a process with ROS's modules becomes behave as those that start by themselves (preloaded.py)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Dict, Iterator, List
+
+import pytest
+from preloaded import preloaded
+
+from tests.waiting import PATIENCE
+
+SCRIPT = """\
+import os, sys, time
+import beside
+try:
+    print(sys.argv[1:], os.getcwd(), os.environ["WORD"], beside.THERE, __name__, os.getpid(), flush=True)
+    print("and this", file=sys.stderr, flush=True)
+    if sys.argv[1] == "wait":
+        time.sleep(600)
+except KeyboardInterrupt:
+    sys.exit(7)
+if sys.argv[1] == "fail":
+    raise ValueError("said")
+sys.exit(int(sys.argv[1]))
+"""
+
+
+@pytest.fixture(name="variables", scope="module")
+def _variables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dict[str, str]]:
+    path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
+    with preloaded(tmp_path_factory.mktemp("preloaded"), path, modules=("json",)) as found:
+        yield {"PATH": f"{found.programs}:{path}", "WORD": "told"}
+
+
+@pytest.fixture(name="command")
+def _command(tmp_path: Path) -> List[str]:
+    (tmp_path / "script").write_text(SCRIPT)
+    (tmp_path / "beside.py").write_text("THERE = 'imported'\n")
+    return ["python3", str(tmp_path / "script")]
+
+
+def test_a_script_has_its_arguments_folder_variables_and_files(
+    variables: Dict[str, str], command: List[str], tmp_path: Path
+) -> None:
+    done = subprocess.run(
+        [*command, "3", "__name:=x"], env=variables, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 3
+    assert done.stdout.startswith(f"['3', '__name:=x'] {tmp_path} told imported __main__ ")
+    assert done.stderr == "and this\n"
+
+
+def test_what_it_does_not_catch_is_printed(variables: Dict[str, str], command: List[str]) -> None:
+    done = subprocess.run([*command, "fail"], env=variables, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.endswith("ValueError: said\n")
+
+
+@pytest.mark.parametrize(
+    ("sign", "status"), [(signal.SIGINT, 7), (signal.SIGTERM, -signal.SIGTERM), (signal.SIGKILL, -signal.SIGKILL)]
+)
+def test_signals_reach_it(variables: Dict[str, str], command: List[str], sign: signal.Signals, status: int) -> None:
+    with subprocess.Popen([*command, "wait"], env=variables, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        child = int(process.stdout.readline().split()[-1])
+        process.send_signal(sign)
+        assert process.wait(PATIENCE) == status
+    deadline = time.monotonic() + PATIENCE
+    while _is_there(child):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def test_who_kills_it_by_its_own_number_ends_what_was_started(variables: Dict[str, str], command: List[str]) -> None:
+    code = "import os; os.kill(os.getpid(), 9)"
+    Path(command[1]).write_text(code)
+    assert subprocess.run(command, env=variables, check=False).returncode == -signal.SIGKILL
+
+
+def test_other_uses_of_python_are_python_s_own(variables: Dict[str, str]) -> None:
+    code = "import sys; print(sys.argv, 'json' in sys.modules)"
+    done = subprocess.run(["python3", "-c", code, "x"], env=variables, stdout=subprocess.PIPE, text=True, check=True)
+    assert done.stdout == "['-c', 'x'] False\n"
+
+
+def _is_there(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
