@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from fractions import Fraction
+from math import ceil
 from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
@@ -13,8 +14,9 @@ from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.proof.checker import LIMIT
+from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.replanning.request import Request, read_request
-from pursue_gen.replanning.start import network_from, passed_bounds, start_clocks
+from pursue_gen.replanning.start import around, network_from, passed_bounds, start_clocks
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
@@ -33,6 +35,14 @@ _AT_A_LIMIT = 5
 
 _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds."""
+
+
+_MOMENTS = ((1, 10), (1, 2), (0, 10), (0, 2), (0, Fraction(1, 2)))
+"""When a plan may come into force for its time to be known, tried in this order: as a share of `ahead` before it
+begins, and time units after that."""
+
+_STATES = 500
+"""Symbolic states of the checker that tell this time: some hundredths of a second."""
 
 
 def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
@@ -60,7 +70,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     try:
         free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
         if free is not None:
-            return _won(free.strategy, network, request)
+            return _won(free.strategy, network, request, None if states else objective)
         verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
         if verdict.strategy is None:
             return _lost(_cannot_be_met(game, request))
@@ -73,7 +83,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
         if problem.exit_status != _AT_A_LIMIT:
             return _lost(f"the plan that was found is not proven: {problem}")
         return _lost(f"no plan was found{_at_limit(limits.since(start)) or f': {problem.diagnostics[0].message}'}")
-    return _won(strategy, network, request)
+    return _won(strategy, network, request, None if states else objective)
 
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:
@@ -88,12 +98,31 @@ def _verdict(network: Network, objective: Objective, reaction: Fraction, limits:
     return solve(network, objective, reaction, limits=limits.since(start))
 
 
-def _won(strategy: Strategy, network: Network, request: Request) -> Dict[str, Any]:
+def _won(strategy: Strategy, network: Network, request: Request, timed: Optional[Objective]) -> Dict[str, Any]:
+    """The answer; `timed`: the objective whose time is to be found out, None: none is."""
     subs = partition(strategy, network, request.scenario.agents, request.controllers, request.reach_obj)
     data = {sub.controller: strategy_data(sub, request.rules.reaction) for sub in subs}
     people = data.pop(UI, None)
     answer = {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+    takes = None if timed is None else _takes(strategy, network, timed, request)
+    answer = answer if takes is None else {**answer, "takes": takes}
     return {**answer, "turning": sorted(request.turning)} if request.turning else answer
+
+
+def _takes(strategy: Strategy, network: Network, objective: Objective, request: Request) -> Optional[Dict[str, float]]:
+    """In how many time units at most the plan comes to the goal, from when it comes into force on: if that is not
+    `early` time units before its begin, nor `late` ones after. None where that is not quickly found out."""
+    if request.turning:  # their clocks begin with the plan
+        return None
+    clock = counting_clock(network)
+    for share, late in _MOMENTS:
+        early = share * request.ahead
+        there = replace(network, start=around(network.start, early, Fraction(late)))
+        most = worst_case(there, objective, strategy, request.rules.reaction, _STATES)
+        if most is not None:
+            begun = start_clocks(network, request)[clock] - early if clock is not None else Fraction(0)
+            return {"most": ceil((most - begun) * 1000) / 1000, "early": float(early), "late": float(late)}
+    return None
 
 
 def _at_limit(limits: Limits) -> str:

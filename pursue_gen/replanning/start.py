@@ -87,6 +87,16 @@ def region(
     return tuple(constraints)
 
 
+def around(start: Tuple[Constraint, ...], early: Fraction, late: Fraction) -> Tuple[Constraint, ...]:
+    """The clock values that a region (`region`) comes from or goes to if only time passes: so many time units before
+    it, so many after it; and perhaps others."""
+    more = {True: early, False: late}
+    return tuple(
+        each if None not in (each.left, each.right) else replace(each, bound=each.bound + more[each.left is None])
+        for each in start
+    )
+
+
 def _place(network: Network, request: Request) -> Tuple[Dict[str, str], Dict[str, int], Dict[str, Fraction]]:
     """Locations, values and clocks of everything in the network; other names in the request are ignored."""
     for automaton in network.automata:

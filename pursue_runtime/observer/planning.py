@@ -145,6 +145,9 @@ class Planning:
             return False
         check_avoids(answer, self.request.blocked)
         data = {"format": 1, "plan": number, **{key: answer[key] for key in ("strategies", "people", "cover")}}
+        if isinstance(answer.get("takes"), dict):
+            begins = {"stamp": self.request.stamp, "ahead": self.request.ahead, "excused": list(self.request.excused)}
+            data["takes"] = {**answer["takes"], **begins}
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)
         self.request = None
         self._unacknowledged = set(self._controllers)

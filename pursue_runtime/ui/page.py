@@ -21,6 +21,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
+from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
@@ -153,14 +154,15 @@ class Page:
             "lanes": self._lanes.shown() if facts.verdict else None,
         }
 
-    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
-        """Take the strategies of a new plan."""
-        self._outlook.add_plan(number, strategies)
+    def add_plan(self, plan: Mapping[str, Any]) -> None:
+        """Take a new plan, as `parse_plan` returns it. Raises DataError."""
+        self._guarantee.add_plan(plan["plan"], plan)
+        self._outlook.add_plan(plan["plan"], strategies_in(plan))
 
     def on_state(self, state: SystemState, at: float) -> List[Dict[str, Any]]:
         """A state came; what is new in the log."""
         last, self._last = self._last, state
-        self._guarantee.on_state(state)
+        self._guarantee.on_state(state, at)
         self._outlook.on_state(state)
         self._lanes.on_state(state, at)
         fresh: List[Dict[str, Any]] = []

@@ -19,7 +19,7 @@ from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts, Page, read_floor_plan
 from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
-from pursue_runtime.ui.strategies import strategies_in, strategies_of
+from pursue_runtime.ui.strategies import strategies_of
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
@@ -58,7 +58,7 @@ class PageServer:
     def on_plan(self, plan: Mapping[str, Any]) -> None:
         """Take a new plan, as `parse_plan` returns it: what the page says of it needs its strategies."""
         with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
-            self._page.add_plan(plan["plan"], strategies_in(plan))
+            self._page.add_plan(plan)
 
     def on_positions(
         self, positions: Mapping[str, Sequence[float]], paths: Mapping[str, Sequence[Sequence[float]]]

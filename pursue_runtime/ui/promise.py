@@ -6,7 +6,7 @@ Times are time units since the start of the mission.
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_end
@@ -82,32 +82,79 @@ def _become(objective: Objective, model: Model, state: SystemState) -> str:
     return KEPT
 
 
+class PlanTime(NamedTuple):
+    """In how many time units a new plan comes to the goal at most, if it comes into force between `first` and `last`
+    (seconds, as stamps of states) and everybody but the agents in `excused` keeps to the model."""
+
+    most: float
+    first: float
+    last: float
+    excused: FrozenSet[str]
+
+
+def read_plan_time(plan: Mapping[str, Any], unit: float) -> Optional[PlanTime]:
+    """The time of a new plan, as `parse_plan` returns it, in time units of so many seconds; None where it says none."""
+    takes: Any = plan.get("takes")
+    try:
+        most, early, late, stamp, ahead = (float(takes[key]) for key in ("most", "early", "late", "stamp", "ahead"))
+        excused = frozenset(map(str, takes["excused"]))
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return None
+    begin = stamp + ahead * unit
+    found = PlanTime(most, begin - early * unit, begin + late * unit, excused)
+    return found if all(map(math.isfinite, found[:3])) else None
+
+
 class Guarantee:
-    """Whether the guaranteed time still holds: it is that of the workspace's own strategy from the start on, as long as
-    everybody keeps to the model."""
+    """Whether the guaranteed time still holds: it is that of the workspace's own strategy from the start on, or that of
+    a new plan from when it came into force, as long as everybody keeps to the model."""
 
     def __init__(self, promise: Promise, model: Model) -> None:
-        self._most = promise.most
+        self._own, self._most = promise.most, promise.most
         self._model = model
         self._last: Optional[SystemState] = None
         self._void = ""  # why it does not hold any more in this mission
+        self._plans: Dict[int, Mapping[str, Any]] = {}
+        self._excused: FrozenSet[str] = frozenset()  # who the plan does not rely on, and is not back yet
+        self._broken: FrozenSet[str] = frozenset()  # assumptions on which it does not rely
 
-    def on_state(self, state: SystemState) -> None:
-        """A state came."""
+    def add_plan(self, number: int, plan: Mapping[str, Any]) -> None:
+        """Take a new plan, as `parse_plan` returns it."""
+        self._plans[number] = plan
+
+    def on_state(self, state: SystemState, at: float = 0.0) -> None:
+        """A state came that began `at` time units after the start."""
         last, self._last = self._last, state
         if state.status not in LIVE or (last is not None and state.seq < last.seq):
-            self._void = ""
+            self._void, self._most, self._excused, self._broken = "", self._own, frozenset(), frozenset()
         elif last is None and state.seq > 1:
             self._void = "what happened before this page was served is not known"
+            self._most = None if state.plan else self._own
+        elif last is not None and state.plan != last.plan:
+            self._take_up(state, at, is_next=state.seq <= last.seq + 1)
         if state.status in LIVE:
             self._void = self._void or self._reason(state, last)
+            self._excused &= {*state.late, *state.lost}
+
+    def _take_up(self, state: SystemState, at: float, is_next: bool) -> None:
+        """Another plan is in force; `is_next`: since this state."""
+        time = read_plan_time(self._plans.get(state.plan, {}), state.unit)
+        known = time is not None and is_next and time.first <= state.stamp <= time.last
+        self._most = at + time.most if time is not None and known else None
+        self._excused = time.excused if time is not None else frozenset()
+        self._broken = frozenset(self._assumptions(state))
+        self._void = ""
+
+    def _assumptions(self, state: SystemState) -> List[str]:
+        """What was assumed, and has been broken."""
+        return [each.says for each in self._model.assumptions if state.values.get(each.variable) == 0]
 
     def now(self, state: SystemState) -> Dict[str, Any]:
         """For the page: `most` (None: not known) and why it does not hold (`void`, "" if it does); empty where the
         mission has no goal."""
         if not self._model.goal:
             return {}
-        if state.plan:
+        if state.plan and (self._most is None or self._last is None or self._last.plan != state.plan):
             return {"most": None, "void": "a new plan is in force, which leads to the goal"}
         return {"most": self._most, "void": self._void}
 
@@ -115,11 +162,12 @@ class Guarantee:
         shown = self._model.shown
         lists = {"late": state.late, "lost": state.lost, "held": state.held, "not in its place": state.displaced}
         for what, agents in lists.items():
-            if agents:
-                return f"{shown(agents[0])} was {what}"
+            present = [name for name in agents if name not in self._excused]
+            if present:
+                return f"{shown(present[0])} was {what}"
         if state.status == HOLDING:
             return "the mission was held"
-        broken = [each.says for each in self._model.assumptions if state.values.get(each.variable) == 0]
+        broken = [says for says in self._assumptions(state) if says not in self._broken]
         if broken:
             return f"an assumption was broken: {broken[0]}"
         return self._off_time(state, last)
@@ -127,7 +175,7 @@ class Guarantee:
     def _off_time(self, state: SystemState, last: Optional[SystemState]) -> str:
         """Who has ended something outside the window of its model with this event."""
         agent = next((each for each in self._model.of_kind(*ACTING) if each.name == state.agent), None)
-        if last is None or agent is None or last.seq != state.seq - 1:
+        if last is None or agent is None or last.seq != state.seq - 1 or agent.name in self._excused:
             return ""
         before, here = last.locations.get(agent.name, ""), state.locations.get(agent.name, "")
         window = end_window(self._model, agent, before) if is_end(before, here) else None

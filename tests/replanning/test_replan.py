@@ -5,15 +5,22 @@ from __future__ import annotations
 import importlib
 import json
 import sys
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import pytest
 import yaml
 
 from pursue_gen.partition import partition
 from pursue_gen.partition.strategy_file import render
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.replanning import replan
+from pursue_gen.replanning.request import read_request
+from pursue_gen.replanning.start import network_from
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import played
 from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy, read_cover
@@ -79,12 +86,46 @@ def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
 def test_the_answer_holds_what_the_files_of_a_workspace_hold() -> None:
     answer = won(beginning("thesis/scenario_1"))
     assert answer == json.loads(json.dumps(answer))
-    assert list(answer) == ["format", "won", "strategies", "people", "cover"]
+    assert list(answer) == ["format", "won", "strategies", "people", "cover", "takes"]
     assert list(answer["strategies"]) == ["controller_bot1", "controller_bot2", "controllerObj"]
     assert answer["people"] is None
     for name, data in answer["strategies"].items():
         assert (data["format"], data["controller"], data["reaction"]) == (1, name, 0.1)
     assert answer["cover"]["format"] == 1 and answer["cover"]["cover"]
+
+
+@pytest.mark.parametrize("name", ["thesis/scenario_1", "thesis/scenario_3", "thesis/catch_the_thief"])
+def test_the_time_of_a_plan_holds_from_wherever_it_may_come_into_force(name: str) -> None:
+    known = 0
+    for state, clocks in list(walk(name, 3, 30))[::4]:
+        request = asked(name, state, clocks, ahead=1.0)
+        answer = replan(request)
+        takes = answer.get("takes")
+        if takes is None:
+            continue
+        known += 1
+        assert takes["early"] in (0.0, 1.0) and takes["late"] > 0.0
+        for delay in (-takes["early"], 0.0, takes["late"]):
+            later = {clock: value + 1.0 + delay for clock, value in request["clocks"].items()}
+            most = latest({**request, "clocks": later, "ahead": 0.0}, request)
+            assert most is None or most <= takes["most"] + 1e-9, (delay, state, clocks)
+    assert known > 0
+    assert "takes" not in replan(beginning(name), states=100_000), "simulated missions need none"
+
+
+def latest(now: Dict[str, Any], planned: Dict[str, Any]) -> Optional[float]:
+    """In how many time units the plan of one request comes to the goal at worst from the place of another; None where
+    it does not win from there."""
+    request = read_request(planned)
+    objective = scenario_objective(request.scenario)
+    game = played(translate(request.scenario), request.rules)
+    network = network_from(game, request)
+    verdict = solve(network, objective, request.rules.reaction)
+    assert verdict.strategy is not None
+    strategy = prove(network, objective, verdict.strategy, request.rules.reaction, verdict.ranks)
+    there = network_from(game, read_request(now))
+    found = worst_case(there, objective, strategy, request.rules.reaction, 500)
+    return None if found is None else float(found)
 
 
 def test_people_get_their_part() -> None:

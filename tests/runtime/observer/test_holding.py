@@ -71,6 +71,13 @@ def test_a_plan_is_wanted_from_where_the_mission_is() -> None:
     assert wanted.ahead == 1.0
 
 
+def test_a_plan_tells_everybody_from_where_on_its_time_counts() -> None:
+    made = uncovered()
+    takes = {"most": 12.5, "early": 1.0, "late": 2.0}
+    assert made.mission.on_plan(made.mission.plan_request.number, {**answer(EVERYWHERE), "takes": takes}, 4.2) == []
+    assert made.mission.proposal["takes"] == {**takes, "stamp": 4.0, "ahead": 1.0, "excused": []}
+
+
 def test_while_the_mission_holds_commands_are_dropped_and_reports_count() -> None:
     made = uncovered()
     assert made.hear("dog:catch@3", 4.5) is None and made.mission.counts["held"] == 1

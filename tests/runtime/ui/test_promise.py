@@ -107,6 +107,63 @@ def test_under_another_plan_the_guaranteed_time_is_not_known() -> None:
     assert found["most"] is None and "new plan" in found["void"]
 
 
+TAKES = {"most": 12.0, "early": 1.0, "late": 2.0, "stamp": 110.0, "ahead": 1.0, "excused": ["thief"]}
+
+
+def replanned(stamp: float, takes: Any, seq: int = 3, **more: Any) -> Any:
+    """The guaranteed time when a new plan has come into force at this stamp, and the state that it has with that."""
+    guarantee = Guarantee(PROMISE, MODEL)
+    guarantee.on_state(state(MODEL, 1, 100.0, {}, event="_start_"))
+    guarantee.on_state(state(MODEL, 2, 109.0, {}, status="holding")._replace(late=("thief",)))
+    guarantee.add_plan(7, {"plan": 7, "takes": takes})
+    now = state(MODEL, seq, stamp, {})._replace(plan=7, late=("thief",), **more)
+    guarantee.on_state(now, stamp - 100.0)
+    return guarantee, now
+
+
+@pytest.mark.parametrize(("stamp", "most"), [(109.9, None), (110.0, 22.0), (113.0, 25.0), (113.1, None)])
+def test_a_new_plan_guarantees_its_own_time_from_when_it_comes_into_force(stamp: float, most: Any) -> None:
+    guarantee, now = replanned(stamp, TAKES)
+    assert guarantee.now(now)["most"] == most and bool(guarantee.now(now)["void"]) == (most is None)
+
+
+@pytest.mark.parametrize("takes", [None, {}, 7, {**TAKES, "most": "x"}, {**TAKES, "most": float("inf")},
+                                   {**TAKES, "excused": 7}])  # fmt: skip
+def test_a_plan_that_tells_no_time_has_none(takes: Any) -> None:
+    guarantee, now = replanned(111.0, takes)
+    assert guarantee.now(now) == {"most": None, "void": "a new plan is in force, which leads to the goal"}
+
+
+def test_a_state_that_was_missed_leaves_the_time_of_the_plan_unknown() -> None:
+    guarantee, now = replanned(111.0, TAKES, seq=4)
+    assert guarantee.now(now)["most"] is None
+
+
+def test_the_time_of_a_plan_relies_on_all_but_those_that_are_away_until_they_are_back() -> None:
+    guarantee, now = replanned(111.0, TAKES)
+    assert guarantee.now(now) == {"most": 23.0, "void": ""}
+    late = now._replace(seq=4, late=("thief", "bot"))
+    guarantee.on_state(late, 12.0)
+    assert guarantee.now(late)["void"] == "bot was late"
+    guarantee, now = replanned(111.0, TAKES)
+    guarantee.on_state(now._replace(seq=4, late=()), 12.0)
+    again = now._replace(seq=5, late=("thief",))
+    guarantee.on_state(again, 13.0)
+    assert guarantee.now(again)["void"] == "thief was late"
+
+
+def test_what_was_broken_before_a_plan_does_not_void_its_time() -> None:
+    broken = {**MODEL.initial().values, "Sassumed": 0}
+    guarantee, now = replanned(111.0, TAKES, values=broken)
+    assert guarantee.now(now)["void"] == ""
+    guarantee, now = replanned(111.0, TAKES)
+    guarantee.on_state(now._replace(seq=4, values=broken), 12.0)
+    assert "an assumption was broken" in guarantee.now(now)["void"]
+    start = state(MODEL, 1, 200.0, {}, event="_start_")
+    guarantee.on_state(start)
+    assert guarantee.now(start) == {"most": 21.5, "void": ""}, "the next mission"
+
+
 def test_who_was_not_there_from_the_start_does_not_know_whether_it_holds() -> None:
     guarantee = Guarantee(PROMISE, MODEL)
     now = state(MODEL, 5, 100.0, {})
