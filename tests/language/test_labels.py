@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
+from pursue_gen.language.edits import edited
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
 from pursue_gen.language.wording import objective_text, objective_words
-from pursue_gen.lsp.document import Document, applied
+from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import fixes
 from pursue_gen.lsp.hover import hover
 from pursue_gen.lsp.navigation import rename
@@ -111,14 +112,14 @@ def test_a_name_that_cannot_be_one_may_be_a_label() -> None:
     assert 'poi "high_shelf" label "high shelf"' in finding.hint
     document = Document.of(text, "text.pur")
     fix = next(fix for fix in fixes(document, 0, len(text)) if "with label" in fix.title)
-    mended = applied(text, fix.edits)
+    mended = edited(text, fix.edits)
     assert 'poi "high_shelf" label "high shelf"' in mended
     assert codes(mended) == []
 
 
 def test_a_rename_leaves_labels_alone() -> None:
     document = Document.of(TEXT, "text.pur")
-    text = applied(TEXT, rename(document, TEXT.index("desk") + 1, "counter"))
+    text = edited(TEXT, rename(document, TEXT.index("desk") + 1, "counter"))
     assert 'poi "counter" label "front desk"' in text
 
 
