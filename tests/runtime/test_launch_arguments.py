@@ -56,6 +56,7 @@ class Launched:
     def __init__(self, config: Any) -> None:
         self.nodes = {(node.namespace + node.name).lstrip("/"): node for node in config.nodes}
         self.params: Dict[str, Any] = {name: param.value for name, param in config.params.items()}
+        self.cleared = {name.strip("/") for name in config.clear_params}
 
     @property
     def names(self) -> List[str]:
@@ -102,6 +103,16 @@ def test_a_machine_may_run_some_of_the_nodes(launch: Any) -> None:
     assert launch("mission.launch", "nodes:=UI", "rviz:=true", "markers:=false").names == ["UI", "rviz"]
     assert launch("mission.launch", "nodes:=sim_clock recorder", *extra).names == ["recorder", "sim_clock"]
     assert launch("mission.launch", "nodes:=simulator", "simulate:=false").names == []
+
+
+def test_what_an_earlier_launch_has_set_on_the_same_master_does_not_count(launch: Any, tmp_path: Path) -> None:
+    robots = tmp_path / "robots.yaml"
+    robots.write_text("retries: 0\nbot2: {ends: tf}\n")
+    found = launch("mission.launch", "simulate:=false", "record:=true", f"robots:={robots}", "verdict:=/tmp/v")
+    first, then = set(found.params), set(launch("mission.launch", "simulate:=false", "record:=true").params)
+    left = {name.split("/")[1] for name in first - then}
+    assert {"controller_bot1", "controller_bot2", "UI"} <= left
+    assert left <= found.cleared and "recorder" in found.cleared
 
 
 def test_the_monitor_groups_the_diagnostics_of_every_node(launch: Any) -> None:
