@@ -23,7 +23,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
-from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.links import Links, is_gone
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
     OK,
@@ -136,7 +136,7 @@ class Recorder:
         connected = {each.resolved_name: each.get_num_connections() for each in self.subscribers}
         own = "/diagnostics"  # we publish there ourselves, and rospy connects us to us
         connected[own] = connected.get(own, 0) - (rospy.get_name() in known.get(own, []))
-        return missing_connections(self.nodes, publishers, connected)
+        return missing_connections(self.nodes, publishers, connected, is_gone)
 
     def run(self) -> int:
         """Runs until the mission ends and its last words are in the bag; returns the exit status."""

@@ -115,7 +115,7 @@ class UI:
                 ours = values.get("mission") in (None, "", self.membership.source.mission)
                 ready = ours and values.get("ready") == "true"
                 node = status.hardware_id or status.name.partition(":")[0]
-                self.readiness.update(node, ready)
+                self.readiness.update(node, ready, status.message if ours else "")
                 if ours:
                     self.page.on_robots(node, values)
                 if node == "recorder" and "file" in values:
@@ -226,7 +226,7 @@ class UI:
         """The alarm."""
         with self.lock:
             if self.phase == GATHERING:
-                missing = ", ".join(self.readiness.missing()) or "the connection to the observer"
+                missing = ", ".join(self.readiness.reasons()) or "the connection to the observer"
                 after = f"Not ready after {self.options.wait:g} s: {missing}."
                 if self.membership.again:  # a machine may be switched on later
                     self.terminal.line(f"{after} Waiting on.", PLAIN)

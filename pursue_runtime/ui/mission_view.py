@@ -106,15 +106,21 @@ class Readiness:
 
     def __init__(self, nodes: Sequence[str]) -> None:
         self._ready = {node.strip("/"): False for node in nodes}
+        self._says: Dict[str, str] = {}
 
-    def update(self, node: str, ready: bool) -> None:
-        """Take a node's readiness from its diagnostics."""
+    def update(self, node: str, ready: bool, says: str = "") -> None:
+        """Take a node's readiness from its diagnostics, with what it `says` of it."""
         if node.strip("/") in self._ready:
             self._ready[node.strip("/")] = ready
+            self._says[node.strip("/")] = says
 
     def missing(self) -> List[str]:
         """The nodes that are not ready, in the order in which they are expected."""
         return [node for node, ready in self._ready.items() if not ready]
+
+    def reasons(self) -> List[str]:
+        """The same, each with what it says of that."""
+        return [f"{node} ({self._says[node]})" if self._says.get(node) else node for node in self.missing()]
 
 
 class Environment(Protocol):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Collection, List, Mapping, Sequence
+from typing import Callable, Collection, List, Mapping, Sequence
 
 from pursue_runtime.model import Model
 from pursue_runtime.words import EVENTS, PLAN, STATE, SYSTEM_STATE
@@ -51,16 +51,23 @@ def reserve_file(wanted: str, folder: str) -> str:
 
 
 def missing_connections(
-    nodes: Sequence[str], publishers: Mapping[str, Collection[str]], connected: Mapping[str, int]
+    nodes: Sequence[str],
+    publishers: Mapping[str, Collection[str]],
+    connected: Mapping[str, int],
+    is_gone: Callable[[str], bool],
 ) -> str:
     """Why the recording would not be complete yet, "" where it would.
 
     `nodes` are those of the mission; `publishers` are the nodes on each of our topics, as the master knows them,
-    `connected` how many of them we are connected to.
+    `connected` how many of them we are connected to. The master also knows nodes that were killed: `is_gone` says
+    which of them do not live any more.
     """
     present = {node.strip("/") for names in publishers.values() for node in names}
     absent = [node for node in nodes if node.strip("/") not in present]
     if absent:
         return f"nothing from {', '.join(absent)} yet"
-    deaf = [topic for topic, names in publishers.items() if connected.get(topic, 0) < len(names)]
-    return f"not connected to everybody on {deaf[0]} yet" if deaf else ""
+    for topic, names in publishers.items():
+        number = connected.get(topic, 0)
+        if number < len(names) and number < sum(not is_gone(name) for name in names):
+            return f"not connected to everybody on {topic} yet"
+    return ""

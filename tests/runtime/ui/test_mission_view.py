@@ -286,8 +286,9 @@ def test_the_missing_are_named_until_they_are_ready() -> None:
     nodes.update("stranger", True)
     assert nodes.missing() == ["controller_bot", "simulator"]
     nodes.update("controller_bot", True)
-    nodes.update("observer", False)
+    nodes.update("observer", False, "no state yet")
     assert nodes.missing() == ["observer", "simulator"]
+    assert nodes.reasons() == ["observer (no state yet)", "simulator"]
 
 
 # What is typed

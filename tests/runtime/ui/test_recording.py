@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from pathlib import Path
+from typing import Dict, Set
 
 import pytest
 
@@ -49,8 +50,16 @@ def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
 
 
 def test_it_is_complete_when_it_receives_everybody() -> None:
-    nodes, publishers = ["observer", "bot"], {"/e": {"/observer", "/bot"}, "/s": {"/observer"}, "/p": set()}
-    assert missing_connections(nodes, publishers, {"/e": 2, "/s": 1}) == ""
-    assert missing_connections(nodes, publishers, {"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
-    assert missing_connections(nodes, publishers, {"/e": 2}) == "not connected to everybody on /s yet"
-    assert missing_connections([*nodes, "UI"], publishers, {"/e": 2, "/s": 1}) == "nothing from UI yet"
+    nodes = ["observer", "bot"]
+    publishers: Dict[str, Set[str]] = {"/e": {"/observer", "/bot"}, "/s": {"/observer"}, "/p": set()}
+
+    def missing(connected: Dict[str, int], *more: str, gone: str = "") -> str:
+        return missing_connections([*nodes, *more], publishers, connected, lambda name: name == gone)
+
+    assert missing({"/e": 2, "/s": 1}) == ""
+    assert missing({"/e": 1, "/s": 1}) == "not connected to everybody on /e yet"
+    assert missing({"/e": 2}) == "not connected to everybody on /s yet"
+    assert missing({"/e": 2, "/s": 1}, "UI") == "nothing from UI yet"
+    publishers["/e"].add("/move_base")
+    assert missing({"/e": 2, "/s": 1}) == "not connected to everybody on /e yet"
+    assert missing({"/e": 2, "/s": 1}, gone="/move_base") == "", "it was killed, and the master still knows it"
