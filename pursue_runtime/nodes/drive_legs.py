@@ -86,7 +86,7 @@ class DriveLegs:
         rospy.loginfo("recording %s", self.path)
         try:
             self._next_robot()
-            return self.ending.wait(linger=0.5)
+            status = self.ending.wait(linger=0.5)
         finally:
             self._stop()
             with self._lock:
@@ -94,6 +94,11 @@ class DriveLegs:
                     self._bag.close()
                     self._bag = None
                     self._keep()
+        return status or (0 if self._is_complete else 1)
+
+    @property
+    def _is_complete(self) -> bool:
+        return not self._waiting and all(session.is_complete for session in self._done)
 
     def _keep(self) -> None:
         """Gives the bag its name, and logs what is in it; a bag without drives is removed."""
@@ -113,7 +118,7 @@ class DriveLegs:
     def _next_robot(self) -> None:
         with self._lock:
             if not self._waiting:
-                self.ending.end(0 if all(session.is_complete for session in self._done) else 1)
+                self.ending.end(0 if self._is_complete else 1)
                 return
             robot = self._waiting.pop(0)
             settings = read_settings(robot.name, self._given)

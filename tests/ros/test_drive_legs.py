@@ -47,6 +47,7 @@ def test_one_robot_after_the_other_drives_all_ways_and_acts_and_ctrl_c_keeps_wha
                 wait_for(lambda: drives.poll() is not None, log, "it does not end")
             finally:
                 end(drives)
+            assert drives.returncode == 1, "not each way was driven"
             wait_for(lambda: robots.heard("bot2") == ["goal c", "cancel"], log, "bot2 was not called back")
         finally:
             robots.end()
