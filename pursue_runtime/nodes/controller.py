@@ -102,7 +102,8 @@ class Controller:
         if state.status == WON:
             self.ending.end(0)
         elif state.status in (LOST, STOPPED):
-            rospy.logerr("the mission is %s: %s", state.status, state.reason)
+            if not self.ending.called:  # states come several times
+                rospy.logerr("the mission is %s: %s", state.status, state.reason)
             self.ending.end(1)
 
     def wake(self) -> None:

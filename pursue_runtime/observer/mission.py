@@ -99,7 +99,7 @@ class Mission(MissionStatus):
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
             lost = [edge for edge in own if (name, edge.target) in self.model.bad]
             if lost:
-                return self._take((Move(name, lost[0]),), now, f"the deadline of {name} has passed")
+                return self._take((Move(name, lost[0]),), now, "a deadline has passed")
             overstays = overstayed(self.model, position, name, self._tolerance)
             if overstays:
                 self._note_broken(overstays)

@@ -363,3 +363,4 @@ def test_a_late_node_sees_the_mission_and_a_stop_ends_all_nodes_with_status_1(
     ended = dict(re.findall(r"\[(\w+)-\d+\] process has died \[pid \d+, exit code (-?\d+)", run.output()))
     nodes = [node for node in NODES if node != "sim_clock"]
     assert ended == {**dict.fromkeys(nodes, "1"), "observer": "-9"}, run.output()
+    assert run.output().count("the mission is stopped") <= len(nodes), "each node says it once"

@@ -53,4 +53,4 @@ def test_a_goal_that_comes_too_late_is_named(ros: Ros, tmp_path: Path) -> None:
     with launched(ros, folder, tmp_path, ("porter",), **PLAYED, **calm, use_sim_time=True, speed=2) as run:
         run.until_step("porter_counter2office")
         assert run.until_over() == "lost", run.output()
-        assert "the deadline of reachObj has passed (broken: do stamp within 20)" in run.output()
+        assert "a deadline has passed (broken: do stamp within 20)" in run.output()
