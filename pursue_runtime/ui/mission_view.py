@@ -13,7 +13,7 @@ from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.ui.phrases import not_promised, phrase, sentence, where
+from pursue_runtime.ui.phrases import in_labels, not_promised, phrase, sentence, where
 from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
 from pursue_runtime.zones import due
 
@@ -213,14 +213,15 @@ class MissionView:
         if state is None or state.status not in ENDED:
             return None
         after = f"after {self.elapsed(state.stamp):.1f} time units"
+        reason = in_labels(self._model, state.reason)
         if state.status == WON:
             several = len(self._model.says) > 1
             goal = "All goals are reached" if len(self._model.goal) > 1 else "The goal is reached"
             kept = "All objectives were kept to the end" if several else "The objective was kept to the end"
             return 0, f"{goal if self._model.goal else kept}, {after}."
         if state.status == LOST:
-            return 1, f"The mission is lost, {after}: {state.reason or 'the safety objective is broken'}."
-        return 1, f"The mission was stopped, {after}: {state.reason or '_stop_ was published'}."
+            return 1, f"The mission is lost, {after}: {reason or 'the safety objective is broken'}."
+        return 1, f"The mission was stopped, {after}: {reason or '_stop_ was published'}."
 
     def first_line(self, now: float) -> str:
         """Return what to say when the mission runs, with what it does not promise."""
@@ -258,7 +259,7 @@ class MissionView:
         if state.event:
             lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
-            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {state.reason}")
+            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {in_labels(self._model, state.reason)}")
         if state.status == RUNNING:
             instructions = [self._instruction(person, state, last) for person in sorted(self._people)]
             lines += [f"          {instruction}" for instruction in instructions if instruction]

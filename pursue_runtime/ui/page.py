@@ -18,7 +18,17 @@ from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.outlook import Outlook
-from pursue_runtime.ui.phrases import awaited, begin_of, doing, listed, not_promised, phrase, possibility, sentence
+from pursue_runtime.ui.phrases import (
+    awaited,
+    begin_of,
+    doing,
+    in_labels,
+    listed,
+    not_promised,
+    phrase,
+    possibility,
+    sentence,
+)
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
@@ -139,7 +149,8 @@ class Page:
             ]
         others = [automaton.name for automaton in self._model.automata if automaton not in self._acting]
         return {
-            "phase": facts.phase, "missing": list(facts.missing), "status": state.status, "reason": state.reason,
+            "phase": facts.phase, "missing": list(facts.missing), "status": state.status,
+            "reason": in_labels(self._model, state.reason),
             "verdict": facts.verdict[1] if facts.verdict else "", "good": bool(facts.verdict and not facts.verdict[0]),
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
@@ -178,10 +189,15 @@ class Page:
             if last.plan != state.plan:
                 fresh.append(self.note(at, f"plan {state.plan} is in force"))
         if state.status == HOLDING and (last is None or (last.status, last.reason) != (HOLDING, state.reason)):
-            fresh.append(self.note(at, f"the mission holds: {state.reason or 'no reason is given'}", BAD))
+            why = in_labels(self._model, state.reason) or "no reason is given"
+            fresh.append(self.note(at, f"the mission holds: {why}", BAD))
         if last is not None and last.status == HOLDING and state.status == RUNNING:
             fresh.append(self.note(at, "the mission goes on"))
         return fresh
+
+    def trouble(self, at: float, text: str) -> None:
+        """Adds to the log what a node says of its robots."""
+        self.note(at, in_labels(self._model, text), BAD)
 
     def note(self, at: float, text: str, kind: str = NOTE, word: str = "") -> Dict[str, Any]:
         """Adds an entry to the log, and returns it."""

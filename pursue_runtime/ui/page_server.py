@@ -77,7 +77,7 @@ class PageServer:
 
     def on_trouble(self, at: float, text: str) -> None:
         """Show what is wrong with a robot."""
-        self._page.note(at, text, BAD)
+        self._page.trouble(at, text)
         self.show()
 
     def on_presence(self, at: float, answers: bool) -> None:
