@@ -32,7 +32,7 @@ class SubStrategy:
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
     no program: its commands are instructions to people. `reacts_to` has, for its robots that take part in collaborative
     events of others, these events and the controllable agents that do them. `objectives` are those of `agents` that
-    are no agents: the automata of objectives. `left_out_clocks`: as the strategy has them.
+    are no agents: the automata of objectives. `left_out_clocks`: as the strategy has them. `in_stages`: it has stages.
     """
 
     controller: str
@@ -41,6 +41,7 @@ class SubStrategy:
     reacts_to: Tuple[Tuple[str, str, Tuple[str, ...]], ...] = ()
     objectives: Tuple[str, ...] = ()
     left_out_clocks: Tuple[str, ...] = ()
+    in_stages: bool = False
 
     @property
     def commands(self) -> int:
@@ -89,6 +90,7 @@ def partition(
             _reactions(agents, commanded),
             tuple(automaton for automaton in commanded if automaton in objectives),
             strategy.left_out_clocks,
+            bool(strategy.stages),
         )
         for name, commanded in owners.items()
     )

@@ -12,6 +12,9 @@ from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.strategy import Strategy
 
+_WHEREVER = "Whoever a state does not name may be anywhere, and is not waited for."
+_STAGES = "Stages are played one after the other: each ends where all of its places are reached."
+
 
 def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fraction) -> str:
     """The data file of one controller.
@@ -22,6 +25,7 @@ def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fract
     head = (
         f"Strategy of {sub.controller} in {scenario_name}, written by pursue-gen {generator}.",
         "In a state below, the command is due as soon as one of its zones (clocks in time units) holds.",
+        *((_WHEREVER,) if sub.in_stages else ()),
     )
     data = strategy_data(sub, reaction)
     for name in ("commands_agents", "left_out_clocks"):
@@ -36,6 +40,7 @@ def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
     head = (
         f"Where the strategy for {scenario_name} knows what to do, written by pursue-gen {generator}.",
         "In a state below, it holds as long as one of the zones (clocks in time units) does.",
+        *((_WHEREVER, _STAGES) if strategy.stages else ()),
     )
     data = cover_data(strategy)
     if "stages" in data:

@@ -12,9 +12,13 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.families import deliver_by_robots
+from pursue_gen.language import parse
 from pursue_gen.partition import SubStrategy, partition
 from pursue_gen.partition.strategy_data import cover_data, strategy_data, zone_text
 from pursue_gen.partition.strategy_file import render, render_cover
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Edge, Sync
@@ -211,3 +215,14 @@ def test_blocks_of_each_stage_name_what_matters_in_it() -> None:
 def test_the_position_of_an_agent_that_is_not_named_itself_stays_in_the_state() -> None:
     block = Block(DiscreteState((("bot", "hub"),), (("Pbot", 2), ("Pvisitor", 3))), ((),), ())
     assert cover_data(Strategy((block,)))["cover"][0]["state"] == {"bot": "hub", "Pvisitor": 3}
+
+
+@pytest.mark.parametrize("robots", [1, 3])
+def test_files_of_a_strategy_in_stages_say_what_a_state_does_not_name(robots: int) -> None:
+    scenario = parse(deliver_by_robots(robots), "delivery.pur", "delivery")
+    won = solve_scenario(scenario, Rules())
+    sub, *_ = partition(won.strategy, won.network, scenario.agents)
+    for text in (render(sub, "delivery", "0.1.0", won.reaction), render_cover(won.strategy, "delivery", "0.1.0")):
+        comments = [line for line in text.splitlines() if line.startswith("#")]
+        assert any("Whoever a state does not name may be anywhere" in line for line in comments) is (robots == 3)
+        assert any("one after the other" in line for line in comments) is (robots == 3 and "cover:" in text)
