@@ -120,8 +120,7 @@ def from_states(
 def simulated(case: Case, seed: int) -> Recording:
     """One simulated mission: the same as `simulation.runs` plays with this seed."""
     stage = stage_of(case.scenario, case.won, case.options)
-    remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
-    mission = _Recorded(stage, case.settings, seed, remaining)
+    mission = _Recorded(stage, case.settings, seed, case.worst_times())
     outcome = mission.run()
     found = from_states(mission.states, case.scenario, case.won.network, f"simulated mission {seed}", outcome.time)
     assert found is not None, "a simulated mission starts at once"

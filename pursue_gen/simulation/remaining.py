@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from fractions import Fraction
-from typing import Deque, Dict, List, Optional, Tuple
+from typing import Deque, Dict, List, Optional, Tuple, Type
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.closed_loop import ClosedLoop, Entry
@@ -40,7 +40,7 @@ class Remaining:
 
     def __init__(self, won: Solution, states: int = STATES) -> None:
         self._loop: Optional[ClosedLoop] = None
-        self._states = states
+        self._won, self._states = won, states
         self.ease = 1.0
         """How often to look ahead where many missions are to be played: less often in larger games."""
         self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
@@ -60,6 +60,10 @@ class Remaining:
         if self.at(*self._project.start) is None:
             self._loop = None
         self.ease = min(1.0, CHEAP / max(1, self._met))
+
+    def __reduce__(self) -> Tuple[Type[Remaining], Tuple[Solution, int]]:
+        """Another process gets what it is found out from: that is small."""
+        return Remaining, (self._won, self._states)
 
     @property
     def works(self) -> bool:

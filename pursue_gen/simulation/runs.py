@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from statistics import median
@@ -34,12 +34,22 @@ _SPAN, _PART = 50.0, 0.6
 
 @dataclass(frozen=True)
 class Case:
-    """What is simulated: everything that another process needs to make its own stage of it."""
+    """What is simulated: everything that another process needs to make its own stage of it.
+
+    `remaining` is found out anew where it is not there, and in another process.
+    """
 
     scenario: Scenario
     won: Solution
     options: Options
     settings: Settings
+    remaining: Optional[Remaining] = field(default=None, compare=False, repr=False)
+
+    def worst_times(self) -> Optional[Remaining]:
+        """What the opponent needs who makes plays as long as it can; None for others."""
+        if self.settings.opponent not in ("worst", "mixed"):
+            return None
+        return self.remaining or Remaining(self.won)
 
 
 @dataclass(frozen=True)
@@ -77,7 +87,8 @@ def case_of(scenario: Scenario, won: Solution, options: Options, settings: Setti
     margin = float(won.reaction)
     if settings.faults:
         margin = float(strategy_margin(won.network, won.objective, won.strategy, won.reaction, USUAL).wins)
-    return Case(scenario, won, options, replace(settings, bound=bound, span=span, margin=margin)), remaining.works
+    known = replace(settings, bound=bound, span=span, margin=margin)
+    return Case(scenario, won, options, known, remaining), remaining.works
 
 
 class MissionRunner:
@@ -86,7 +97,7 @@ class MissionRunner:
     def __init__(self, case: Case) -> None:
         self.stage: Stage = stage_of(case.scenario, case.won, case.options)
         self._settings = case.settings
-        self.remaining = Remaining(case.won) if case.settings.opponent in ("worst", "mixed") else None
+        self.remaining = case.worst_times()
 
     def run(self, seed: int, record: bool = False) -> Outcome:
         """One mission."""
