@@ -38,6 +38,9 @@ them take long to prove, too."""
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
 
+_NOT_PROVEN = 4
+"""The exit status of a strategy that the checker refuses."""
+
 _FOR_IDEAL = 50_000_000
 """The work that may be spent on whether a lost game is won ideally: some ten seconds."""
 
@@ -97,10 +100,30 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole, first=first)
     if verdict.strategy is None:
         raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
-    left = options.since(start)
-    strategy = prove(game, objective, verdict.strategy, rules.reaction, verdict.ranks, left, otherwise=verdict.cautious)
+    strategy = _proven(game, objective, rules.reaction, verdict, options.since(start))
     won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
     return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
+
+
+def _proven(
+    game: Network, objective: Objective, reaction: Fraction, verdict: Verdict, options: SolveOptions
+) -> Strategy:
+    """The verdict's strategy, once it is proven; where it is refused, one that is found in the order of time: with long
+    reactions commands that are overtaken may go round in circles. Raises as `prove` does."""
+    assert verdict.strategy is not None
+    start = time.monotonic()
+    try:
+        return prove(game, objective, verdict.strategy, reaction, verdict.ranks, options, otherwise=verdict.cautious)
+    except PursueError as problem:
+        if problem.exit_status != _NOT_PROVEN or objective.kind is Kind.SAFETY:
+            raise
+        refused = problem
+    how = options.engine, options.since(start).in_one_piece, options.progress
+    again = solve(game, objective, reaction, *how, whole=options.whole, soonest=True)
+    if again.strategy is None:
+        raise refused
+    left = options.since(start)
+    return prove(game, objective, again.strategy, reaction, again.ranks, left, otherwise=again.cautious)
 
 
 def _smaller(won: Solution, options: SolveOptions) -> Solution:
