@@ -25,7 +25,7 @@ os.environ.pop("PURSUE_DEBUG", None)
 settings.register_profile(
     "project",
     deadline=None,
-    max_examples=75,
+    max_examples=60,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
     derandomize=True,
 )

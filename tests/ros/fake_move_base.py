@@ -3,10 +3,11 @@
 
 Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
 action takes; negative: the robot does not report its end), boot (seconds from the start of move_base until its action
-server is up), recovery (seconds until a robot that is stuck gives up, and answers other goals and cancellations),
-status (seconds between two status messages), plays (what becomes of its first goal, of its second …; the last one of
-all that follow): succeed, abort (at once), reject (at once), never, stuck (it gives up after the recovery), twice
-(the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
+server is up), reboot (the same after a restart; boot where it is not given), recovery (seconds until a robot that is
+stuck gives up, and answers other goals and cancellations), status (seconds between two status messages), plays (what
+becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once), reject (at
+once), never, stuck (it gives up after the recovery), twice (the result comes twice), stale (a result of long ago comes
+first), turned (it arrives, but looks the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
 and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
@@ -127,7 +128,8 @@ class FakeMoveBase:
         self.lock = threading.RLock()
         self.body = body or Body(name, settings.get("start", [0.0, 0.0]))
         self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
-        self.boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
+        boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
+        self.reboot = float(settings.get("reboot", boot))
         self.plays: List[str] = list(settings.get("plays", ["succeed"]))
         self.count = 0
         self.process: List[Any] = []  # the topics of move_base, which end with it
@@ -140,7 +142,7 @@ class FakeMoveBase:
         self.body.show()
         rospy.Subscriber(f"{name}/pursue/actions", String, self.on_action)
         rospy.Subscriber(f"{name}/test", String, self.on_order)
-        self.start()
+        self.start(boot)
         rospy.Timer(rospy.Duration(STEP), self.step)
         rospy.Timer(rospy.Duration(settings.get("status", STATUS_PERIOD)), lambda _: self.show_status())
 
@@ -149,14 +151,15 @@ class FakeMoveBase:
 
     # Its life: the topic of simple goals first, the action server much later ------------------------------------------
 
-    def start(self) -> None:
-        """The process starts: simple goals are received and published again as action goals, which nobody takes yet."""
+    def start(self, boot: float) -> None:
+        """The process starts: simple goals are received and published again as action goals, which nobody takes for so
+        many seconds."""
         with self.lock:
             self.republish = rospy.Publisher(f"{self.name}/move_base/goal", MoveBaseActionGoal, queue_size=1)
             simple = rospy.Subscriber(f"{self.name}/move_base_simple/goal", PoseStamped, self.on_simple, queue_size=1)
             self.process = [self.republish, simple]
-        if self.boot > 0.0:
-            rospy.Timer(rospy.Duration(self.boot), lambda _: self.start_server(), oneshot=True)
+        if boot > 0.0:
+            rospy.Timer(rospy.Duration(boot), lambda _: self.start_server(), oneshot=True)
         else:
             self.start_server()
 
@@ -184,7 +187,7 @@ class FakeMoveBase:
             topics, self.process = self.process, []
         for topic in topics:
             topic.unregister()
-        rospy.Timer(rospy.Duration(down), lambda _: self.start(), oneshot=True)
+        rospy.Timer(rospy.Duration(down), lambda _: self.start(self.reboot), oneshot=True)
 
     # Goals ------------------------------------------------------------------------------------------------------------
 

@@ -100,7 +100,8 @@ def test_a_robot_that_connects_late_is_reported_and_is_called_back_when_its_cont
 def test_a_simple_goal_that_a_restarted_move_base_has_lost_is_sent_again(
     ros: Ros, workspace: Path, tmp_path: Path
 ) -> None:
-    bot1 = {"travel": 6.0, "boot": 1.5}  # the goal comes as soon as move_base connects: before its action server is up
+    # Once more the goal comes as soon as move_base connects: before its action server is up.
+    bot1 = {"travel": 6.0, "reboot": 1.5}
     with playing(ros, workspace, tmp_path, "goals:=simple ends:=result", bot1=bot1) as (robots, log, mission):
         wait_for(lambda: robots.heard("bot1") == ["goal b"], log, "bot1 was not sent")
         robots.order("bot1", "restart 0.3")
