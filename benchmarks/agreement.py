@@ -126,14 +126,16 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 
 
 def keep(folder: Path, rows: List[Row]) -> None:
-    """Writes the rows into the results of the benchmarks, in place of those of the same groups; and the page again."""
+    """Writes the rows into the results of the benchmarks, in place of those of the same groups, each with the version
+    that it is of; and the page again."""
     from benchmarks.synthesis import version, write
 
     file = folder / "benchmarks" / "results.json"
     results: Dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     known = {(row["name"], row["game"]): row for row in results.get("agreement", {}).get("rows", [])}
-    known.update({(row["name"], row["game"]): row for row in rows})
-    results["agreement"] = {"date": f"{datetime.date.today()}", "version": version(), "rows": list(known.values())}
+    now = {"date": f"{datetime.date.today()}", "version": version()}
+    known.update({(row["name"], row["game"]): {**row, **now} for row in rows})
+    results["agreement"] = {"rows": list(known.values())}
     write(folder, results, plots=False)
 
 

@@ -14,16 +14,17 @@ def table(results: Mapping[str, Any]) -> str:
     found = results.get("agreement")
     if found is None:
         return "Not compared yet: `python -m benchmarks.agreement --out docs`.\n"
-    head = ("drawn", "game", "games", "most states", "won", "lost", "undecided", "differ", "proven by both checkers")
+    head = ("drawn", "game", "compared", "games", "most states", "won", "lost", "undecided", "differ",
+            "proven by both checkers")  # fmt: skip
     rows: List[Row] = found["rows"]
     lines = [
-        [row["name"], row["game"], *map(number, (row["games"], row["most_states"], row["won"], row["lost"]))]
+        [row["name"], row["game"], f"{row['date']}, version {row['version']}"]
+        + [*map(number, (row["games"], row["most_states"], row["won"], row["lost"]))]
         + [number(row["undecided"]), number(len(row["differ"])), number(row["proven"])]
         for row in rows
     ]
-    text = [f"Compared {found['date']}, version {found['version']}."]
-    text += [sentence(which, kind) for which, kind in _split(rows).items() if kind]
-    return f"{markdown(head, lines, left=2)}\n" + "\n\n".join(text) + "\n"
+    text = [sentence(which, kind) for which, kind in _split(rows).items() if kind]
+    return f"{markdown(head, lines, left=3)}\n" + "\n\n".join(text) + "\n"
 
 
 def _split(rows: Iterable[Row]) -> Dict[str, List[Row]]:

@@ -1,9 +1,9 @@
 """A Python that has loaded ROS's modules already, and becomes each program that tests start.
 
 Half of a short mission's processor time is rospy's import, once for each node. `preloaded(…)` has programs `python3`,
-`rosmaster`, `roslaunch` and `rostest` that stand first on PATH of missions. Each hands its arguments, variables, folder
-and open files to one process that has imported what they all import; that forks, and its child runs the script.
-Signals are passed on, and the status comes back. Workspaces' own modules are imported by each node.
+`rosmaster`, `roslaunch`, `rostest` and `rosversion` that stand first on PATH of missions. Each hands its arguments,
+variables, folder and open files to one process that has imported what they all import; that forks, and its child runs
+the script. Signals are passed on, and the status comes back. Workspaces' own modules are imported by each node.
 
 Run by itself, with the socket's address, this file is that process. It ends with its standard input.
 """
