@@ -306,7 +306,10 @@ class Ending:
         A signal ends the node with status 0, unless the master is gone: roslaunch interrupts its nodes when its own
         master has ended.
         """
-        status = self._ends.get()
+        status: Optional[int] = None
+        while status is None:
+            with contextlib.suppress(queue.Empty):  # a signal that comes in the moment before it waits does not wake it
+                status = self._ends.get(timeout=1.0)
         self._over = True
         self.renewed = status == RENEWED
         if status == INTERRUPTED and master_is_gone():

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -80,20 +81,30 @@ def play(command: Sequence[str], verdict: str) -> Tuple[int, str]:
     has been written has ended nothing. Raises OSError.
     """
     received: List[str] = []
-    process: Optional[subprocess.Popen[bytes]] = None
 
-    def interrupt(sign: int, _: object) -> None:
+    def note(sign: int, _: object) -> None:
         received.append("" if os.path.exists(verdict) else signal.Signals(sign).name)
-        if process is not None and len(received) == 1:  # roslaunch ends its nodes on the first one
-            process.send_signal(signal.SIGINT)
 
+    # A signal that comes in the moment before a process waits for another one does not end the wait; a byte does.
+    woken, waking = socket.socketpair()
+    waking.setblocking(False)
+    signal.signal(signal.SIGCHLD, lambda *_: None)
     for sign in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(sign, interrupt)
-    # In a session of its own: Ctrl-C reaches it once, from here.
-    process = subprocess.Popen(command, start_new_session=True)
-    if received:
-        process.send_signal(signal.SIGINT)  # the signal came before there was a process
-    return process.wait(), received[0] if received else ""
+        signal.signal(sign, note)
+    with woken, waking:
+        signal.set_wakeup_fd(waking.fileno(), warn_on_full_buffer=False)
+        try:
+            # In a session of its own: Ctrl-C reaches it once, from here.
+            process = subprocess.Popen(command, start_new_session=True)
+            interrupted = False
+            while process.poll() is None:
+                if received and not interrupted:  # roslaunch ends its nodes on the first one
+                    process.send_signal(signal.SIGINT)
+                    interrupted = True
+                woken.recv(4096)
+        finally:
+            signal.set_wakeup_fd(-1)
+    return process.returncode, received[0] if received else ""
 
 
 def conclude(verdict: Optional[Verdict], status: int, stopped_by: str) -> Verdict:

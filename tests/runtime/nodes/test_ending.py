@@ -54,6 +54,19 @@ def test_a_signal_ends_the_node_when_it_waits_and_at_once() -> None:
     ]
 
 
+def test_a_signal_that_does_not_wake_what_it_waits_for_ends_the_node() -> None:
+    """Another thread receives it; it is the same with one that comes in the moment before it waits."""
+    program = """
+import threading
+def receive():
+    time.sleep(0.5)
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+threading.Thread(target=receive, daemon=True).start()
+print(ending.wait())
+"""
+    assert run(program) == ["0"]
+
+
 def test_a_signal_ends_the_node_with_status_1_and_the_reason_where_its_master_is_gone() -> None:
     program = """
 rospy.logerr = lambda text, *words: print(text % words)

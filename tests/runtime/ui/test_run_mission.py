@@ -22,6 +22,14 @@ from pursue_runtime.data import Package
 from pursue_runtime.ui import run_mission
 sys.exit(run_mission.main(Package("demo_bringup", "demo", "")))
 """
+ELSEWHERE = """
+import signal, threading, time
+def receive():
+    time.sleep(1)
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+threading.Thread(target=receive, daemon=True).start()
+"""
+"""Another thread of the process receives the signal: what the main thread waits for does not come back for that."""
 ROSLAUNCH = """#!/bin/bash
 echo "roslaunch $*"
 path=${!#}; path=${path#verdict:=}
@@ -37,14 +45,16 @@ WAITS = "while :; do sleep 0.05; done"
 class Launch:
     """run_mission with a program in the place of roslaunch."""
 
-    def __init__(self, folder: Path, does: str, *arguments: str, at_signal: str = ":") -> None:
+    def __init__(
+        self, folder: Path, does: str, *arguments: str, at_signal: str = ":", program: str = PROGRAM
+    ) -> None:
         self.folder = folder
         script = folder / "roslaunch"
         script.write_text(ROSLAUNCH.replace("{does}", does).replace("{at_signal}", at_signal), encoding="utf-8")
         script.chmod(0o755)
         there = {"PATH": f"{folder}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "HERE": str(folder)}
         self.process = subprocess.Popen(
-            [sys.executable, "-c", PROGRAM, *arguments],
+            [sys.executable, "-c", program, *arguments],
             env={**os.environ, **there},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -90,6 +100,12 @@ def test_a_signal_interrupts_the_launch(tmp_path: Path, sign: signal.Signals) ->
     status, lines = launch.ended()
     assert (status, lines[-1]) == (4, f"interrupted: {sign.name} was received before the mission ended.")
     assert "interrupted" in lines, "roslaunch got SIGINT"
+
+
+def test_a_signal_that_does_not_wake_what_it_waits_for_interrupts_the_launch(tmp_path: Path) -> None:
+    """As one that comes in the moment before it waits."""
+    status, lines = Launch(tmp_path, WAITS, program=ELSEWHERE + PROGRAM).ended()
+    assert (status, lines[-1]) == (4, "interrupted: SIGTERM was received before the mission ended.")
 
 
 @pytest.mark.parametrize("at_signal, line", [
