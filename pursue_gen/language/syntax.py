@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
-from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
 
 from lark import Lark, Token, Tree, UnexpectedToken
 
@@ -102,7 +102,7 @@ def read_statements(text: str, file: str) -> Tuple[List[Tree[Token]], List[Diagn
 
 def cut(text: str, file: str) -> Statements:
     """The statements of a text."""
-    tokens = list(islice(grammar().lex(text), MOST_WORDS + 1)) if len(text) <= MOST_LETTERS else []
+    tokens = list(islice(_words(text), MOST_WORDS + 1)) if len(text) <= MOST_LETTERS else []
     if len(text) > MOST_LETTERS or len(tokens) > MOST_WORDS:
         return Statements([], [too_large(file)], frozenset())
     reader = _Reader(file)
@@ -113,6 +113,13 @@ def cut(text: str, file: str) -> Statements:
             reader.findings.append(too_many(span_of(found[number + 1][0], file)))
             break
     return Statements(reader.trees, reader.findings, frozenset(reader.lost))
+
+
+def _words(text: str) -> Iterator[Token]:
+    """The words and signs of a text. `Lark.lex` would make a lexer for each, which takes longer than most texts do."""
+    parser: Any = grammar().parse_interactive(text, start="statement")
+    found: Iterator[Token] = parser.lexer_thread.lex(None)
+    return found
 
 
 def too_large(file: str) -> Diagnostic:
@@ -167,16 +174,17 @@ class _Reader:
                 parser.feed_token(token)
             except UnexpectedToken:
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
-        expected = self._expected(parser)
-        if "$END" not in expected:
-            return unfinished(chunk, expected, span_of(chunk[-1], self.file))
+        try:
+            tree = parser.feed_eof(chunk[-1])
+        except UnexpectedToken:  # on the way it may have left the state of which we have to tell
+            return unfinished(chunk, self._expected(_parser_after(chunk)), span_of(chunk[-1], self.file))
         if chunk[0].type == "RULE" and sum(token.type == "WORD" for token in chunk) > _WIDEST:
             message = f"more than {_WIDEST} events in one rule"
             return error("PML016", message, span_of(chunk[1], self.file), _SPLIT)
         if chunk[0].type != "RULE" and sum(token.type in _ATOMS for token in chunk) > _WIDEST:
             message = f"more than {_WIDEST} parts of one condition"
             return error("PML016", message, span_of(chunk[0], self.file), _SHORTEN)
-        self.trees.append(parser.feed_eof(chunk[-1]))
+        self.trees.append(tree)
         return None
 
     def _expected(self, parser: Any) -> FrozenSet[str]:
@@ -184,6 +192,14 @@ class _Reader:
         if state not in self._next:
             self._next[state] = frozenset(parser.accepts())
         return self._next[state]
+
+
+def _parser_after(tokens: Iterable[Token]) -> Any:
+    """The parser when it has read these words of a statement."""
+    parser: Any = grammar().parse_interactive(start="statement")
+    for token in tokens:
+        parser.feed_token(token)
+    return parser
 
 
 def _declared(chunk: List[Token]) -> Set[str]:
