@@ -7,6 +7,7 @@ run time verbatim.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Tuple
@@ -100,8 +101,9 @@ def templates_dir() -> Path:
     return installed if installed.is_dir() else package.parent / "templates" / "catkin"
 
 
+@functools.lru_cache(maxsize=8)
 def environment(templates: Path) -> jinja2.Environment:
-    """How templates are rendered: unknown names are errors, tags leave no lines behind."""
+    """How templates are rendered: unknown names are errors, tags leave no lines behind. Each is compiled once."""
     return jinja2.Environment(
         loader=jinja2.FileSystemLoader(str(templates)),
         undefined=jinja2.StrictUndefined,
