@@ -1,9 +1,9 @@
 """A Python that has loaded ROS's modules already, and becomes each program that tests start.
 
-Half of a short mission's processor time is rospy's import, once for each node. `preloaded(…)` has programs `python3`,
-`rosmaster`, `roslaunch`, `rostest` and `rosversion` that stand first on PATH of missions. Each hands its arguments,
-variables, folder and open files to one process that has imported what they all import; that forks, and its child runs
-the script. Signals are passed on, and the status comes back. Workspaces' own modules are imported by each node.
+Half of a short mission's processor time is rospy's import, once for each node. `preloaded(…)` has programs (`PROGRAMS`)
+that stand first on PATH of missions. Each hands its arguments, variables, folder and open files to one process that has
+imported what they all import; that forks, and its child runs the script. Signals are passed on, but for SIGSTOP (see
+`process_of`), and the status comes back. Workspaces' own modules are imported by each node.
 
 Run by itself, with the socket's address, this file is that process. It ends with its standard input.
 """
@@ -11,6 +11,7 @@ Run by itself, with the socket's address, this file is that process. It ends wit
 from __future__ import annotations
 
 import array
+import atexit
 import contextlib
 import gc
 import importlib
@@ -27,14 +28,18 @@ import sys
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Sequence
 
-PROGRAMS = ("python3", "rosmaster", "roslaunch", "rostest", "rosversion")
+PROGRAMS = (
+    "python3", "rosmaster", "roscore", "roslaunch", "rostest", "rosversion", "rostopic", "rosparam", "catkin_find",
+)  # fmt: skip
+"""Each is a script in Python."""
 
 MODULES = (
     "argparse", "ast", "configparser", "dataclasses", "encodings.idna", "enum", "fractions", "importlib.metadata",
     "json", "netifaces", "queue", "sqlite3", "tempfile", "unicodedata", "unittest", "uuid", "xml.dom.expatbuilder",
     "xml.dom.minidom", "xml.etree.ElementTree", "yaml", "transitions", "rospy", "rospkg.rosversion", "roslaunch",
-    "rosmaster.main", "rosmaster.master_api", "rostest.rostest_main", "rostest.runner", "rosunit", "actionlib_msgs.msg",
-    "diagnostic_msgs.msg", "geometry_msgs.msg", "rosgraph_msgs.msg", "std_msgs.msg", "tf2_msgs.msg",
+    "rostopic", "rosparam", "catkin.find_in_workspaces", "rosmaster.main", "rosmaster.master_api",
+    "rostest.rostest_main", "rostest.runner", "rosunit", "actionlib_msgs.msg", "diagnostic_msgs.msg",
+    "geometry_msgs.msg", "rosgraph_msgs.msg", "std_msgs.msg", "tf2_msgs.msg",
 )  # fmt: skip
 """What nodes and ROS's own programs import; what tests hide from nodes is not among it."""
 
@@ -70,6 +75,8 @@ asked = marshal.dumps((arguments, os.getcwd(), dict(os.environ)))
 link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
 link.sendmsg([asked], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, files)])
 child = int(link.recv(64))
+with open("/proc/self/comm", "w") as file:
+    file.write(str(child))
 
 def forward(number, frame):
     try:
@@ -88,6 +95,12 @@ sys.exit(status)
 """
 
 
+def process_of(started: int) -> int:
+    """The process that does the work of one that was started: itself, or the child of the process that forks."""
+    name = Path(f"/proc/{started}/comm").read_text().strip()
+    return int(name) if name.isdigit() else started
+
+
 class Program(NamedTuple):
     """What a process of its own is to run: arguments with the script first, folder, variables, and open files."""
 
@@ -97,15 +110,8 @@ class Program(NamedTuple):
     files: List[int]
 
 
-class Preloaded(NamedTuple):
-    """The folder for PATH, and the process whose children run the programs."""
-
-    programs: Path
-    process: int
-
-
 @contextlib.contextmanager
-def preloaded(place: Path, path: str, modules: Sequence[str] = MODULES) -> Iterator[Preloaded]:
+def preloaded(place: Path, path: str, modules: Sequence[str] = MODULES) -> Iterator[Path]:
     """A folder for PATH, whose programs work until the end; `path` is what PATH is without it."""
     address, programs = str(place / "socket"), place / "bin"
     programs.mkdir()
@@ -126,7 +132,7 @@ def preloaded(place: Path, path: str, modules: Sequence[str] = MODULES) -> Itera
         )
     assert server.stdin is not None
     try:
-        yield Preloaded(programs, server.pid)
+        yield programs
     finally:
         server.stdin.close()
         server.wait()
@@ -218,7 +224,22 @@ class Server:
         self._children.clear()
 
 
-def become(program: Program) -> None:
+class End:
+    """The end of a program: it does not take apart all the modules, of which it would get copies to change them."""
+
+    def __init__(self) -> None:
+        self.status: Optional[int] = None
+        """Known where the program has ended by itself."""
+        atexit.register(self._leave)  # called after all that is registered later
+
+    def _leave(self) -> None:
+        if self.status is not None:
+            for out in (sys.stdout, sys.stderr):
+                out.flush()
+            os._exit(self.status & 0xFF)
+
+
+def become(program: Program, end: End) -> None:
     """Runs the script in this process, which is as new."""
     os.setsid()
     for number, file in enumerate(program.files):
@@ -234,18 +255,24 @@ def become(program: Program) -> None:
     names = sys.modules.get("rospy.names")
     if names is not None:
         names.reload_mappings(sys.argv)  # type: ignore[attr-defined]
-    runpy.run_path(program.arguments[0], run_name="__main__")
+    try:
+        runpy.run_path(program.arguments[0], run_name="__main__")
+        end.status = 0
+    except SystemExit as ended:
+        end.status = ended.code if isinstance(ended.code, int) else None if ended.code else 0
+        raise
 
 
 def main() -> None:
     """Loads what there is of the modules, and serves."""
     del sys.path[0]
+    end = End()
     for module in sys.argv[2:]:
         with contextlib.suppress(ImportError):
             importlib.import_module(module)
     gc.collect()
     gc.freeze()
-    become(Server(sys.argv[1]).program())
+    become(Server(sys.argv[1]).program(), end)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ import xmlrpc.client
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
 
-from preloaded import Preloaded
+from preloaded import process_of
 
 from pursue_gen.language import load
 from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
@@ -75,9 +75,9 @@ class Ros:
         """`home` is for what runs in this process, `shared` for what all processes of the session build but once."""
         self.home, self.shared = home, shared
         self.environment = _environment(home)
-        self.preloaded: Optional[Preloaded] = None
-        """What starts the programs of missions in workspaces that are used where they were built (see preloaded.py);
-        elsewhere, in the install space too, they start as a user's do."""
+        self.preloaded: Optional[Path] = None
+        """The folder of what starts the programs of missions in workspaces that are used where they were built (see
+        preloaded.py); elsewhere, in the install space too, they start as a user's do."""
         self._sourced: Dict[Path, Dict[str, str]] = {}
 
     def once(self, name: str, build: Callable[[Path], object]) -> Path:
@@ -117,7 +117,7 @@ class Ros:
     def _path(self, variables: Mapping[str, str]) -> str:
         """PATH for a mission whose nodes need not start as a user's do."""
         path = variables["PATH"]
-        return f"{self.preloaded.programs}:{path}" if self.preloaded else path
+        return f"{self.preloaded}:{path}" if self.preloaded else path
 
     def for_missions(self, workspace: Path) -> Dict[str, str]:
         """The variables for missions of a workspace."""
@@ -190,20 +190,13 @@ class Ros:
         deadline = time.monotonic() + PATIENCE / 2
         while time.monotonic() < deadline and master.poll() is None:
             with contextlib.suppress(*NO_ANSWER), xmlrpc.client.ServerProxy(uri, transport=_Hasty()) as found:
-                if self._is(int(found.getPid("/test")[2]), master.pid):  # type: ignore[index]
+                if found.getPid("/test")[2] == process_of(master.pid):  # type: ignore[index]
                     found.setParam("/test", "/run_id", str(uuid.uuid1()))
                     return uri, master
             time.sleep(0.02)
         end(master)
         assert tries > 1, f"no master: {log.read_text(errors='replace')}"
         return self._master(tries - 1)
-
-    def _is(self, found: int, started: int) -> bool:
-        """True if this process is the one that was started, or does its work."""
-        with contextlib.suppress(OSError):
-            parent = int(Path(f"/proc/{found}/stat").read_text().rpartition(")")[2].split()[1])
-            return found == started or (self.preloaded is not None and parent == self.preloaded.process)
-        return False
 
 
 def free_port() -> int:

@@ -16,6 +16,7 @@ from typing import Callable, Dict, Iterator, List, Optional, Set
 from xmlrpc.client import ServerProxy
 
 import pytest
+from preloaded import process_of
 from ros_world import Ros, end, free_port
 
 from tests.namespaces import Lab, lab, why_not
@@ -79,8 +80,13 @@ class Nodes:
         return "\n".join(f"--- {name}\n{self.log(name)[-3000:]}" for name in self.running)
 
     def kill(self, name: str, sign: signal.Signals) -> None:
-        """Sends the signal to it and its children."""
-        os.killpg(self.running[name].pid, sign)
+        """Sends the signal to it and its children, or to the process that does its work."""
+        started = self.running[name].pid
+        works = process_of(started)
+        if works == started:
+            os.killpg(started, sign)
+        else:
+            os.kill(works, sign)
 
     def statuses(self, *names: str) -> Dict[str, int]:
         """Waits for their ends."""
@@ -101,7 +107,7 @@ def nodes(ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab] = None) ->
             if name != "roscore" and process.poll() is None:  # all at once: each takes seconds
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(process.pid, signal.SIGINT)
-                    os.killpg(process.pid, signal.SIGCONT)
+                    made.kill(name, signal.SIGCONT)
         for _, process in sorted(made.running.items(), key=lambda running: running[0] == "roscore"):
             end(process)
 

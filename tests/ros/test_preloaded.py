@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Dict, Iterator, List
 
 import pytest
-from preloaded import preloaded
+from preloaded import preloaded, process_of
 
 from tests.waiting import PATIENCE
 
@@ -34,8 +34,8 @@ sys.exit(int(sys.argv[1]))
 @pytest.fixture(name="variables", scope="module")
 def _variables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dict[str, str]]:
     path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
-    with preloaded(tmp_path_factory.mktemp("preloaded"), path, modules=("json",)) as found:
-        yield {"PATH": f"{found.programs}:{path}", "WORD": "told"}
+    with preloaded(tmp_path_factory.mktemp("preloaded"), path, modules=("json",)) as programs:
+        yield {"PATH": f"{programs}:{path}", "WORD": "told"}
 
 
 @pytest.fixture(name="command")
@@ -57,6 +57,20 @@ def test_a_script_has_its_arguments_folder_variables_and_files(
     assert done.stderr == "and this\n"
 
 
+@pytest.mark.parametrize(("end", "status"), [("", 0), ("sys.exit()", 0), ("sys.exit(300)", 44), ("sys.exit('so')", 1)])
+def test_threads_and_functions_for_its_end_come_first(
+    variables: Dict[str, str], command: List[str], end: str, status: int
+) -> None:
+    late = "threading.Thread(target=lambda: (time.sleep(0.2), print('thread'))).start()"
+    code = f"import atexit, sys, threading, time\natexit.register(print, 'end')\n{late}\nprint('first')\n{end}\n"
+    Path(command[1]).write_text(code)
+    done = subprocess.run(
+        command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
+    )
+    assert (done.stdout, done.returncode) == ("first\nthread\nend\n", status)
+    assert done.stderr == ("so\n" if status == 1 else "")
+
+
 def test_what_it_does_not_catch_is_printed(variables: Dict[str, str], command: List[str]) -> None:
     done = subprocess.run([*command, "fail"], env=variables, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 1
@@ -70,6 +84,7 @@ def test_signals_reach_it(variables: Dict[str, str], command: List[str], sign: s
     with subprocess.Popen([*command, "wait"], env=variables, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         child = int(process.stdout.readline().split()[-1])
+        assert process_of(process.pid) == child
         process.send_signal(sign)
         assert process.wait(PATIENCE) == status
     deadline = time.monotonic() + PATIENCE

@@ -16,6 +16,7 @@ from typing import Callable, Iterator, Tuple
 from xmlrpc.client import ServerProxy
 
 import pytest
+from preloaded import process_of
 from ros_world import SCENARIOS, Ros, end, lay_over
 
 from pursue_gen.language import parse
@@ -68,7 +69,7 @@ def button(name: str) -> str:
     return f"document.getElementById('{name}').getAttribute('aria-disabled')"
 
 
-def process_of(uri: str, node: str) -> int:
+def node_of(uri: str, node: str) -> int:
     """The process of a node."""
     with ServerProxy(uri) as master:
         address = master.lookupNode("/test", f"/{node}")[2]  # type: ignore[index]
@@ -79,12 +80,13 @@ def process_of(uri: str, node: str) -> int:
 @contextlib.contextmanager
 def without_observer(uri: str, launched: "subprocess.Popen[bytes]") -> Iterator[None]:
     """The observer is killed, and roslaunch does not start it again before the end."""
-    os.kill(launched.pid, signal.SIGSTOP)
+    works = process_of(launched.pid)
+    os.kill(works, signal.SIGSTOP)
     try:
-        os.kill(process_of(uri, "observer"), signal.SIGKILL)
+        os.kill(node_of(uri, "observer"), signal.SIGKILL)
         yield
     finally:
-        os.kill(launched.pid, signal.SIGCONT)
+        os.kill(works, signal.SIGCONT)
 
 
 def is_drawn(png: bytes) -> bool:
