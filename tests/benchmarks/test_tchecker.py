@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Dict, FrozenSet, Iterator, List, Optional, Set, Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from benchmarks import synthesis
 from benchmarks.families import FAMILIES
@@ -254,7 +254,6 @@ KINDS = (Kind.REACH, Kind.SAFETY, Kind.REACH_WHILE_SAFE)
 REACH = Objective(Kind.REACH, goal=(("A", "end"),))
 
 
-@settings(max_examples=150)
 @given(random_games.networks(KINDS))
 def test_a_random_network_has_the_same_moves_in_the_file(drawn: Tuple[Network, Objective]) -> None:
     network, objective = drawn

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import Any, List
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
@@ -272,7 +272,6 @@ OPERATION = st.one_of(
 )
 
 
-@settings(max_examples=60)
 @given(st.sampled_from([COMMENTED, "", "// none", thesis_scenario("3").read_text()]), st.lists(OPERATION, max_size=8))
 def test_any_changes_leave_a_text_as_fmt_writes_it_with_all_comments(text: str, operations: List[Any]) -> None:
     before = comments(text)

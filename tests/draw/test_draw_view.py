@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Dict, List
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import as_json
@@ -81,7 +81,6 @@ PIECES = st.sampled_from(['"', "//", "/*", "*/", "[", ":", ",", "\n", "3", "é\U
 TEXTS = [FLOOR, (ROOT / "scenarios" / "thesis" / "scenario_3.pur").read_text(encoding="utf-8")]
 
 
-@settings(max_examples=60)
 @given(st.sampled_from(TEXTS), st.lists(st.tuples(st.integers(0, 2000), st.integers(0, 40), PIECES), max_size=4))
 def test_any_text_can_be_shown(text: str, cuts: List[Any]) -> None:
     for at, length, piece in cuts:

@@ -6,7 +6,7 @@ import math
 from typing import List, Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.drawing.layout import poses
@@ -66,7 +66,6 @@ def test_parts_that_are_not_connected_stand_side_by_side() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6), st.integers(0, 30)), max_size=14), st.integers(0, 3))
-@settings(max_examples=60)
 def test_any_map_gets_finite_rounded_and_repeatable_places(ways: List[Tuple[int, int, int]], given_: int) -> None:
     lines = [f'poi "p{i}"' + (f" //[{i}, {i % 2}, 0, 0, 0, 0, 1]\n" if i < given_ else "\n") for i in range(7)]
     lines += [f"connect p{a} and p{b} distance {length}\n" for a, b, length in ways]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, List
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, Span
@@ -268,14 +268,12 @@ def texts(draw: st.DrawFn) -> str:
 @example('agent "b" location a can_do e,/* x */\n// y\n/* z */ /* z */ f // end\n/* below */')
 @example(f'poi "a" /* x\n*/ {POSE}\n')
 @example('rule "r": (// x\na or b) // [1]\nbefore c')
-@settings(max_examples=200)
 def test_layout_changes_blanks_only_and_once(source: str) -> None:
     formatted(source)
 
 
 @given(st.permutations(sorted(STATEMENTS)), st.lists(st.tuples(st.integers(0, 800), st.integers(0, 3), st.text(
     alphabet=' \n\t\f\r"/*,:()[]ab1é\u2028\x0b', max_size=4)), max_size=5))  # fmt: skip
-@settings(max_examples=200)
 def test_mutated_texts_are_laid_out_or_refused(order: List[str], cuts: List[Any]) -> None:
     source = "\n".join(STATEMENTS[key] for key in order)
     for place, length, inserted in cuts:

@@ -6,7 +6,7 @@ import re
 from typing import List
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language.edits import Edit, edited
@@ -193,7 +193,6 @@ def test_a_name_in_the_middle_of_a_word_replaces_all_of_it() -> None:
     assert "if work then hand within" in edited(plain, (Edit(item.start, item.end, item.insert),))
 
 
-@settings(deadline=None, max_examples=150)
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, data: st.DataObject) -> None:
     document = Document.of(SCENARIOS[name], name + ".pur")
@@ -220,7 +219,6 @@ def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, 
         assert str(token) in [item.label for item in same]
 
 
-@settings(deadline=None, max_examples=100)
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_whatever_is_offered_is_accepted(name: str, data: st.DataObject) -> None:
     document = Document.of(SCENARIOS[name], name + ".pur")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Tuple
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
@@ -56,7 +56,6 @@ def asked(text: str, offset: int) -> Document:
     return document
 
 
-@settings(deadline=None, max_examples=200)
 @given(texts(), st.data())
 def test_no_question_fails(text: str, data: st.DataObject) -> None:
     document = asked(text, data.draw(st.integers(0, len(text))))
@@ -66,7 +65,6 @@ def test_no_question_fails(text: str, data: st.DataObject) -> None:
         assert Document.of(edited(document.text, fix.edits), "x.pur").findings is not None
 
 
-@settings(deadline=None, max_examples=100)
 @given(texts())
 @example('poi "a" agent "b" location a\npoi "c" // c\n')
 @example('"a" poi "a" /*')

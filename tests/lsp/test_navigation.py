@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
@@ -107,7 +107,6 @@ def test_renaming_works_beside_a_broken_statement() -> None:
     assert "location door" in renamed
 
 
-@settings(deadline=None, max_examples=60)
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_there_and_back_gives_the_same_text(name: str, data: st.DataObject) -> None:
     document = Document.of(SCENARIOS[name], name + ".pur")

@@ -84,8 +84,9 @@ def test_colours_and_indentation(tmp_path: Path) -> None:
     text = "\n".join(SCENARIOS.values()).replace("…", "...") + more
     kind, found, indented = run(tmp_path, text)
     assert kind == "pursue"
-    ascii_only = {place for place in found if text.split("\n")[place[0] - 1].isascii()}
-    assert ascii_only == {place for place in expected(text) if text.split("\n")[place[0] - 1].isascii()}
+    lines = text.split("\n")
+    ascii_only = {place for place in found if lines[place[0] - 1].isascii()}
+    assert ascii_only == {place for place in expected(text) if lines[place[0] - 1].isascii()}
     assert indented == text
 
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import List, Tuple
 
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -24,6 +23,7 @@ from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteSt
 from pursue_gen.tga.network import Edge, Sync
 from pursue_gen.tga.words import event_word
 from tests.partition.games import AGENTS, QUICK, game, random_strategies, zones
+from tests.runtime.texts import read
 from tests.two_stages import LOADED, solved_in_stages
 
 TENTH = Fraction(1, 10)
@@ -96,7 +96,7 @@ def test_the_file_is_for_people() -> None:
 @given(random_strategies(), st.sampled_from(("distributed", "centralized", "general")))
 def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
     for sub in partition(strategy, game(), AGENTS, shape):
-        data = yaml.safe_load(render(sub, "game", "0.1.0", TENTH))
+        data = read(render(sub, "game", "0.1.0", TENTH))
         assert (data["format"], data["controller"], data["reaction"]) == (1, sub.controller, 0.1)
         assert data["commands_agents"] == list(sub.agents)
         assert len(data["strategy"]) == len(sub.blocks)
@@ -119,15 +119,15 @@ def test_everything_is_found_again(strategy: Strategy, shape: str) -> None:
 def test_files_hold_the_very_data_that_is_sent_when_plans_change(strategy: Strategy, reaction: Fraction) -> None:
     for sub in partition(strategy, game(), AGENTS):
         data = strategy_data(sub, reaction)
-        assert yaml.safe_load(render(sub, "game", "0.1.0", reaction)) == data == json.loads(json.dumps(data))
+        assert read(render(sub, "game", "0.1.0", reaction)) == data == json.loads(json.dumps(data))
     cover = cover_data(strategy)
-    assert yaml.safe_load(render_cover(strategy, "game", "0.1.0")) == cover == json.loads(json.dumps(cover))
+    assert read(render_cover(strategy, "game", "0.1.0")) == cover == json.loads(json.dumps(cover))
 
 
 @QUICK
 @given(random_strategies())
 def test_the_cover_has_every_zone_of_every_state(strategy: Strategy) -> None:
-    data = yaml.safe_load(render_cover(strategy, "game", "0.1.0"))
+    data = read(render_cover(strategy, "game", "0.1.0"))
     assert data["format"] == 1
     assert len(data["cover"]) == len(strategy.blocks)
     for entry, block in zip(data["cover"], strategy.blocks):
@@ -137,9 +137,9 @@ def test_the_cover_has_every_zone_of_every_state(strategy: Strategy) -> None:
 
 
 def test_nothing_to_do_is_an_empty_list() -> None:
-    assert yaml.safe_load(render(SubStrategy("controller_bot3", ("bot3",), ()), "s", "1", TENTH))["strategy"] == []
-    assert yaml.safe_load(render_cover(Strategy(()), "s", "1"))["cover"] == []
-    silent = yaml.safe_load(render_cover(Strategy((Block(STATE, (), ()),)), "s", "1"))
+    assert read(render(SubStrategy("controller_bot3", ("bot3",), ()), "s", "1", TENTH))["strategy"] == []
+    assert read(render_cover(Strategy(()), "s", "1"))["cover"] == []
+    silent = read(render_cover(Strategy((Block(STATE, (), ()),)), "s", "1"))
     assert silent["cover"][0]["zones"] == []
 
 
@@ -148,7 +148,7 @@ def test_names_that_yaml_would_misread(name: str) -> None:
     edge = replace(MOVE.edge, source=name)
     state = replace(STATE, locations=((name, name), *STATE.locations[1:]))
     sub = SubStrategy(name, (name,), ((state, (Command(((),), (Move(name, edge),)),)),))
-    data = yaml.safe_load(render(sub, "s", "1", TENTH))
+    data = read(render(sub, "s", "1", TENTH))
     assert data["controller"] == name
     assert data["commands_agents"] == [name]
     (entry,) = data["strategy"]
@@ -159,7 +159,7 @@ def test_names_that_yaml_would_misread(name: str) -> None:
 def test_values_that_no_location_tells_are_in_the_state() -> None:
     state = replace(STATE, values=(*STATE.values, ("Sopen", 1)))
     sub = SubStrategy("controller_bot1", ("bot1",), ((state, (Command(((),), (MOVE,)),)),))
-    (entry,) = yaml.safe_load(render(sub, "s", "1", TENTH))["strategy"]
+    (entry,) = read(render(sub, "s", "1", TENTH))["strategy"]
     assert entry["state"]["Sopen"] == 1
     assert not any(name.startswith("P") for name in entry["state"])
     assert entry["commands"][0]["when"] == ["always"]

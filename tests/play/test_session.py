@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import List, Sequence, Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from players import SCENARIOS, session
 
@@ -85,7 +85,6 @@ def test_wrong_input_is_explained_and_changes_nothing(line: str, why: str) -> No
     assert not reply.over
 
 
-@settings(max_examples=150)
 @given(st.lists(st.one_of(st.text(max_size=12), st.sampled_from(
     ["1", "2", "3", "1 @ 4", "2 at 9.5", "wait", "wait 2", "wait @ 12", "undo", "redo", "map", "why", "log", "cancel",
      "help", ""])), max_size=12))

@@ -20,7 +20,6 @@ REACH = ("thesis/scenario_1", "thesis/scenario_2", "thesis/scenario_3", "thesis/
 SAFE = ("work_cell/work_cell", "ecobot/ecobot")
 
 
-@settings(max_examples=60)
 @given(st.sampled_from(REACH), st.booleans(), st.integers(0, 999), whims(most=25))
 def test_a_won_game_is_won_whatever_a_person_does(
     name: str, ideal: bool, seed: int, wishes: List[Tuple[int, int]]
@@ -38,7 +37,6 @@ def test_a_won_game_is_won_whatever_a_person_does(
     assert table.now < 200
 
 
-@settings(max_examples=60)
 @given(st.sampled_from(SAFE), st.integers(0, 999), whims(most=80))
 def test_a_safe_game_stays_safe_whatever_a_person_does(name: str, seed: int, wishes: List[Tuple[int, int]]) -> None:
     played = world(name, seed)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Dict, List, Tuple
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.proof.checker import pruned, verify
@@ -98,7 +98,6 @@ def _shifted(draw: st.DrawFn, zone: Zone) -> Zone:
     return zone[:n] + (other,) + zone[n + 1 :]
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.data(), networks(), OBJECTIVES, st.sampled_from((Fraction(0), Fraction(1, 2))))
 def test_a_strategy_with_a_losing_play_is_never_passed(
     data: st.DataObject, network: Network, objective: Objective, reaction: Fraction
@@ -116,7 +115,6 @@ def test_a_strategy_with_a_losing_play_is_never_passed(
         assert not verify(network, objective, changed, reaction, prompt=False, ranks=verdict.ranks or {}).ok
 
 
-@settings(max_examples=100, deadline=None)
 @given(networks(), OBJECTIVES, st.sampled_from((Fraction(0), Fraction(1, 2))))
 def test_what_no_play_reaches_may_go(network: Network, objective: Objective, reaction: Fraction) -> None:
     strategy = solve(network, objective, reaction).strategy

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.proof import checker
@@ -36,7 +36,6 @@ def covered(network: Network, objective: Objective, strategy: Strategy, reaction
     return searches_of(loop).covered(LimitMonitor()) is not None
 
 
-@settings(max_examples=200)
 @given(st.data(), networks(), random_games.objectives(Kind.SAFETY), st.sampled_from(DELAYS), st.integers(0, 2))
 def test_no_strategy_with_a_losing_play_passes(
     data: st.DataObject, network: Network, objective: Objective, reaction: Fraction, changes: int
@@ -50,7 +49,6 @@ def test_no_strategy_with_a_losing_play_passes(
         assert verify(network, objective, strategy, reaction, prompt=False).ok
 
 
-@settings(max_examples=200)
 @given(st.data(), random_games.networks((Kind.SAFETY,)), st.sampled_from(DELAYS), st.booleans())
 def test_what_passes_passes_play_by_play(
     data: st.DataObject, game: Tuple[Network, Objective], reaction: Fraction, change: bool

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Iterator, Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import load
@@ -83,7 +83,6 @@ def test_zones_of_a_command_that_time_leads_from_one_to_the_other_become_one_onl
         assert len(simplified(NET, two, NOW, ranks).blocks[0].commands[0].zones) == count
 
 
-@settings(max_examples=120)
 @given(networks(), OBJECTIVES, st.sampled_from((NOW, HALF)), st.booleans())
 def test_in_fewer_zones_it_still_wins(net: Network, objective: Objective, reaction: Fraction, ranked: bool) -> None:
     verdict = solve(net, objective, reaction)
@@ -98,7 +97,6 @@ def test_in_fewer_zones_it_still_wins(net: Network, objective: Objective, reacti
     assert all(one <= other for one, other in zip(size(few), size(kept)))
 
 
-@settings(max_examples=60)
 @given(
     networks(),
     OBJECTIVES,
@@ -120,7 +118,6 @@ def test_no_zone_shrinks_and_no_point_gets_a_second_action(
                 assert set(advice(after, point)) == set(advice(before, point))
 
 
-@settings(max_examples=60)
 @given(networks(), OBJECTIVES)
 def test_ranks_follow_their_zones_when_others_go(net: Network, objective: Objective) -> None:
     verdict = solve(net, objective, NOW)

@@ -56,7 +56,7 @@ def test_what_passes_stage_by_stage_wins_as_a_whole(data: st.DataObject, game: G
         wins_as_a_whole_if_it_passes(game, strategy)
 
 
-@settings(RANDOM, max_examples=100)
+@RANDOM
 @given(data=st.data(), game=games(), seed=st.integers(0, 1000), damages=st.sampled_from((0, 0, 1)))
 def test_what_passes_comes_to_the_goal_however_late_commands_are(
     data: st.DataObject, game: Game, seed: int, damages: int

@@ -229,7 +229,7 @@ def test_what_takes_too_long_to_tell_has_no_worst_case() -> None:
 
 # Random small games.
 
-RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 KINDS = (Kind.REACH, Kind.REACH_WHILE_SAFE)
 
 

@@ -77,7 +77,6 @@ def touches(a: Tuple[Fraction, Fraction], b: Tuple[Fraction, Fraction], cell: Tu
     return low <= high
 
 
-@settings(deadline=None, max_examples=300)
 @given(INSIDE, INSIDE)
 def test_points_see_each_other_where_every_cell_that_the_line_touches_is_free(
     one: Tuple[Tuple[int, int], int, int], other: Tuple[Tuple[int, int], int, int]

@@ -6,7 +6,7 @@ import math
 from typing import Tuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language.scenario import Pose
@@ -91,7 +91,6 @@ POINTS = st.tuples(st.floats(0.5, 11.5), st.floats(0.5, 5.5)).filter(lambda poin
 ANGLES = st.floats(-math.pi, math.pi)
 
 
-@settings(deadline=None, max_examples=60)
 @given(POINTS, POINTS, ANGLES, ANGLES, st.floats(0.2, 1.0), st.floats(0.9, 1.0), st.floats(1.0, 2.0), st.floats(0, 2))
 def test_a_robot_that_is_a_little_slower_and_stops_to_turn_keeps_the_window(
     a: Point, b: Point, yaw: float, last: float, speed: float, slower: float, quicker: float, delay: float

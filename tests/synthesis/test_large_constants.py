@@ -50,7 +50,7 @@ def test_long_times_change_no_verdict_of_the_reference(game: Game, factor: int) 
 
 
 @needs_native
-@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(games(EVERY_KIND, (0, 1)), FACTORS)
 def test_the_native_engine_is_right_or_does_not_take_the_game(game: Game, factor: int) -> None:
     long = slower(game, factor)

@@ -38,7 +38,7 @@ from tests.synthesis.test_engines import ALL
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DELAYS = st.sampled_from((Fraction(0), Fraction(1)))
-QUICK = settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+QUICK = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 needs_native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built (no compiler)")
 

@@ -11,7 +11,7 @@ from typing import Any, Dict, List
 
 import pytest
 from fake_robot import KEY, FakeRobot, bundle, certificate, saying, serving
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.transport.client import ANSWER_LIMIT, Robot, Unreached, health, plain, send_order
@@ -182,7 +182,6 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=300)
 @given(name=st.sampled_from(sorted(GOOD)), value=JSON)
 def test_what_a_robot_says_of_itself_is_checked(name: str, value: Any) -> None:
     try:

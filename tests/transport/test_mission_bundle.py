@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Tuple
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 pytest.importorskip("cryptography", reason="cryptography is not installed")
@@ -140,7 +140,6 @@ def test_every_single_byte_counts() -> None:
         refused(bytes(changed))
 
 
-@settings(max_examples=300)
 @given(st.data())
 def test_no_mutation_is_accepted_and_none_raises_anything_else(data: st.DataObject) -> None:
     content = packed()
@@ -371,7 +370,6 @@ def test_every_single_letter_of_an_order_counts() -> None:
         order_refused(text[:place] + text[place + 1 :])
 
 
-@settings(max_examples=300)
 @given(st.text(max_size=200))
 @example("..")
 @example("A.B.C")

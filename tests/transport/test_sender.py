@@ -11,7 +11,7 @@ from typing import Callable, List, Optional, Sequence, Tuple
 
 import pytest
 from fake_robot import BUSY, CUT, GONE, KEY, LATE, LOST, PACKAGES, REFUSED, SLOW, STRANGER, FakeRobot, bundle, serving
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
@@ -366,7 +366,6 @@ def troubled(draw: st.DrawFn) -> List[FakeRobot]:
     return robots
 
 
-@settings(max_examples=150)
 @given(robots=troubled())
 def test_all_have_the_new_one_or_none_or_it_is_reported_that_they_differ(robots: List[FakeRobot]) -> None:
     before = [robot.standing for robot in robots]

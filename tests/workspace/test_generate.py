@@ -33,6 +33,7 @@ from pursue_runtime import bundle
 from pursue_runtime.poses import read_poses
 from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.words import MARKERS
+from tests.runtime.texts import read
 
 SHAPES = [
     ("thesis/scenario_1", "distributed", "dedicated"),
@@ -205,7 +206,7 @@ def test_python_passes_the_linter(generated: Dict[str, bytes], tmp_path: Path) -
 def test_data_and_launch_files_can_be_read(generated: Dict[str, bytes]) -> None:
     for path, text in generated.items():
         if path.endswith((".yaml", ".rviz")):
-            assert yaml.safe_load(text) is not None, path
+            assert read(text) is not None, path
         elif path.endswith((".xml", ".launch", ".test", ".svg")):
             ElementTree.fromstring(text)
         elif path.endswith(".json"):
@@ -214,14 +215,14 @@ def test_data_and_launch_files_can_be_read(generated: Dict[str, bytes]) -> None:
 
 def test_rviz_shows_the_places_and_none_of_its_tools_sends_a_robot_anywhere() -> None:
     generated = files("thesis/catch_the_thief")
-    rviz = yaml.safe_load(generated["src/catch_the_thief_bringup/rviz/mission.rviz"])["Visualization Manager"]
+    rviz = read(generated["src/catch_the_thief_bringup/rviz/mission.rviz"])["Visualization Manager"]
     tools = {tool["Class"]: tool.get("Topic") for tool in rviz["Tools"]}
     assert "rviz/MoveCamera" in tools and set(tools.values()) == {None, "/clicked_point"}
     assert not {"rviz/SetGoal", "rviz/SetInitialPose"} & set(tools)
     shown = [each["Marker Topic"] for each in rviz["Displays"] if each["Class"] == "rviz/MarkerArray"]
     assert shown == [f"/{MARKERS}"]
     view = rviz["Views"]["Current"]
-    for x, y, *_ in yaml.safe_load(generated["src/UI/config/poses.yaml"])["poses"].values():
+    for x, y, *_ in read(generated["src/UI/config/poses.yaml"])["poses"].values():
         assert abs(x - view["X"]) * view["Scale"] <= 261 and abs(y - view["Y"]) * view["Scale"] <= 151, "pixels"
 
 
@@ -271,8 +272,8 @@ def test_what_stands_beside_the_packages_tells_the_same_game() -> None:
 
 def sent(generated: Dict[str, bytes], package: str) -> Dict[str, Dict[str, List[float]]]:
     """robot → place → pose, as the package's controller reads them."""
-    content = yaml.safe_load(generated[f"src/{package}/config/poses.yaml"])
-    strategy = yaml.safe_load(generated[f"src/{package}/config/strategy.yaml"])
+    content = read(generated[f"src/{package}/config/poses.yaml"])
+    strategy = read(generated[f"src/{package}/config/strategy.yaml"])
     return read_poses(content).of(agent for agent in strategy["commands_agents"] if agent != "reachObj")
 
 
@@ -284,7 +285,7 @@ def test_two_robots_never_have_the_same_pose_at_one_place(name: str) -> None:
         if package.startswith("controller_"):
             apart.update(sent(distributed, package))
     first, second = apart.values()
-    places = yaml.safe_load(distributed["src/UI/config/poses.yaml"])["poses"]
+    places = read(distributed["src/UI/config/poses.yaml"])["poses"]
     assert first == places
     for place in places:
         assert math.dist(first[place][:2], second[place][:2]) >= 0.798
@@ -300,15 +301,15 @@ def test_the_format_of_poses_says_whether_robots_differ() -> None:
         ("centralized", "UI", 1),
     ):
         content = files("thesis/catch_the_thief", shape)[f"src/{package}/config/poses.yaml"]
-        data = yaml.safe_load(content)
+        data = read(content)
         assert (data["format"], "robots" in data) == (number, number == 2)
         assert (b"0.8 m apart (--spot-distance)" in content) == (package != "UI")
 
 
 def test_the_map_of_the_ui_has_the_spots_that_differ_from_their_places() -> None:
     made = files("thesis/catch_the_thief", "centralized")
-    spots = yaml.safe_load(made["src/UI/config/ui.yaml"])["spots"]
-    own = yaml.safe_load(made["src/controller/config/poses.yaml"])["robots"]
+    spots = read(made["src/UI/config/ui.yaml"])["spots"]
+    own = read(made["src/controller/config/poses.yaml"])["robots"]
     assert spots == {robot: {place: pose[:2] for place, pose in table.items()} for robot, table in own.items()} != {}
 
 
@@ -322,9 +323,9 @@ def test_the_spot_distance_changes_poses_and_nothing_of_the_game() -> None:
 
 
 def test_a_place_without_a_pose_demands_no_orientation_but_a_robot_with_a_pose_of_its_own_does() -> None:
-    computed = yaml.safe_load(files("thesis/scenario_1")["src/controller_bot1/config/poses.yaml"])["poses"]
+    computed = read(files("thesis/scenario_1")["src/controller_bot1/config/poses.yaml"])["poses"]
     assert all(pose[3:] == [0.0] * 4 for pose in computed.values())
-    measured = yaml.safe_load(files("airport/luggage")["src/controller_cart/config/poses.yaml"])["poses"]
+    measured = read(files("airport/luggage")["src/controller_cart/config/poses.yaml"])["poses"]
     assert all(any(pose[3:]) for pose in measured.values())
     text = """
 poi "a" //[0, 0, 0, 0, 0, 0, 1]
@@ -337,17 +338,17 @@ reach_objective: do e after 0
 """
     placed = placing(parse(text, "own.pur"), 0.8)
     of_bot1, of_bot2 = (
-        yaml.safe_load(poses_text(parse(text, "own.pur"), placed, [robot]))["poses"]["b"] for robot in ("bot1", "bot2")
+        read(poses_text(parse(text, "own.pur"), placed, [robot]))["poses"]["b"] for robot in ("bot1", "bot2")
     )
     assert (of_bot1[3:], of_bot2[3:]) == ([0.0, 0.0, 1.0, 0.0], [0.0] * 4)
 
 
 def test_poses_are_the_authors_or_are_said_to_be_computed() -> None:
-    given = yaml.safe_load(files("thesis/catch_the_thief")["src/controller_polBot1/config/poses.yaml"])
+    given = read(files("thesis/catch_the_thief")["src/controller_polBot1/config/poses.yaml"])
     assert given["computed"] is False
     assert given["poses"]["a"] == pytest.approx([3.0, 1.54, 0.0, 0.0, 0.0, 0.67, 0.73], abs=0.01)
     computed = files("thesis/scenario_1")["src/UI/config/poses.yaml"]
-    assert yaml.safe_load(computed)["computed"] is True and b"Computed from the distances" in computed
+    assert read(computed)["computed"] is True and b"Computed from the distances" in computed
     assert "computed from the distances" in files("thesis/scenario_1")["README.md"].decode()
 
 
@@ -384,7 +385,7 @@ def test_names_that_yaml_misreads_are_found_in_every_file(loader: str) -> None:
 
 def test_a_mission_of_several_objectives_names_them_all() -> None:
     found = files("airport/last_call")
-    model = yaml.safe_load(found["src/observer/config/model.yaml"])
+    model = read(found["src/observer/config/model.yaml"])
     assert (model["format"], model["objective"]["goal"]) == (2, ["reachObj", "win"])
     assert model["objective"]["bad"] == ["reachObj", "late"]
     assert model["objective"]["says"] == {"reachObj": "do stamp and fetch within 26"}
@@ -410,7 +411,7 @@ def test_expectations_of_the_launch_tests() -> None:
 
 def test_a_trace_is_something_that_can_happen() -> None:
     generated = files("work_cell/work_cell")
-    (step,) = yaml.safe_load(generated["src/work_cell_bringup/test/trace.yaml"])
+    (step,) = read(generated["src/work_cell_bringup/test/trace.yaml"])
     assert step["do"].split(":")[-1] == "newBox"
 
 
@@ -450,7 +451,7 @@ def test_people_get_instructions_and_no_controller() -> None:
     generated = generate_text(text, "ward")
     nodes = {"controller_bot1", "controllerObj", "observer", "UI"}
     assert packages(generated) == {*nodes, "ward_bringup", *SHARED, *RECEIVING}
-    (instructions,) = [yaml.safe_load(t) for p, t in generated.items() if p.endswith("/config/people.yaml")]
+    (instructions,) = [read(t) for p, t in generated.items() if p.endswith("/config/people.yaml")]
     assert instructions["commands_agents"] == ["bot2"]
 
 
@@ -472,36 +473,36 @@ def test_each_command_of_the_strategy_reaches_a_package() -> None:
     scenario, network, _, strategy = world("thesis/catch_the_thief")
     generated = files("thesis/catch_the_thief")
     for sub in partition(strategy, network, scenario.agents):
-        data = yaml.safe_load(generated[f"src/{sub.controller}/config/strategy.yaml"])
+        data = read(generated[f"src/{sub.controller}/config/strategy.yaml"])
         assert sum(len(entry["commands"]) for entry in data["strategy"]) == sub.commands
 
 
 def test_the_simulator_tells_the_ends_that_no_controller_decides() -> None:
-    settings = yaml.safe_load(files("thesis/scenario_1")["src/UI/config/ui.yaml"])
+    settings = read(files("thesis/scenario_1")["src/UI/config/ui.yaml"])
     assert settings["reports"] == ["bot1", "bot2"]
     assert settings["nodes"] == ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator"]
-    assert yaml.safe_load(files("thesis/scenario_1", "general")["src/UI/config/ui.yaml"])["reports"] == []
+    assert read(files("thesis/scenario_1", "general")["src/UI/config/ui.yaml"])["reports"] == []
 
 
 def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None:
-    settings = yaml.safe_load(files("thesis/catch_the_thief")["src/UI/config/ui.yaml"])
+    settings = read(files("thesis/catch_the_thief")["src/UI/config/ui.yaml"])
     assert settings["objectives"] == [{"says": "catch happens.", "of": ["reachObj"]}]
     assert "guarantee" not in settings, "nobody has found it out"
     known = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(43, 2)))
-    assert yaml.safe_load(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
+    assert read(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
     third = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(64, 3)))
-    assert read_promise(yaml.safe_load(third["src/UI/config/ui.yaml"])).most == 21.334, "a decimal, rounded up"
-    several = yaml.safe_load(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
+    assert read_promise(read(third["src/UI/config/ui.yaml"])).most == 21.334, "a decimal, rounded up"
+    several = read(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
     assert [each["of"] for each in several] == [["reachObj"]] and "within 26 units" in several[0]["says"]
 
 
 def test_the_page_gets_the_strategies_of_all_controllers_unless_they_are_large(monkeypatch: pytest.MonkeyPatch) -> None:
     path = "src/UI/config/strategies.yaml"
     found = files("thesis/catch_the_thief")
-    written = yaml.safe_load(found[path])["strategies"]
+    written = read(found[path])["strategies"]
     assert list(written) == ["controller_polBot1", "controller_polBot2", "controllerObj"]
     for controller, data in written.items():
-        assert data == yaml.safe_load(found[f"src/{controller}/config/strategy.yaml"])
+        assert data == read(found[f"src/{controller}/config/strategy.yaml"])
     assert found[path].count(b"\n") < 10, "one line each"
     monkeypatch.setattr(ui_file, "LARGEST", 10)
     assert path not in files("thesis/catch_the_thief")
