@@ -93,9 +93,9 @@ def test_simulated_nights_end_well(solved: Tuple[Path, int, str]) -> None:
     ward = solved[0]
     status, text = said(ward, "sim", "night_shift.pur", "--runs", "20", "--timeline", "x.svg")
     assert status == 2 and "--runs 1" in text
-    status, text = said(ward, "sim", "night_shift.pur", "--runs", "20", "--plan", "plan.txt")
+    status, text = said(ward, "sim", "night_shift.pur", "--runs", "10", "--plan", "plan.txt")
     found = next(line for line in text.splitlines() if line.startswith("goal reached"))
-    assert status == 0 and found.split()[:4] == ["goal", "reached", "20", "100.0"]
+    assert status == 0 and found.split()[:4] == ["goal", "reached", "10", "100.0"]
     (runs,) = re.findall(r"sim night_shift.pur --runs (\d+)\n", PAGE)
     assert blocks("text")[3].split() == ["goal", "reached", f"{int(runs):,}", "100.0"]
 

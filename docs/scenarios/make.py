@@ -16,6 +16,7 @@ scenario's statement on the same thing, or is added where there is none; behind 
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 import sys
@@ -78,6 +79,13 @@ class Facts:
     won: Optional[Solution]
     guarantee: Optional[Guarantee]
 
+    @functools.cached_property
+    def case(self) -> Case:
+        """What is simulated: the workspace as `pursue-gen ws` writes it, against all kinds of opponents."""
+        assert self.won is not None, f"{self.name} is lost"
+        goal = self.won.objective.kind is not Kind.SAFETY
+        return case_of(self.settled, self.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
+
 
 def scenario_files() -> Dict[str, Path]:
     """All scenarios of the project but patterns, by the names of their pages, in the order of their folders."""
@@ -100,13 +108,6 @@ def _verdict(scenario: Scenario) -> Verdict:
     """Whether the default game is won, with nothing optional; that takes less time than a proof."""
     rules, scenario = Rules(), scenario.giving_up(scenario.optional)
     return solve(played(translate(scenario), rules), scenario_objective(scenario), rules.reaction)
-
-
-def case(found: Facts) -> Case:
-    """What is simulated: the workspace as `pursue-gen ws` writes it, against all kinds of opponents."""
-    assert found.won is not None, f"{found.name} is lost"
-    goal = found.won.objective.kind is not Kind.SAFETY
-    return case_of(found.settled, found.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
 
 
 # Pages ----------------------------------------------------------------------------------------------------------------
@@ -156,7 +157,7 @@ def _map_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
 
 
 def _mission_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
-    recording = simulated(case(found), number)
+    recording = simulated(found.case, number)
     pictures[f"{found.name}_mission.svg"] = timeline.draw(recording)
     how = f"`pursue-gen sim scenarios/{_name(found)}.pur --runs 1 --seed {number} --timeline mission.html`"
     if found.guarantee is None:

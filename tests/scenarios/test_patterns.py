@@ -101,7 +101,7 @@ def test_a_formula_is_about_what_there_is(name: str) -> None:
 @native
 @pytest.mark.parametrize("name", FILES)
 def test_missions_of_the_strategy_keep_to_the_formula(name: str) -> None:
-    case = scenarios.case(facts(name))
+    case = facts(name).case
     for seed, opponent in enumerate(("random", "random", "worst", "still"), 1):
         recording = simulated(replace(case, settings=replace(case.settings, opponent=opponent)), seed)
         happened = [Happening(s.at, s.event, s.agent, s.locations, s.values) for s in recording.steps]

@@ -129,7 +129,7 @@ def test_of_a_large_game_it_is_reported_how_far_it_got(engine: str) -> None:
 @engines
 def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
     scenario = parse(many_walkers(), "crowd.pur")
-    most = memory_in_use() + 24
+    most = memory_in_use() + 12
     with pytest.raises(PursueError) as failure:
         solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(1200, most))
     assert f"the limit of {most} MiB of memory" in told(failure.value)
