@@ -36,9 +36,9 @@ LONGEST = (
 )
 """Files that take more than some seconds, the longest first; all others are short, in any order."""
 
-ROS_WORKERS = ("gw0", "gw1", "gw2", "gw3", "gw4")
-"""Workers that prefer tests on ROS: a mission takes a third of a processor, so five of them and one worker for all else
-keep two processors busy."""
+ROS_WORKERS = ("gw0", "gw1", "gw2", "gw3")
+"""Workers that prefer tests on ROS: a mission takes less than half a processor, so four of them and one worker for all
+else keep two processors busy."""
 
 
 def rank(file: str) -> int:

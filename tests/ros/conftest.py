@@ -8,9 +8,10 @@ from typing import Callable, Iterator
 
 import pytest
 from preloaded import preloaded
-from ros_world import NEEDED, Ros, generated, lay_over, make, make_whole
+from ros_world import NEEDED, Ros, generated, lay_over
 
 Build = Callable[..., Path]
+How = Callable[[Ros, Path], Path]
 
 
 @pytest.fixture(scope="session")
@@ -32,22 +33,19 @@ def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ros]:
         yield found
 
 
-BUILDS = {("thesis/scenario_1", "distributed"): make_whole, ("thesis/scenario_1", "centralized"): make}
-
-
 @pytest.fixture(scope="session")
 def built(ros: Ros) -> Build:
-    """`built(name, controllers)`: the workspace of scenarios/<name>.pur, generated and built; each once in a session.
-    Scenario 1 is built whole, or over the packages that all have in common; nodes of the others run from their sources.
+    """`built(name, controllers)`: the workspace of scenarios/<name>.pur, generated, and run from its sources over the
+    packages that all have in common, so that its nodes are forked; each once in a session.
 
-    Other tests use it at the same time: who changes anything in it makes one of their own.
+    `built(name, controllers, make)` builds it with that function of ros_world. Other tests use a workspace at the same
+    time: who changes anything in it makes one of their own.
     """
 
-    def build(name: str, controllers: str = "distributed") -> Path:
+    def build(name: str, controllers: str = "distributed", how: How = lay_over) -> Path:
         def workspace(folder: Path) -> None:
-            builds = BUILDS.get((name, controllers), lay_over)
-            builds(ros, generated(name, folder, controllers))
+            how(ros, generated(name, folder, controllers))
 
-        return ros.once(f"{Path(name).name}_{controllers}", workspace)
+        return ros.once(f"{Path(name).name}_{controllers}_{how.__name__}", workspace)
 
     return build

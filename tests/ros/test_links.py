@@ -17,7 +17,7 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 from preloaded import process_of
-from ros_world import Ros, end, free_port
+from ros_world import Ros, end, free_port, make_whole
 
 from tests.namespaces import Lab, lab, why_not
 from tests.waiting import PATIENCE
@@ -141,7 +141,7 @@ def once(made: Nodes) -> bool:
 
 def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp_path: Path) -> None:
     """rospy takes it that the publisher is gone, and never asks again."""
-    workspace = built("thesis/scenario_1")
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
     with nodes(ros, workspace, tmp_path) as made:
         talk(made, workspace)
         made.kill("talker", signal.SIGUSR1)
@@ -149,7 +149,7 @@ def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp
 
 
 def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, built: Build, tmp_path: Path) -> None:
-    workspace = built("thesis/scenario_1")
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
     with nodes(ros, workspace, tmp_path) as made:
         talk(made, workspace)
         made.kill("talker", signal.SIGSTOP)
@@ -163,7 +163,7 @@ def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, bu
 @needs_namespaces
 @pytest.mark.parametrize("seconds", [8, LONG])
 def test_a_cut_link_comes_back_by_itself(ros: Ros, built: Build, tmp_path: Path, seconds: int) -> None:
-    workspace = built("thesis/scenario_1")
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
     with lab("master", "talker", "listener") as rooms, nodes(ros, workspace, tmp_path, rooms) as made:
         talk(made, workspace)
         rooms.cut("talker")
@@ -194,7 +194,8 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
     ros: Ros, built: Build, tmp_path: Path, seconds: int
 ) -> None:
     rooms_of = ("master", *sorted(set(MACHINES.values())))
-    with lab(*rooms_of) as rooms, nodes(ros, built("thesis/scenario_1"), tmp_path, rooms) as made:
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    with lab(*rooms_of) as rooms, nodes(ros, workspace, tmp_path, rooms) as made:
         silence = 5 if seconds > 5 else 30  # after a short cut it takes a while, too, until somebody is heard
         play(made, 0.5, f"_silence:={silence}")
         until(lambda: "bot1_c2b by bot1" in made.log("observer"), made.logs)
@@ -220,7 +221,7 @@ OTHERS = {"recorder": "UI/recorder", "sim_clock": "UI/sim_clock", "reader": "pur
 def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
     ros: Ros, built: Build, tmp_path: Path, way: str, reason: str
 ) -> None:
-    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
         play(made, 3.0)
         for name, program in OTHERS.items():
             made.start(name, f"source devel/setup.bash; export ROS_HOME={tmp_path}/home; exec devel/lib/{program}")
@@ -247,7 +248,7 @@ def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
 
 
 def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build, tmp_path: Path) -> None:
-    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
         for node in ("observer", "UI"):
             made.start(node, f"source devel/setup.bash; exec rosrun {node} {node} {'--wait 600' * (node == 'UI')}")
         until(lambda: {"observer", "UI"} <= registered(made), made.logs)
@@ -257,7 +258,7 @@ def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build,
 
 
 def test_where_roslaunch_loses_its_own_master_ui_and_observer_say_so(ros: Ros, built: Build, tmp_path: Path) -> None:
-    log, workspace = tmp_path / "launch", built("thesis/scenario_1")
+    log, workspace = tmp_path / "launch", built("thesis/scenario_1", "distributed", make_whole)
     line = f"roslaunch --skip-log-check scenario_1_bringup mission.launch time_unit:=3 wait:={PATIENCE:g}"
     command = f"source devel/setup.bash; exec {line}"
     launch, there = ros.start_with_master(command, workspace, log, ROS_HOME=str(tmp_path))
@@ -288,7 +289,7 @@ def is_served(port: int) -> bool:
 
 
 def test_simulated_time_goes_on_where_a_killed_clock_was(ros: Ros, built: Build, tmp_path: Path) -> None:
-    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
         lives = [a_clocks_life(made, name) for name in ("first", "second")]
     times = [moment for life in lives for moment in life]
     assert times == sorted(times)

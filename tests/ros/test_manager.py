@@ -16,7 +16,7 @@ from typing import Any, Callable, Dict, Iterator, Tuple
 
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-from ros_world import Ros, end, free_port
+from ros_world import Ros, end, free_port, make_whole
 
 from pursue_gen.workspace.generate import mission_of
 from pursue_runtime.bundle import (
@@ -112,7 +112,7 @@ def test_missions_come_over_http_whoever_is_killed(ros: Ros, built: Build, tmp_p
     data["UI/ui.yaml"] += b"# not the workspace's own\n"
     manifest = make_manifest("scenario_1", "0", ("controller_bot1", "controller_bot2"), data)
     digest, bundle = manifest.digest, pack(manifest, data, DESK)
-    workspace = built("thesis/scenario_1")
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
     with machine(ros, workspace, tmp_path) as there:
         first = there.until(200)
         assert (first["robot"], first["current"], first["reader"]) == ("bot1", OWN, True)

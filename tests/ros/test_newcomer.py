@@ -53,8 +53,14 @@ def run_mission(*words: object, **environment: str) -> "subprocess.CompletedProc
     )
 
 
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the workspace is written: who comes second has less to build."""
+    return tmp_path_factory.mktemp("newcomer") / "ws"
+
+
 @needs_setup
-def test_a_mission_with_another_python_first_on_path(ros: Ros, tmp_path: Path) -> None:
+def test_a_mission_with_another_python_first_on_path(ros: Ros, workspace: Path, tmp_path: Path) -> None:
     foreign = tmp_path / "foreign"
     foreign.mkdir()
     for name in ("python", "python3", "cmake"):
@@ -64,7 +70,7 @@ def test_a_mission_with_another_python_first_on_path(ros: Ros, tmp_path: Path) -
     told = run_mission(
         SCENARIO,
         "-o",
-        tmp_path / "ws",
+        workspace,
         "use_sim_time:=true",
         PATH=f"{foreign}:{os.environ['PATH']}",
         PYTHONPATH=str(foreign),
@@ -77,7 +83,7 @@ def test_a_mission_with_another_python_first_on_path(ros: Ros, tmp_path: Path) -
 
 
 @needs_setup
-def test_a_mission_that_fails_fails_the_command(ros: Ros, tmp_path: Path) -> None:
-    told = run_mission(SCENARIO, "-o", tmp_path / "ws", "mode:=trace", f"trace:={tmp_path}/none.yaml")
+def test_a_mission_that_fails_fails_the_command(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+    told = run_mission(SCENARIO, "-o", workspace, "mode:=trace", f"trace:={tmp_path}/none.yaml")
     assert told.returncode == 3, told.stdout
     assert "did not reach its goal" in told.stdout and "not started: cannot read the trace" in told.stdout

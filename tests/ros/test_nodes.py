@@ -52,13 +52,19 @@ def installed(own: Path) -> Iterator[Path]:
         yield place
 
 
+@pytest.fixture(scope="module")
+def whole(built: Build) -> Path:
+    """A workspace that was built as a user does."""
+    return built("thesis/scenario_1", "distributed", make_whole)
+
+
 @pytest.fixture(params=["devel", "install"])
-def sourced(request: pytest.FixtureRequest, built: Build) -> Tuple[Path, str]:
+def sourced(request: pytest.FixtureRequest, whole: Path) -> Tuple[Path, str]:
     """A workspace, and what to source in it."""
     if request.param == "install":
         place: Path = request.getfixturevalue("installed")
         return place, "source install/setup.bash; "
-    return built("thesis/scenario_1"), "source devel/setup.bash; "
+    return whole, "source devel/setup.bash; "
 
 
 def test_nodes_started_by_hand_reach_the_goal_and_end_with_status_0(
@@ -98,13 +104,13 @@ def ended(
 
 
 @pytest.fixture(scope="module")
-def launched(ros: Ros, built: Build, own: Path, tmp_path_factory: pytest.TempPathFactory) -> Launched:
+def launched(ros: Ros, whole: Path, own: Path, tmp_path_factory: pytest.TempPathFactory) -> Launched:
     """`launched(space)`: what `rosrun … run_mission` with the workspace's devel or install space does; each once."""
 
     @functools.lru_cache(maxsize=None)
     def play(space: str) -> "subprocess.CompletedProcess[str]":
         with contextlib.ExitStack() as cleanup:
-            workspace = built("thesis/scenario_1") if space == "devel" else cleanup.enter_context(only_installed(own))
+            workspace = whole if space == "devel" else cleanup.enter_context(only_installed(own))
             there = cleanup.enter_context(ros.master())
             home = str(tmp_path_factory.mktemp("home"))
             arguments = f"use_sim_time:=true speed:=10 wait:={PATIENCE:g}"
@@ -129,8 +135,8 @@ def test_run_mission_exits_with_0_where_the_goal_is_reached(launched: Launched, 
     assert "ROS master" not in done.stdout, "nothing is wrong with it"
 
 
-def test_each_package_builds_alone(ros: Ros, built: Build, tmp_path: Path) -> None:
-    packages: List[Path] = [p.parent for p in (built("thesis/scenario_1") / "src").glob("*/package.xml")]
+def test_each_package_builds_alone(ros: Ros, whole: Path, tmp_path: Path) -> None:
+    packages: List[Path] = [path.parent for path in (whole / "src").glob("*/package.xml")]
     assert len(packages) == 10
     for package in packages:
         shutil.copytree(package, tmp_path / package.name / "src" / package.name)

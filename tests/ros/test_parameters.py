@@ -38,7 +38,7 @@ def test_a_parameter_that_cannot_be_is_refused_with_status_3(
         for number, (command, message) in enumerate(WRONG.items()):
             package, program, parameter = command.split()
             # Parameters stay with their master: each node has a name of its own.
-            line = f"exec devel/lib/{package}/{program} {parameter} __name:=node{number}"
+            line = f"exec src/{package}/scripts/{program} {parameter} __name:=node{number}"
             log = tmp_path / str(number)
             node = ros.start(f"source devel/setup.bash; {line}", workspace, log, **there, **home)
             cleanup.callback(end, node)

@@ -16,7 +16,7 @@ from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-from ros_world import Ros, end
+from ros_world import Ros, end, make_whole
 
 from pursue_gen.workspace.generate import mission_of
 from pursue_runtime.bundle import (
@@ -131,7 +131,7 @@ def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, bu
     data["UI/ui.yaml"] += b"# not the workspace's own\n"
     manifest = make_manifest("scenario_1", "0", ("controller_bot1", "controller_bot2"), data)
     digest, bundle = manifest.digest, pack(manifest, data, DESK)
-    workspace = built("thesis/scenario_1")
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
     with running_reader(ros, workspace, tmp_path) as there:
         first = there.until(lambda status: True)
         assert first["current"] == "" and first["answer"] is None and first["robot"] == "bot1"

@@ -47,7 +47,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def where(ros: Ros, built: Callable[..., Path]) -> Iterator[Dict[str, str]]:
     """The environment of a roscore of our own, with the messages of a workspace."""
     names = ("PYTHONPATH", "PATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")
-    sourced = ros.sourced(built("thesis/scenario_1") / "devel" / "setup.bash")
+    sourced = ros.for_missions(built("thesis/scenario_1"))
     there = {name: sourced[name] for name in names}
     with ros.master() as master:
         home = str(ros.home)
