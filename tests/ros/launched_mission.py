@@ -12,7 +12,7 @@ import subprocess
 import time
 import xmlrpc.client
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ros_world import Ros, end
 
@@ -76,6 +76,15 @@ class Hasty(xmlrpc.client.Transport):
         connection = super().make_connection(host)
         connection.timeout = 5
         return connection
+
+
+def _ends(node: str, other: str, end: int) -> Set[str]:
+    """The ports of a node's connections with another one on pursue/events: its own (0) or the other's (1)."""
+    with xmlrpc.client.ServerProxy(node, transport=Hasty()) as slave:
+        links: Any = slave.getBusInfo("/test")
+    texts = [str(link[6]) for link in links[2] if (link[1], link[4]) == (other, f"/{EVENTS}")]
+    found = (re.search(r"on port (\d+) to \[.*:(\d+) on socket", text) for text in texts)
+    return {ports.group(1 + end) for ports in found if ports}
 
 
 class Node(NamedTuple):
@@ -209,15 +218,15 @@ class LaunchedMission:
         self.order({"publish": texts})
 
     def is_connected(self) -> bool:
-        """True where the observer is connected to the logger, or there is none: no event waits for a later one."""
+        """True where the logger sends events to the observer, or there is none of the two: no event waits for a later
+        one. The observer knows of a connection before the logger does, which in turn keeps those of killed nodes."""
         with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 nodes: Any = [master.lookupNode("/test", f"/{node}") for node in ("observer", "topic_logger")]
             if all(code == 1 for code, _, _ in nodes):
                 observer, logger = (uri for _, _, uri in nodes)
-                with xmlrpc.client.ServerProxy(observer) as slave:
-                    links: Any = slave.getBusInfo("/test")
-                return any((link[1], link[4]) == (logger, f"/{EVENTS}") for link in links[2])
+                here, there = _ends(observer, logger, 0), _ends(logger, "/observer", 1)
+                return bool(here & there)
         return True
 
     def order(self, order: Mapping[str, Any]) -> None:
