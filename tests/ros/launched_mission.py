@@ -218,8 +218,11 @@ class LaunchedMission:
         self.order({"publish": texts})
 
     def is_connected(self) -> bool:
-        """True where the logger sends events to the observer, or there is none of the two: no event waits for a later
-        one. The observer knows of a connection before the logger does, which in turn keeps those of killed nodes."""
+        """True where the logger sends events to the observer, or one of the two is missing: no event waits for it.
+
+        Both ends are compared: the observer lists a connection before the logger does, and the logger still lists those
+        of nodes that were killed.
+        """
         with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 nodes: Any = [master.lookupNode("/test", f"/{node}") for node in ("observer", "topic_logger")]

@@ -225,7 +225,7 @@ class Server:
 
 
 class End:
-    """The end of a program: it does not take apart all the modules, of which it would get copies to change them."""
+    """Ends a program without taking its modules apart: that would copy nearly all the memory that processes share."""
 
     def __init__(self) -> None:
         self.status: Optional[int] = None
