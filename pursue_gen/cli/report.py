@@ -22,12 +22,18 @@ if TYPE_CHECKING:
     from pursue_gen.solving.options import SolveOptions
     from pursue_gen.solving.request import SolveRequest
 
-_NAMES = ("default", "ideal")
+_NAMES = {"reported": "default", "controllable": "ideal"}
+"""What a game is called, by who controls the ends in it."""
+_ENDS = typer.Option(
+    None,
+    help="The tables of one game for all controllers: the default game (reported) or the ideal one (controllable: the "
+    "thesis's comparison). Without it General is of the ideal game, the others of the default one.",
+)
 _MARK = 'name="generator" content="pursue-gen'
 
 
 @guarded
-@with_request("optimize", "within", "limit", "memory")
+@with_request("ends", "optimize", "within", "limit", "memory", ends=_ENDS)
 def report(
     scenario: Path = SCENARIO,
     file: Optional[Path] = typer.Argument(
@@ -67,12 +73,15 @@ def report(
     html = html or output is not None
     seen = html or pictures is not None
     _check_options(seen, html, file, output, floor, as_json_)
-    solving = replace(request.options, within=request.deadline)
+    if request.ends is not None and seen:
+        raise usage_error("--ends is for the tables alone", "leave it out: the page has the tables of both")
     if not seen:
+        request = replace(request, reaction="0" if request.ends == "controllable" else None)
         read = scenario_from(scenario, request, as_json_)
         with naming_costs(read, request, as_json_):
-            _print_tables(read, reach_obj, solving, as_json_)
+            _print_tables(read, reach_obj, request, as_json_)
         return
+    solving = replace(request.options, within=request.deadline)
     target = _target(scenario, file or output)
     if html and not force:
         _check_target(target)
@@ -118,26 +127,27 @@ def _check_target(target: Path) -> None:
             raise usage_error(f"{target} is there and is no report", "name another file, or replace it with --force")
 
 
-def _print_tables(scenario: Scenario, reach_obj: Optional[str], solving: SolveOptions, as_json_: bool) -> None:
+def _print_tables(scenario: Scenario, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.proof.margin import as_json as margin_json
     from pursue_gen.report import commands
-    from pursue_gen.report.make import solved_both
+    from pursue_gen.report.make import solved_games
     from pursue_gen.solving.verdict import margin_text, margins
 
     with progress_line(as_json_) as progress:
-        scenario, both = solved_both(scenario, replace(solving, progress=progress))
-        found = [margins(won, False, solving.limits)[0] for won in both]
-    game, ideal = (commands.Game(won.network, won.strategy, won.reaction) for won in both)
-    table = commands.commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
+        scenario, played = solved_games(scenario, request, progress)
+        found = [margins(won, False, request.options.limits)[0] for won in played]
+    names = [_NAMES[won.rules.ends] for won in played]
+    game, *ideal = [commands.game_of_solution(won) for won in played]
+    table = commands.commands_table(scenario.name, scenario.agents, game, ideal[0] if ideal else None, reach_obj)
     if as_json_:
-        of_games = {name: margin_json(margin) for name, margin in zip(_NAMES, found)}
-        times = {name: won.guarantee.as_json() for name, won in zip(_NAMES, both) if won.guarantee}
+        of_games = {name: margin_json(margin) for name, margin in zip(names, found)}
+        times = {name: won.guarantee.as_json() for name, won in zip(names, played) if won.guarantee}
         extra = {"margins": of_games, **({"times": times} if times else {})}
         print(json.dumps({**commands.as_json(table), **extra}, indent=1))
         return
     print(commands.render_table(table))
-    for name, won, margin in zip(_NAMES, both, found):
+    for name, won, margin in zip(names, played, found):
         print(f"{name} game: {margin_text(won, margin)}")
         if won.guarantee:
             print(f"{name} game: {won.guarantee.in_words()}")

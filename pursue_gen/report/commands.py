@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen import __version__
 from pursue_gen.language.scenario import Agent
@@ -15,22 +15,40 @@ from pursue_gen.partition import CENTRALIZED, DISTRIBUTED, GENERAL, SubStrategy,
 from pursue_gen.partition.split import CONTROLLER, DEDICATED, UI
 from pursue_gen.partition.strategy_file import render
 from pursue_gen.report.thesis_figures import CENTRALIZED_NAME, GENERAL_NAME, Figure, thesis_table
+from pursue_gen.solving.rules import CONTROLLABLE, REPORTED
+from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network
 
-_NOTE = (
-    "General decides the ends of movements and actions itself; the others wait for reports of them. These are two",
-    "games with a strategy each, so a share of General may be above 100 %.",
-)
+_NOTES: Mapping[Optional[str], Tuple[str, ...]] = {
+    None: (
+        "General decides the ends of movements and actions itself; the others wait for reports of them. These are two",
+        "games with a strategy each, so a share of General may be above 100 %. In one game: --ends controllable.",
+    ),
+    CONTROLLABLE: (
+        "One strategy of the ideal game: General decides the ends of movements and actions; the others have the other",
+        "commands, as in the thesis. They are for this comparison: robots play the default game.",
+    ),
+    REPORTED: ("One strategy of the default game: robots report the ends, so General has what Centralized has.",),
+}
+"""What is said of a table, by its `ends`."""
 
 
 @dataclass(frozen=True)
 class Game:
-    """A strategy with the network that it is for, and the reaction delay (time units) that it allows."""
+    """A strategy with the network that it is for, the reaction delay (time units) that it allows, and who controls the
+    ends (as in `Rules`).
+    """
 
     network: Network
     strategy: Strategy
     reaction: Fraction = Fraction(0)
+    ends: str = REPORTED
+
+
+def game_of_solution(won: Solution) -> Game:
+    """The game that a solution wins."""
+    return Game(won.network, won.strategy, won.reaction, won.rules.ends)
 
 
 @dataclass(frozen=True)
@@ -48,14 +66,15 @@ class CommandsTable:
     """A scenario's controllers: General, Centralized, then the distributed ones. Percentages are of General.
 
     `thesis_reach_obj` is where the thesis put reachObj's commands, None for a scenario that is not the thesis's.
-    `ideal_general`: General plays another game than the rest (that with a priori ends), so it has another strategy.
+    `ends`: who controls the ends of movements and actions in the game that all play; None: General plays the ideal
+    game, and the rest the default one, with another strategy.
     """
 
     scenario: str
     reach_obj: str
     rows: Tuple[Row, ...]
     thesis_reach_obj: Optional[str] = None
-    ideal_general: bool = False
+    ends: Optional[str] = None
 
 
 def commands_table(
@@ -67,9 +86,9 @@ def commands_table(
 ) -> CommandsTable:
     """The table of a scenario.
 
-    `game` is what the workspace plays. `ideal` is the game with controllable ends, which only the General controller
-    decides; without it General is made of `game` too (and has the ends that its strategy commands). `reach_obj` None
-    takes the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition`
+    `game` is what the controllers play. `ideal` is the game with controllable ends, if General is to be made of that
+    one; without it General is made of `game` too (and has the ends that its strategy commands). `reach_obj` None takes
+    the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition`
     raises.
     """
     thesis = thesis_table(scenario_name, tuple(agent.name for agent in agents if agent.is_robot))
@@ -83,7 +102,8 @@ def commands_table(
             name = title if sub.controller == CONTROLLER else sub.controller
             lines = _lines(sub, scenario_name, played.reaction)
             rows.append(Row(name, sub.commands, lines, thesis.figure(name) if thesis else None))
-    return CommandsTable(scenario_name, policy, tuple(rows), thesis.reach_obj if thesis else None, ideal is not None)
+    ends = None if ideal is not None else game.ends
+    return CommandsTable(scenario_name, policy, tuple(rows), thesis.reach_obj if thesis else None, ends)
 
 
 def _lines(sub: SubStrategy, scenario_name: str, reaction: Fraction) -> int:
@@ -98,7 +118,7 @@ def as_json(table: CommandsTable) -> Dict[str, Any]:
         "scenario": table.scenario,
         "reach_obj": table.reach_obj,
         "thesis_reach_obj": table.thesis_reach_obj,
-        "ideal_general": table.ideal_general,
+        "ends": table.ends,
         "controllers": [
             {
                 "controller": row.controller,
@@ -134,8 +154,7 @@ def render_table(table: CommandsTable) -> str:
     title = f"{table.scenario}: commands and lines per controller (reachObj's commands: {table.reach_obj}"
     if table.thesis_reach_obj and table.thesis_reach_obj != table.reach_obj:
         title += f"; in the thesis: {table.thesis_reach_obj}"
-    notes = ["", *_NOTE] if table.ideal_general else []
-    return "\n".join([title + ")", "", *_aligned([heads, *cells]), *notes]) + "\n"
+    return "\n".join([title + ")", "", *_aligned([heads, *cells]), "", *_NOTES[table.ends]]) + "\n"
 
 
 def _thesis_cells(figure: Optional[Figure], general: Figure) -> List[str]:

@@ -11,13 +11,14 @@ from pursue_gen.explanation.costs import costs
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.report import tables
-from pursue_gen.report.commands import Game
+from pursue_gen.report.commands import game_of_solution
 from pursue_gen.report.recording import simulated
 from pursue_gen.report.verdict import Lost
 from pursue_gen.report.whole import Report
 from pursue_gen.solving.inputs import game_of
-from pursue_gen.solving.optional import promised
+from pursue_gen.solving.optional import promised, promised_of
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution, is_lost
 from pursue_gen.solving.solvers import solved
@@ -47,6 +48,18 @@ def solved_both(scenario: Scenario, options: SolveOptions) -> Tuple[Scenario, Tu
     return found.scenario, (found.solution, solved(*game_of(found.scenario), IDEAL, options))
 
 
+def solved_games(
+    scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None
+) -> Tuple[Scenario, Tuple[Solution, ...]]:
+    """What is promised of a scenario, and its solutions: in the game that `request.ends` names, else those of
+    `solved_both`. Raises as `solvers.solved` does.
+    """
+    if request.ends is None:
+        return solved_both(scenario, replace(request.options, within=request.deadline, progress=progress))
+    found = promised_of(scenario, request, progress)
+    return found.scenario, (found.solution,)
+
+
 def won_report(
     scenario: Scenario,
     both: Tuple[Solution, Solution],
@@ -57,7 +70,7 @@ def won_report(
     """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
     margin = margin_text(won, margins(won, False, limits)[0])
-    game, ideal = (Game(one.network, one.strategy, one.reaction) for one in both)
+    game, ideal = map(game_of_solution, both)
     policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
     policy = policies[0].reach_obj
     missions = tables.measured(scenario, won, policy, options.runs, count) if options.runs else ()

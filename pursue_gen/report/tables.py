@@ -35,14 +35,17 @@ class Measured:
 
 
 def command_tables(
-    scenario: Scenario, game: Game, ideal: Optional[Game], reach_obj: Optional[str] = None
+    scenario: Scenario, game: Game, ideal: Game, reach_obj: Optional[str] = None
 ) -> Tuple[CommandsTable, ...]:
-    """A table for each policy for the objective's commands, `reach_obj` first (None: the thesis's or `dedicated`)."""
+    """A table for each policy for the objective's commands, `reach_obj` first (None: the thesis's or `dedicated`); at
+    last one with the first policy and all controllers in the ideal game.
+    """
     robots = [agent.name for agent in scenario.agents if agent.is_robot]
     first = commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
     policies = [DEDICATED, *([ALL, *robots] if robots and scenario.reach else [])]
     others = [policy for policy in policies if policy != first.reach_obj]
-    return (first, *(commands_table(scenario.name, scenario.agents, game, ideal, policy) for policy in others))
+    more = [commands_table(scenario.name, scenario.agents, game, ideal, policy) for policy in others]
+    return (first, *more, commands_table(scenario.name, scenario.agents, ideal, reach_obj=first.reach_obj))
 
 
 def case_for(scenario: Scenario, won: Solution, reach_obj: str, shape: str = DISTRIBUTED) -> Case:
@@ -75,15 +78,17 @@ def section(
 ) -> Section:
     """The tables on the page."""
     parts = ["<h3>Commands and lines per controller</h3>", _policy(tables[0], True)]
-    if len(tables) > 1:
-        others = "".join(_policy(one, False) for one in tables[1:])
-        parts.append(f"<details><summary>With other owners of the objective's commands</summary>{others}</details>")
-    if tables[0].ideal_general:
-        parts.append(
-            "<p class='quiet'>General decides the ends of movements and actions itself, the others wait for reports of "
-            "them: two games with a strategy each. A command is a situation with what is done in it; lines are those "
-            "of the controller's strategy file (in the thesis: of its Python program). Percentages are of General.</p>"
-        )
+    folded = {"With other owners of the objective's commands": [one for one in tables[1:] if one.ends is None]}
+    folded["All controllers in the ideal game, as the thesis compares them"] = [one for one in tables[1:] if one.ends]
+    for summary, some in folded.items():
+        if some:
+            others = "".join(_policy(one, False) for one in some)
+            parts.append(f"<details><summary>{summary}</summary>{others}</details>")
+    parts.append(
+        "<p class='quiet'>General decides the ends of movements and actions itself, the others wait for reports of "
+        "them: two games with a strategy each. A command is a situation with what is done in it; lines are those "
+        "of the controller's strategy file (in the thesis: of its Python program). Percentages are of General.</p>"
+    )
     robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
     goal = won.objective.kind is not Kind.SAFETY
     parts.append(f"<h3>{'Times to the goal' if goal else 'Simulated missions'}</h3>")

@@ -708,7 +708,7 @@ def test_ws_of_a_lost_game_writes_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "ws").exists()
 
 
-# What README.md and docs/thesis.md show -------------------------------------------------------------------------------
+# What README.md shows ------------------------------------------------------------------------------------------------
 
 
 def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
@@ -721,17 +721,6 @@ def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
     file.write_text(text.replace("mobile 3", "mobile 1"), encoding="utf-8")
     lost = pursue("solve", file)
     assert lost.status == 4 and "a slower visitor, mobile 2 instead of 1" in lost.err
-
-
-# The engines find different strategies; the figures are those of the native one.
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-def test_the_figures_beside_those_of_the_thesis_are_those_that_report_prints() -> None:
-    page = (ROOT / "docs" / "thesis.md").read_text(encoding="utf-8")
-    rows = [line.split("|")[2:5] for line in page.splitlines()]
-    told = [tuple(cell.strip() for cell in row) for row in rows if len(row) == 3]
-    for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief"):
-        for row in json.loads(pursue("report", THESIS / f"{name}.pur", "--json").out)["controllers"]:
-            assert (row["controller"], str(row["commands"]), str(row["lines"])) in told
 
 
 # --optimize -----------------------------------------------------------------------------------------------------------

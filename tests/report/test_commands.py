@@ -68,10 +68,14 @@ def test_without_an_ideal_game_general_is_of_the_same_strategy(strategy: Strateg
 
 
 def test_two_games_are_said_to_be_two() -> None:
-    played = Game(game(), Strategy(()))
-    one, two = commands_table("game", AGENTS, played), commands_table("game", AGENTS, played, played)
-    assert "a strategy each" in render_table(two) and as_json(two)["ideal_general"] is True
-    assert "a strategy each" not in render_table(one) and as_json(one)["ideal_general"] is False
+    played, ideal = Game(game(), Strategy(())), Game(game(), Strategy(()), ends="controllable")
+    two = commands_table("game", AGENTS, played, ideal)
+    assert "a strategy each" in render_table(two) and as_json(two)["ends"] is None
+    for one, said in ((played, "default game"), (ideal, "ideal game")):
+        table = commands_table("game", AGENTS, one)
+        text = render_table(table)
+        assert f"One strategy of the {said}" in text and "a strategy each" not in text
+        assert as_json(table)["ends"] == one.ends
 
 
 @QUICK
@@ -81,7 +85,7 @@ def test_text_and_json_say_the_same(strategy: Strategy) -> None:
     data = as_json(table)
     lines = render_table(table).splitlines()
     assert data["scenario"] == "game" and "game" in lines[0] and "dedicated" in lines[0]
-    assert len(lines) == 4 + len(data["controllers"])
+    assert len(lines) == 6 + len(data["controllers"])
     for line, row in zip(lines[4:], data["controllers"]):
         words = line.split()
         shown = [row["controller"], row["commands"], row["commands_percent"], row["lines"], row["lines_percent"]]

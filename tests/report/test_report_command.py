@@ -26,6 +26,15 @@ agent "bot" controllable mobile 3 location a can_do catch
 agent "thief" mobile 1 location b reacts_to catch
 reach_objective: do catch after 0
 """
+CALLED = """poi "desk"
+poi "shelf"
+connect desk and shelf distance 2
+event "callBot"
+event "fetch" location shelf
+agent "bot" controllable mobile 1 location desk can_do fetch
+agent "visitor" location desk can_do callBot
+objective: if callBot then fetch within 4
+"""
 
 
 class Result(NamedTuple):
@@ -159,3 +168,24 @@ def test_options_without_meaning_are_refused(tmp_path: Path, words: Tuple[str, .
     result = pursue("report", FIRST, *words)
     assert result.status == 2 and message in result.err
     assert not list(tmp_path.iterdir())
+
+
+def test_report_compares_controllers_in_one_game() -> None:
+    for ends, game in (("reported", "default"), ("controllable", "ideal")):
+        told = pursue("report", FIRST, "--ends", ends)
+        assert told.status == 0
+        assert f"One strategy of the {game} game" in told.out and f"\n{game} game: " in told.out
+        table = json.loads(pursue("report", FIRST, "--ends", ends, "--json").out)
+        assert (table["ends"], list(table["margins"])) == (ends, [game])
+        commands = {row["controller"]: row["commands"] for row in table["controllers"]}
+        assert (commands["General"] > commands["Centralized"]) == (ends == "controllable")
+    refused = pursue("report", FIRST, "--ends", "controllable", "--html")
+    assert refused.status == 2 and "--ends is for the tables alone" in refused.err
+
+
+def test_report_in_the_ideal_game_alone_does_not_need_the_default_one(tmp_path: Path) -> None:
+    """One that is won in the ideal game only, as it is with ws."""
+    file = tmp_path / "called.pur"
+    file.write_text(CALLED)
+    assert pursue("report", file).status == 4
+    assert pursue("report", file, "--ends", "controllable").status == 0

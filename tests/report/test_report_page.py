@@ -112,6 +112,16 @@ def test_ours_and_the_thesis_figures_stand_side_by_side(catch: str) -> None:
     assert 0 < least <= median <= worst <= float(guaranteed[-2] or guaranteed[-1]) + 0.1
 
 
+def test_the_page_compares_in_one_game_too(catch: str) -> None:
+    """General and Centralized of one strategy: there Centralized has General's commands without the ends."""
+    _, folded = catch.split("All controllers in the ideal game, as the thesis compares them", 1)
+    rows = re.findall(r"<tr>(.*?)</tr>", folded.split("</details>", 1)[0])
+    cells = [re.sub(r"<[^>]+>", "|", row).replace("||", "|").strip("|").split("|") for row in rows]
+    commands = {row[0]: int(row[1]) for row in cells if row[1].isdigit()}
+    assert 0 < commands["Centralized"] < commands["General"]
+    assert commands["Centralized"] == sum(commands[name] for name in commands if name.startswith("controller"))
+
+
 def test_a_scenario_that_cannot_be_won_is_explained() -> None:
     lost = delivery(3)
     with pytest.raises(PursueError) as problem:
