@@ -62,7 +62,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     except PursueError as problem:  # a slack that is none
         raise PursueError(problem.diagnostics, 2) from None
     network = network_from(game, request)
-    reason = _reason_lost(network, objective)
+    reason = _reason_lost(network, objective, request.scenario)
     if reason:
         return _lost(reason)
     start = time.monotonic()
@@ -136,28 +136,28 @@ def _lost(why: str) -> Dict[str, Any]:
     return {"format": 1, "won": False, "why": why}
 
 
-def _reason_lost(network: Network, objective: Objective) -> str:
+def _reason_lost(network: Network, objective: Objective, scenario: Scenario) -> str:
     """Why the mission is lost already; "" if it is not."""
     places = {(automaton.name, automaton.initial) for automaton in network.automata}
     if objective.goal and set(objective.goal) <= places:
         return ""
     broken = next((place for place in objective.bad if place in places), None)
-    return f"the mission is lost already: {broken[0]} is in {broken[1]}" if broken else ""
+    if broken is None:
+        return ""
+    missed = stated(scenario).get(broken[0])
+    return f"the mission is lost already: {_objectives(scenario, [missed] if missed else None)} is broken"
 
 
 def _cannot_be_met(game: Network, request: Request) -> str:
     """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
     clocks = start_clocks(game, request)
     agents = [agent.name for agent in request.scenario.agents]
-    over: Dict[str, str] = {}
-    for automaton in game.automata:
-        for bound in passed_bounds(automaton, request.locations[automaton.name], clocks):
-            over[automaton.name] = f"{bound.clock} is {float(clocks[bound.clock]):g}, at most {bound.bound} is allowed"
-    for name, why in over.items():
+    over = [each.name for each in game.automata if passed_bounds(each, request.locations[each.name], clocks)]
+    for name in over:
         if name not in agents:
             missed = stated(request.scenario).get(name)
             what = _objectives(request.scenario, [missed] if missed else None)
-            return f"{what} cannot be met any more: {why}"
+            return f"{what} cannot be met any more: its time is over"
     absent = [name for name in agents if name in request.excused or name in over]
     without = [f"without relying on {' and '.join(absent)}"] if absent else []
     without += [f"without the way between {a} and {b}" for a, b in sorted(request.blocked) if a < b]

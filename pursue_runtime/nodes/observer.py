@@ -52,7 +52,7 @@ from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, W
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
 
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
+LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
 BEGUN = "pursue/begun"
 """A parameter beside the node: the launch in which a mission has been under way last."""

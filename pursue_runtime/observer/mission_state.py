@@ -16,7 +16,7 @@ from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import Word
 
 Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
+"""Takes a level (debug, info, warn, err) and a sentence."""
 
 ACTING = ("robot", "human", "agent")
 COUNTED = ("taken", "stale", "held", "impossible", "untimely", "unreadable", "uncovered")

@@ -8,7 +8,8 @@ from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import MissionState
-from pursue_runtime.observer.planning import PlanRequest, covers, uncovered
+from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
+from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, STOPPED, SystemState
 from pursue_runtime.strategy import Entry
 
@@ -83,7 +84,7 @@ class MissionStatus(MissionState):
         trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
         trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
-        trouble = trouble or uncovered(self._cover, self.position(now), self._tolerance, patience)
+        trouble = trouble or self._uncovered(now, patience)
         waits = self.robots.reasons()
         trouble = "" if waits else trouble  # another plan begins when these robots can go on
         self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
@@ -110,6 +111,15 @@ class MissionStatus(MissionState):
         if reason != self.reason:
             self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
         self.status, self.reason = HOLDING if reasons else RUNNING, reason
+
+    def _uncovered(self, now: float, patience: float) -> str:
+        """Return why the plan in force has no decision here, in words; "" if it has one."""
+        position, tolerance = self.position(now), self._tolerance
+        if self._cover is None or not is_uncovered(self._cover, position, tolerance, patience):
+            return ""
+        if self.status == RUNNING:
+            self._log("debug", f"no strategy in state {self.seq}: {uncovered_position(position)}")
+        return uncovered_reason(self.model, self._cover, position, tolerance, self.late - set(self.lost))
 
     def _matters(self, name: str, now: float) -> bool:
         """Return True unless what the plan in force does in this state holds whatever the automaton does."""

@@ -19,8 +19,6 @@ ATTEMPTS = 5
 UNKNOWN = 1000
 """More requests than a mission can have made without a trace of them in the journal."""
 
-"""The zones of each discrete state in which a plan has a decision."""
-
 
 class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
@@ -201,16 +199,11 @@ def stays(cover: Optional[Cover], position: Position, tolerance: float) -> float
     return min(moments, default=-INFINITY)
 
 
-def uncovered(cover: Optional[Cover], position: Position, tolerance: float, patience: float) -> str:
-    """Return why the plan has no decision here; "" if it has one, or had one less than `patience` time units ago."""
+def is_uncovered(cover: Optional[Cover], position: Position, tolerance: float, patience: float) -> bool:
+    """Return True if the plan has no decision here, and had none `patience` time units ago."""
     if cover is None or covers(cover, position, tolerance):
-        return ""
-    left = stays(cover, position, tolerance)
-    if patience > tolerance and left > EPSILON - patience:
-        return ""
-    what = "at these clocks" if left > -INFINITY else "in this state"
-    where = " ".join(f"{name}={value}" for name, value in _state(position).discrete().items())
-    return f"no strategy {what}: {where}"
+        return False
+    return patience <= tolerance or stays(cover, position, tolerance) <= EPSILON - patience
 
 
 def _zones(cover: Cover, position: Position) -> List[List[Zone]]:

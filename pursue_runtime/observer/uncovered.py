@@ -1,0 +1,65 @@
+"""Why the plan in force has no decision: a sentence for people, and what its author needs to know."""
+
+from __future__ import annotations
+
+from typing import AbstractSet, List
+
+from pursue_runtime.locations import is_action, is_end, is_movement
+from pursue_runtime.model import Automaton, Model, Position
+from pursue_runtime.observer.mission_state import ACTING
+from pursue_runtime.observer.planning import stays
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Cover
+from pursue_runtime.zones import INFINITY
+
+SHOWN = 4
+"""So many agents are named."""
+
+
+def uncovered_reason(
+    model: Model, cover: Cover, position: Position, tolerance: float, late: AbstractSet[str]
+) -> str:
+    """Return why the plan has no decision at this position, for people: who is late, else where the agents are that
+    matter to it. The sentence is the same while only time passes. `late`: the agents that are; `tolerance` as in
+    `covers`."""
+    if late:
+        who = [f"{name} is late {_doing(model.automaton(name), position)}" for name in sorted(late)]
+        return f"{_joined(who)}, and the strategy does not say what to do then"
+    where = _where(model, cover, position)
+    if not cover.zones(SystemState(0, 0.0, *position)):
+        return f"the strategy does not say what to do now that {where}"
+    if stays(cover, position, tolerance) > -INFINITY:
+        return f"the moment at which the strategy goes on has passed; {where}"
+    return f"this happened at another time than the strategy expects; {where}"
+
+
+def uncovered_position(position: Position) -> str:
+    """Return the whole position, for the log: locations, variables and clocks by their names."""
+    parts = {**position.locations, **position.values}
+    clocks = {clock: f"{value:.3f}" for clock, value in position.clocks.items()}
+    return " ".join(f"{name}={value}" for name, value in {**parts, **clocks}.items())
+
+
+def _where(model: Model, cover: Cover, position: Position) -> str:
+    """Where the agents are of which the plan speaks."""
+    acting = model.of_kind(*ACTING)
+    named = [automaton for automaton in acting if automaton.name in cover.names] or acting
+    parts = [f"{each.name} is {_doing(each, position)}" for each in named[:SHOWN]]
+    more = len(named) - len(parts)
+    return _joined([*parts, f"{more} others are elsewhere"] if more > 1 else parts)
+
+
+def _doing(automaton: Automaton, position: Position) -> str:
+    """What an agent does, behind `is`: `at c`, `on its way to b`, `doing catch at b`."""
+    here = position.locations[automaton.name]
+    begins = [edge for edge in automaton.edges if edge.target == here != edge.source]
+    if is_movement(here):
+        ends = [edge.target for edge in automaton.edges_from(here) if is_end(edge.source, edge.target)]
+        return f"on its way to {ends[0]}" if ends else "on its way"
+    if is_action(here) and begins:
+        return f"doing {begins[0].word} at {begins[0].source}"
+    return f"at {here}"
+
+
+def _joined(parts: List[str]) -> str:
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

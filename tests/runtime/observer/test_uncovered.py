@@ -1,0 +1,101 @@
+"""Why a mission holds where the strategy has no decision: in words, for people; names of clocks go to the log."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pursue_runtime.model import Model, Position
+from pursue_runtime.observer.uncovered import uncovered_reason
+from pursue_runtime.strategy import read_cover
+from pursue_runtime.ui.phrases import in_labels
+from tests.runtime.observer.test_mission import CHASE, Journey
+from tests.runtime.texts import read
+
+COVER = """
+format: 1
+cover:
+- state: {bot: a}
+  zones: [Cbot <= 20]
+- state: {bot: going_a_to_b}
+  zones: [Cbot <= 4]
+- state: {bot: b, thief: b}
+  zones: [Cbot - Creach <= -5 && Cbot <= 20]
+"""
+
+TECHNICAL = re.compile(r"=|\b[CPS](bot|thief|reach|rule|open)\b|_")
+"""What no sentence for people has: values, names of clocks and variables, locations of automata."""
+
+
+def journey(cover: str = COVER, **options: Any) -> Journey:
+    """A mission that holds where the strategy has no decision, at its start at moment 0."""
+    made = Journey(CHASE, cover, **{"on_uncovered": "plan", "controllers": ("one",), "lost_after": 8.0, **options})
+    made.hear("_start_", 0.0)
+    return made
+
+
+def test_who_is_late_is_named_with_what_it_does() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    moment, state = made.tick_from(2.0)
+    while state is None or state.status == "running":
+        moment, state = made.tick_from(moment)
+    assert state.reason == (
+        "bot is late on its way to b, and the strategy does not say what to do then; looking for another plan"
+    )
+    made.mission.on_no_plan(made.mission.plan_request.number, "'do catch' cannot be guaranteed from here", moment)
+    state = made.hear("_ping_", moment)
+    assert state.reason.startswith("waiting for bot: bot is late on its way to b, and ")
+
+
+@pytest.mark.parametrize(("words", "reason"), [
+    ((), "the moment at which the strategy goes on has passed; bot is at a and thief is at b"),
+    ((("bot_a2b", 2.0), ("bot_going_a_to_b2b", 3.0)),
+     "this happened at another time than the strategy expects; bot is at b and thief is at b"),
+    ((("thief_leaves", 11.0), ("bot_a2b", 12.0), ("bot_going_a_to_b2b", 15.5)),
+     "the strategy does not say what to do now that bot is at b and thief is at gone"),
+])
+def test_where_nobody_is_late_it_says_what_is_unexpected_and_where_everybody_is(words: Any, reason: str) -> None:
+    made = journey()
+    state, moment = None, 0.0
+    for word, moment in words:
+        state = made.hear(word, moment)
+    while state is None or state.status == "running":
+        moment, state = made.tick_from(moment)
+    assert state.reason == f"{reason}; looking for another plan"
+
+
+def test_the_names_of_automata_and_clocks_are_in_the_log() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    made.hear("bot_going_a_to_b2b", 3.0)
+    technical = [text for level, text in made.logs if level == "debug"]
+    assert len(technical) == 1 and " Pbot=2 " in technical[0] and "Creach=3.000" in technical[0]
+    assert not [text for level, text in made.logs if level == "warn" and "Creach" in text]
+
+
+def test_people_read_labels() -> None:
+    labelled = CHASE.replace("objective:", "labels: {bot: Porter 1, b: bay}\nobjective:")
+    reason = "bot is late on its way to b, and the strategy does not say what to do then"
+    assert in_labels(Model(read(labelled)), reason).startswith("Porter 1 is late on its way to bay, and")
+
+
+@given(
+    here=st.sampled_from(("a", "going_a_to_b", "b")), thief=st.sampled_from(("b", "gone")),
+    clocks=st.lists(st.floats(0, 60), min_size=8, max_size=8), late=st.sets(st.sampled_from(("bot", "thief"))),
+    passed=st.floats(0, 50),
+)
+def test_no_sentence_has_a_name_of_the_automata_and_time_alone_changes_none(
+    here: str, thief: str, clocks: Any, late: Any, passed: float
+) -> None:
+    model, cover = Model(read(CHASE)), read_cover(read(COVER))
+    start = model.initial()
+    locations = {**start.locations, "bot": here, "thief": thief}
+    position = Position(locations, start.values, dict(zip(start.clocks, clocks)))
+    reason = uncovered_reason(model, cover, position, 0.1, late)
+    assert not TECHNICAL.search(reason)
+    assert uncovered_reason(model, cover, position.aged(passed), 0.1, late) == reason
