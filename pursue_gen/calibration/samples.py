@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
+from pursue_gen.language.network_names import agent_clock, going, is_doing, is_going
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.record import MissionRecord
-from pursue_gen.tga.names import agent_clock, going, is_doing, is_going
 from pursue_runtime.drives.report import ARRIVED, FAILED, Drive
 from pursue_runtime.locations import action_of, in_words
 from pursue_runtime.state import WAITING, SystemState

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
 from pursue_gen.language.wording import answer_words, answered_words, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
-from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, events_done, stated

@@ -15,6 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
+from pursue_gen.language.network_names import is_going
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
@@ -29,7 +30,6 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.names import is_going
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8

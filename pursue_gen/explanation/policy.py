@@ -11,11 +11,11 @@ from fractions import Fraction
 from typing import AbstractSet, Callable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
+from pursue_gen.language import network_names as names
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
 from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
-from pursue_gen.tga import names
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.dbm import is_strict
 

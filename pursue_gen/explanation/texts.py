@@ -9,11 +9,11 @@ from typing import Callable, Dict, Iterator, List, Optional, Tuple
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.network_words import place_words
 from pursue_gen.explanation.play import CounterStep, Play
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import joint_moves
-from pursue_gen.tga import names
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.objectives import stated
 

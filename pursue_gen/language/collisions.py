@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import conditions_of
-from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.scenario import Patrol, Scenario, StatedObjective
 
 Word = Tuple[str, str, Span]
 """A word, what it means, and where the name stands that it is made of."""
@@ -80,45 +81,54 @@ def _in_network(scenario: Scenario) -> Optional[_Clash]:
 
 
 def _plain_words(scenario: Scenario) -> Iterator[Word]:
+    """All of them but those of movements; first those in which no name of the scenario is, which cannot be renamed."""
+    yield from _numbered_words(scenario)
     has_conditions = any(conditions_of(scenario))
     for poi in scenario.pois:
         yield poi.name, f"the POI {poi.name}", poi.span
     for event in scenario.events:
         yield event.name, f"the event {event.name}", event.span
-        yield event.name + "DONE", f"the end of {event.name}", event.span
+        yield names.done(event.name), f"the end of {event.name}", event.span
         if event.is_shared:
-            yield "B" + event.name, f"that {event.name} goes on", event.span
+            yield names.busy(event.name), f"that {event.name} goes on", event.span
         if event.at_most is not None:
-            yield event.name + "_count", f"the count of {event.name}", event.span
-            yield "P" + event.name + "_count", f"how often {event.name} has happened", event.span
+            yield names.count(event.name), f"the count of {event.name}", event.span
+            yield names.rule_turn(names.count(event.name)), f"how often {event.name} has happened", event.span
     for rule in scenario.rules:
         yield rule.name, f"the rule {rule.name}", rule.span
-        yield "P" + rule.name, f"the position of the rule {rule.name}", rule.span
-        yield "C" + rule.name, f"the clock of the rule {rule.name}", rule.span
+        yield names.rule_turn(rule.name), f"the position of the rule {rule.name}", rule.span
+        yield names.automaton_clock(rule.name), f"the clock of the rule {rule.name}", rule.span
         for agent in scenario.bound_by(rule):
-            yield f"P{rule.name}_{agent.name}", f"the turn of {agent.name} in the rule {rule.name}", rule.span
+            yield names.own_turn(rule.name, agent.name), f"the turn of {agent.name} in the rule {rule.name}", rule.span
     for state in scenario.states:
         yield state.name, f"the state {state.name}", state.span
-        yield "S" + state.name, f"the value of the state {state.name}", state.span
+        yield names.state_value(state.name), f"the value of the state {state.name}", state.span
     for agent in scenario.agents:
         yield agent.name, f"the agent {agent.name}", agent.span
-        yield "P" + agent.name, f"the position of {agent.name}", agent.span
-        yield "C" + agent.name, f"the clock of {agent.name}", agent.span
+        yield names.agent_position(agent.name), f"the position of {agent.name}", agent.span
+        yield names.agent_clock(agent.name), f"the clock of {agent.name}", agent.span
         if has_conditions:
-            yield "W" + agent.name, f"with what {agent.name} is busy", agent.span
+            yield names.busy_with(agent.name), f"with what {agent.name} is busy", agent.span
     for battery in scenario.batteries:
-        yield "L" + battery.agent.name, f"the level of {battery.agent.name}'s battery", battery.span
-    end = scenario.agents[-1].span if scenario.agents else Span(scenario.file, 1, 1, 1, 1)
-    words = ["Creach", "CreachObj", "PreachObj", "Cobj", "reachObj_going_initial_location2unlocked"]
-    for number, _ in enumerate(scenario.safety[1:], 2):
-        words += [f"obj{number}", f"Cobj{number}"]
-    for number, safety in enumerate(scenario.safety, 1):
-        if isinstance(safety, Patrol) and safety.order:
-            words.append("Pobj" if number == 1 else f"Pobj{number}")
-    for number, _ in enumerate(scenario.reach[1:], 2):
-        words += [f"reachObj{number}", f"Creach{number}", f"reachObj{number}_going_initial_location2unlocked"]
-    for word in words:
-        yield word, "a part of the objective", end
+        yield names.level(battery.agent.name), f"the level of {battery.agent.name}'s battery", battery.span
+
+
+def _numbered_words(scenario: Scenario) -> Iterator[Word]:
+    """The words for objectives and assumptions, which have numbers and no names."""
+    words: List[Tuple[StatedObjective, str]] = []
+    for number, safety in enumerate(scenario.safety):
+        automaton = names.safety_objective(number)
+        words += [(safety, word) for word in (automaton, names.safety_clock(number))]
+        words += [(safety, names.rule_turn(automaton))] if isinstance(safety, Patrol) and safety.order else []
+    for number, reach in enumerate(scenario.reach):
+        automaton = names.reach_objective(number)
+        begins = names.movement(automaton, "going_initial_location", "unlocked")
+        words += [(reach, word) for word in (automaton, names.reach_clock(number), begins)]
+    for objective, word in words:
+        yield word, "a part of an objective", objective.span
+    for number, assumption in enumerate(scenario.assumptions, start=1):
+        made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
+        yield from ((word, "a part of an assumption", assumption.span) for word in made)
 
 
 def _ways(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
@@ -131,12 +141,12 @@ def _moves(scenario: Scenario) -> Iterator[Tuple[str, str]]:
     """What stands behind a mobile agent's name and `_` in the words for its movements, and what that means."""
     for a, b, _ in _ways(scenario):
         yield f"{a}2{b}", f"leaving {a} for {b}"
-        yield f"going_{a}_to_{b}2{b}", f"arriving at {b} from {a}"
+        yield f"{names.going(a, b)}2{b}", f"arriving at {b} from {a}"
 
 
 def _among_locations(scenario: Scenario) -> Optional[_Clash]:
     """The names of an agent's locations, with which its commands are found."""
-    ways = [(f"going_{a}_to_{b}", f"the way from {a} to {b}", span) for a, b, span in _ways(scenario)]
+    ways = [(names.going(a, b), f"the way from {a} to {b}", span) for a, b, span in _ways(scenario)]
     clash = _first_twice(ways)
     if clash:
         return clash
@@ -146,7 +156,7 @@ def _among_locations(scenario: Scenario) -> Optional[_Clash]:
         for short, rest in _splits(long, "_in_"):
             if short in events and rest in between:
                 longer, shorter = between[rest]
-                return f"doing_{long}_in_{shorter}", f"{short} in {longer}", f"{long} in {shorter}", span
+                return names.doing(long, shorter), f"{short} in {longer}", f"{long} in {shorter}", span
     return None
 
 

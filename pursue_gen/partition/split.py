@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.network_names import is_reach_objective, is_safety_objective
 from pursue_gen.language.scenario import Agent
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
-from pursue_gen.tga.names import is_reach_objective, is_safety_objective
 from pursue_gen.tga.network import Network, is_end
 
 DISTRIBUTED, CENTRALIZED, GENERAL = "distributed", "centralized", "general"

@@ -8,11 +8,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Iterable, List, Sequence, Union
 
+from pursue_gen.language.network_names import OBJECTIVE, REACH
 from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.partition.split import SubStrategy
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
-from pursue_gen.tga.names import OBJECTIVE, REACH
 from pursue_gen.tga.words import event_word
 
 

@@ -9,12 +9,12 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 from pursue_gen.synthesis.game import Game, JointMove
-from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, events_done, stated

@@ -8,10 +8,10 @@ from itertools import permutations
 from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
 
+from pursue_gen.language.network_names import agent_clock, agent_position, going
 from pursue_gen.language.numbers import Number
 from pursue_gen.replanning.request import Request, wrong
 from pursue_gen.tga.assumptions import without_broken
-from pursue_gen.tga.names import agent_clock, agent_position, going
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import chain
 from typing import Iterator, List, Mapping, Sequence, Tuple
 
+from pursue_gen.language.network_names import assumption_clock, is_assumption
 from pursue_gen.replay.moves import DiscreteState, Move, Moves
-from pursue_gen.tga.names import assumption_clock, is_assumption
 
 Found = Tuple[DiscreteState, List[Move]]
 """The place with the variables of broken assumptions at 0, and the moves that are possible there."""

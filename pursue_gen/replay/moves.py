@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_gen.tga.names import assumption, assumption_clock, is_assumption, is_doing, is_going
+from pursue_gen.language.network_names import assumption, assumption_clock, is_assumption, is_doing, is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word

@@ -6,12 +6,12 @@ import bisect
 from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
+from pursue_gen.language.network_names import going, is_doing, is_going
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.finding import FAULT, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import MissionRecord, RobotOrder
-from pursue_gen.tga.names import going, is_doing, is_going
 from pursue_runtime.state import SystemState
 
 LATE = 2.0

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Dict, List, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import Condition, condition_text, conditions_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words
 from pursue_gen.report.recording import Recording, Stay, Step, lasting
 from pursue_gen.simulation.meaning import holds
-from pursue_gen.tga import names
 from pursue_gen.tga.status_words import statuses
 
 

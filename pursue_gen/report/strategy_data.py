@@ -7,6 +7,7 @@ from string import ascii_letters
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Reach, Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
@@ -14,7 +15,6 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import DiscreteState, Place, Strategy, Zone
-from pursue_gen.tga import names
 from pursue_gen.tga.objectives import stated
 
 Key = Tuple[Tuple[str, str, str, str], ...]

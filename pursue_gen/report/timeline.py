@@ -7,12 +7,12 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
 from pursue_gen.language.wording import answer_words, events_words, visited
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.report.statuses import broken, changes, conditions, holding
-from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
+from pursue_gen.language.network_names import is_assumption, is_doing, is_under_way
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
 from pursue_gen.simulation.meaning import Broken
-from pursue_gen.tga.names import is_assumption, is_doing, is_under_way
 from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import FrozenSet, Mapping, Optional
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
 from pursue_gen.language.scenario import Always, Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.objectives import stated
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
+from pursue_gen.language.network_names import is_doing, is_going
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.tga.names import is_doing, is_going
 from pursue_runtime.controller.scheduler import CommandScheduler, StartedActivity
 from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission

@@ -5,11 +5,11 @@ from __future__ import annotations
 import random
 from typing import List, NamedTuple, Optional, Tuple
 
+from pursue_gen.language.network_names import is_going, is_under_way
 from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.tga.names import is_going, is_under_way
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict

@@ -9,13 +9,13 @@ from __future__ import annotations
 from typing import Dict, FrozenSet, List, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import At, Condition
+from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Safety, Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
-from pursue_gen.tga import names
-from pursue_gen.tga.names import going, has_happened
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 

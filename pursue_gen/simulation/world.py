@@ -8,11 +8,11 @@ from __future__ import annotations
 import random
 from typing import Callable, Optional
 
+from pursue_gen.language.network_names import is_under_way
 from pursue_gen.simulation.connections import drawn_share
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.stage import Stage
-from pursue_gen.tga.names import is_under_way
 from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.locations import action_of, is_action
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word

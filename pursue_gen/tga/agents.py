@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Value
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
-from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions

@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Callable, List, Mapping, Optional, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Value, clauses_of
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import AboutOne, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
-from pursue_gen.tga import names
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Dict, List, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import actions_use, levels, movements_use, recharges
 from pursue_gen.language.scenario import Battery, Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Edge, Test
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, Mapping, Optional, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import FALSE, NEVER, TRUE, Clauses, Domains, Value, given, simplified
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.tga import names
 
 Becomes = Mapping[Tuple[str, Value], Value]
 """What becomes of the value of a variable; values that are not named stay."""

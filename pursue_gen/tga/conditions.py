@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given
 from pursue_gen.language.conditions import AllOf, AnyOf, Condition, Doing, Not, atoms, conditions_of
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.network import Clause as Tests
 from pursue_gen.tga.network import Test
 from pursue_gen.tga.positions import Positions

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Iterator, Tuple
 
+from pursue_gen.language.network_names import count, rule_turn
 from pursue_gen.language.scenario import Event, Scenario
-from pursue_gen.tga.names import count, rule_turn
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 from pursue_gen.tga.rules import Turns
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Dict, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import exact
-from pursue_gen.tga.names import is_under_way
 from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
 
 

@@ -13,8 +13,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import FrozenSet, Optional, Tuple
 
+from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import Number
-from pursue_gen.tga.names import is_under_way
 
 
 @dataclass(frozen=True)

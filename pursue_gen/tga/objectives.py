@@ -6,6 +6,8 @@ from itertools import combinations
 from typing import Dict, List, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language import network_names as names
+from pursue_gen.language.network_names import IDLE, LOSE, agent_position
 from pursue_gen.language.scenario import (
     Always,
     Avoid,
@@ -17,9 +19,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
-from pursue_gen.tga import names
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.names import IDLE, LOSE, agent_position
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.positions import Positions

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Iterator, List, Sequence, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Rule, Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.network import Automaton, Edge, Guard, Test
 from pursue_gen.tga.rules import rule_automaton
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Domains
+from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.scenario import Agent, Patrol, Respond, Scenario
-from pursue_gen.tga import names
-from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by

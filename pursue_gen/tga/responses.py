@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
+from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.scenario import Ref, Respond, Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.changes import Change, arriving, happening, setting_off
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 _Moves = Dict[str, Change]

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import AbstractSet, Dict, List, Mapping, Tuple
 
+from pursue_gen.language.network_names import done, rule_turn
 from pursue_gen.language.scenario import Both, Choice, Ref, Rule, RuleBody, Sequence
-from pursue_gen.tga.names import done, rule_turn
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 
 Turns = Mapping[str, Tuple[int, ...]]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, Optional, Sequence
 
+from pursue_gen.language.network_names import STATES, state_value
 from pursue_gen.language.scenario import State
-from pursue_gen.tga.names import STATES, state_value
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 
 _BASE = "base"

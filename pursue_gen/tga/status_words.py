@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
 from pursue_gen.language.wording import answer_words, assumption_words, events_words, listed, objective_text
-from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import events_done, stated

@@ -6,8 +6,8 @@ from collections import Counter
 from typing import Mapping, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.tga import names
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
 from pursue_gen.tga.batteries import battery_variables, powered

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pursue_gen.tga.names import is_reach_objective, is_under_way
+from pursue_gen.language.network_names import is_reach_objective, is_under_way
 from pursue_gen.tga.network import Edge
 
 

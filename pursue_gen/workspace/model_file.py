@@ -5,13 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
+from pursue_gen.language import network_names as names
+from pursue_gen.language.network_names import STATES
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
-from pursue_gen.tga import names
 from pursue_gen.tga.counts import counted
-from pursue_gen.tga.names import STATES
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.words import event_word

@@ -11,13 +11,13 @@ import pytest
 from pursue_gen.calibration.proposal import Options, propose
 from pursue_gen.calibration.samples import Way, of_record
 from pursue_gen.language import load
+from pursue_gen.language.network_names import is_going
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.simulation.mission import SimulatedMission
 from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.tga.names import is_going
 from pursue_gen.workspace import Options as WorkspaceOptions
 from pursue_runtime.state import SystemState
 

@@ -154,6 +154,15 @@ def test_the_names_of_further_objectives_are_taken_where_there_are_such() -> Non
     assert [finding.code for finding in found] == ["PML105"]
 
 
+@pytest.mark.parametrize("name", ["assume1", "assume1count", "Cassume1"])
+def test_the_names_of_assumptions_are_taken_where_there_are_such(name: str) -> None:
+    event, doer = f'event "rest"\nevent "{name}"', MAN.replace("rest", f"rest, {name}")
+    assert findings(text(event_rest=event, agent_man=doer)) == []
+    (finding,) = findings(text(event_rest=event, agent_man=doer, more="assume: man waits 4 between rest"))
+    assert (finding.code, finding.span and (finding.span.line, finding.span.column)) == ("PML105", (7, 7))
+    assert finding.message == f"{name} would mean both a part of an assumption and the event {name}"
+
+
 def test_package_names_do_not_collide() -> None:
     source = text(agent_man='agent "x_bringup" location b can_do rest reacts_to hand')
     assert [finding.code for finding in findings(source, "controller_x")] == ["PML105"]

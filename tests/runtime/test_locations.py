@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_gen.tga import names
+from pursue_gen.language import network_names as names
 from pursue_runtime.locations import action, action_of, is_action, is_end, is_movement, is_under_way, movement, place_of
 
 

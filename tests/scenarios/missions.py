@@ -6,8 +6,8 @@ import functools
 import random
 from typing import Iterable, List, Mapping, NamedTuple, Optional, Set
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.tga import names
 from pursue_runtime.locations import is_movement, is_under_way, place_of
 from pursue_runtime.model import Model, Position
 from pursue_runtime.zones import holds

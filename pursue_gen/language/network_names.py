@@ -1,4 +1,6 @@
-"""The names of the network: one place, because plans, the observer and the controllers all meet them."""
+"""The names of the network that a scenario becomes: one place, because the checks of the language ask which names are
+taken, and the translation, plans, the observer and the controllers all meet them.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +32,8 @@ is_going, is_doing, is_under_way = locations.is_movement, locations.is_action, l
 in_words = locations.in_words
 """Where an agent is, in English."""
 
-
-agent_clock = locations.automaton_clock
-"""The clock of an agent: how long since its last action or movement began or ended."""
+automaton_clock = agent_clock = locations.automaton_clock
+"""The clock of an automaton; of an agent's: how long since its last action or movement began or ended."""
 
 agent_position = locations.position_variable
 """The variable that holds where an agent is."""

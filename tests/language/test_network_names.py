@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_gen.tga.names import doing, going, in_words, is_doing, is_going, is_under_way
+from pursue_gen.language.network_names import doing, going, in_words, is_doing, is_going, is_under_way
 
 
 @pytest.mark.parametrize(
