@@ -13,6 +13,7 @@ from typing import Dict, Optional, Sequence
 from xml.etree import ElementTree
 
 import pytest
+from catkin_pkg.package import parse_package
 
 from pursue_gen import __version__
 
@@ -142,8 +143,7 @@ def test_the_manifest_agrees_with_the_package() -> None:
 
 
 def test_the_manifest_is_valid_for_catkin() -> None:
-    parser = pytest.importorskip("catkin_pkg.package")
-    assert parser.parse_package(str(ROOT)).name == "pursue_gen"
+    assert parse_package(str(ROOT)).name == "pursue_gen"
 
 
 def test_the_program_names_what_is_missing() -> None:

@@ -128,7 +128,7 @@ def message_package() -> Package:
 def files_of(
     package: Package, values: Mapping[str, Any], jinja: jinja2.Environment, templates: Path
 ) -> Dict[str, bytes]:
-    """path within the package → content."""
+    """path within the package → content. Raises catkin_pkg's InvalidPackage where catkin would refuse the manifest."""
     context = {**values, "package": package.name, "summary": package.summary}
     context["exec_depends"] = (*DEPENDS[package.kind], *package.depends)
     context["build_depends"] = BUILD_DEPENDS.get(package.kind, ())
@@ -143,7 +143,15 @@ def files_of(
     context["messages"] = [Path(path).name for path in own if path.endswith(".msg")]
     for path, template in {**_templates_of(templates / _COMMON), **own}.items():
         files[path] = _content(template, context, jinja, templates)
+    _check_manifest(files["package.xml"], f"src/{package.name}/package.xml")
     return files
+
+
+def _check_manifest(manifest: bytes, path: str) -> None:
+    """Raises InvalidPackage, with the path, where catkin would refuse the text of a package.xml."""
+    from catkin_pkg.package import parse_package_string  # few commands write manifests
+
+    parse_package_string(manifest.decode(), path, warnings=[])  # names with upper-case letters get a warning
 
 
 def _tree(folder: Path) -> Dict[str, bytes]:

@@ -31,6 +31,7 @@ from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, read_query
+from pursue_gen.workspace.packages import DEPENDS
 
 ROOT = Path(__file__).resolve().parents[2]
 THESIS = ROOT / "scenarios" / "thesis"
@@ -630,6 +631,14 @@ def test_ws_writes_a_workspace_and_says_how_to_go_on(tmp_path: Path) -> None:
     once = tree(folder)
     assert pursue("ws", FIRST, "-o", folder).status == 0
     assert tree(folder) == once
+
+
+def test_a_manifest_that_catkin_refuses_is_an_internal_error_and_nothing_is_written(tmp_path: Path) -> None:
+    with mock.patch.dict(DEPENDS, {"observer": ("observer",)}):
+        told = pursue("ws", FIRST, "-o", tmp_path / "ws")
+    assert told.status == 1
+    assert "internal error of pursue-gen: InvalidPackage" in told.err and "src/observer/package.xml" in told.err
+    assert not (tmp_path / "ws").exists()
 
 
 def test_ws_does_not_replace_what_a_person_edited(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
 SYSTEM = {"PATH": "/usr/bin:/bin"}  # the system's Python, as rospy has it, and no virtual environment
-MODULES = "python3-jinja2 python3-lark python3-transitions python3-typer python3-yaml"
+MODULES = "python3-catkin-pkg python3-jinja2 python3-lark python3-transitions python3-typer python3-yaml"
 MADE_OF = (".cpp", ".hpp", ".so", ".pyc")
 ENGINE = "from pursue_gen.synthesis.native import engine; assert engine.available()"
 
@@ -24,7 +24,7 @@ ENGINE = "from pursue_gen.synthesis.native import engine; assert engine.availabl
 @pytest.fixture(scope="module")
 def workspace(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A catkin workspace with a copy of the project, built (which is quickest like this) and installed."""
-    if ros.run("python3 -c 'import jinja2, lark, transitions, typer, yaml'", ros.home, **SYSTEM).returncode:
+    if ros.run("python3 -c 'import catkin_pkg, jinja2, lark, transitions, typer, yaml'", ros.home, **SYSTEM).returncode:
         pytest.skip(f"the system's Python lacks modules: apt install {MODULES}")
     folder = tmp_path_factory.mktemp("catkin")
     (folder / "src" / "pursue_gen").mkdir(parents=True)

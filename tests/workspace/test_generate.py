@@ -17,6 +17,7 @@ from typing import Dict, FrozenSet, List, Set, Tuple
 
 import pytest
 import yaml
+from catkin_pkg.package import parse_package
 from worlds import REACTION, SCENARIOS, files, world
 
 import pursue_runtime
@@ -82,11 +83,10 @@ def test_one_package_for_each_node() -> None:
 
 
 def test_manifests_are_valid_and_named_like_their_folders(generated: Dict[str, bytes], tmp_path: Path) -> None:
-    package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg is not installed")
     for name in packages(generated):
         manifest = tmp_path / "package.xml"
         manifest.write_bytes(generated[f"src/{name}/package.xml"])
-        parsed = package.parse_package(str(manifest))
+        parsed = parse_package(str(manifest))
         parsed.validate()
         assert parsed.name == name
         assert [d.name for d in parsed.buildtool_depends] == ["catkin"]
