@@ -124,8 +124,16 @@ class Command(NamedTuple):
     when: Tuple[Zone, ...]
 
 
-class Cover(StateTable[Tuple[Zone, ...]]):
-    """For each state the zones in which the strategy knows what to do, from cover.yaml.
+class Covered(NamedTuple):
+    """What the strategy has for a state: the zones in which it waits or commands, and those of each command, by agent
+    and event."""
+
+    zones: Tuple[Zone, ...]
+    commands: Mapping[Tuple[str, str], Tuple[Zone, ...]]
+
+
+class Cover(StateTable[Covered]):
+    """For each state the zones in which the strategy knows what to do, and its commands, from cover.yaml.
 
     `stages`: for each stage of the strategy its milestones, locations of automata or values of variables; the stage
     ends when all are reached. Until then each part of the stage must know what to do. Raises KeyError, TypeError or
@@ -133,8 +141,7 @@ class Cover(StateTable[Tuple[Zone, ...]]):
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        entries = ((entry["state"], tuple(map(parse_zone, entry["zones"]))) for entry in data["cover"])
-        super().__init__(entries, _left_out_clocks(data))
+        super().__init__(((entry["state"], _covered(entry)) for entry in data["cover"]), _left_out_clocks(data))
         self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
 
     def zones(self, state: SystemState) -> List[List[Zone]]:
@@ -142,7 +149,12 @@ class Cover(StateTable[Tuple[Zone, ...]]):
         applying = self.applying(state)
         if any(all(name not in names for names, _ in applying) for name in self._awaited(state)):
             return []
-        return [[zone for zones in self.entered(entry) for zone in zones] for entry in applying]
+        return [[zone for covered in self.entered(entry) for zone in covered.zones] for entry in applying]
+
+    def commands(self, state: SystemState, agent: str, event: str) -> List[Zone]:
+        """The zones in which the strategy has the agent do the event in this discrete state; none: it never does."""
+        found = (covered.commands.get((agent, event), ()) for covered in self.find(state))
+        return [zone for zones in found for zone in zones]
 
     def _awaited(self, state: SystemState) -> List[str]:
         """The automata and variables that are not at their milestones of the present stage."""
@@ -151,6 +163,17 @@ class Cover(StateTable[Tuple[Zone, ...]]):
             if awaited:
                 return awaited
         return []
+
+
+def _covered(entry: Mapping[str, Any]) -> Covered:
+    if "zones" in entry:
+        raise ValueError("zones, as an older pursue-gen wrote them: generate the workspace or the mission again")
+    commands: Dict[Tuple[str, str], Tuple[Zone, ...]] = {}
+    for command in entry.get("commands", ()):
+        what = str(command["agent"]), str(command["do"])
+        commands[what] = (*commands.get(what, ()), *map(parse_zone, command["when"]))
+    waits = tuple(map(parse_zone, entry.get("wait", ())))
+    return Covered((*waits, *(zone for zones in commands.values() for zone in zones)), commands)
 
 
 def _left_out_clocks(data: Mapping[str, Any]) -> List[str]:

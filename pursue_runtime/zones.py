@@ -76,6 +76,14 @@ def holds(zone: Zone, clocks: Mapping[str, float], slack: float = 0.0) -> bool:
     return all(constraint.holds(clocks, slack) for constraint in zone)
 
 
+def was_reached(zones: Iterable[Zone], clocks: Mapping[str, float], slack: float = 0.0) -> bool:
+    """True if the clocks are in one of the zones, or have passed through it while only time passed.
+
+    What they miss by no more than `slack` counts as reached: the clock of another machine may be ahead.
+    """
+    return any(all(c.holds(clocks, slack) for c in zone if c.right) for zone in zones)
+
+
 def due(zones: Iterable[Zone], clocks: Mapping[str, float], margin: float = 0.02) -> Optional[float]:
     """The earliest delay (≥ 0) after which the clocks are in one of the zones, None: never while only time passes.
 

@@ -41,15 +41,17 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state the zones in which the strategy is defined, wait or command; its stages, if it has any, and the
+    """For each state what the strategy does, and in which zones: wait, or a command; its stages, if it has any, and the
     clocks that it leaves out."""
-    cover = []
+    cover: List[Dict[str, Any]] = []
     for block in strategy.blocks:
-        zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
-        cover.append({"state": _state(block.state), "zones": _zones(zones)})
+        does: Dict[str, Any] = {"wait": _zones(block.wait)} if block.wait else {}
+        if block.commands:
+            does["commands"] = [_command(command) for command in block.commands]
+        cover.append({"state": _state(block.state), **does})
     stages = [[list(place) for place in milestones] for milestones in strategy.stages]
     left_out = _left_out(strategy.left_out_clocks)
-    return {"format": 2 if left_out else 1, **({"stages": stages} if stages else {}), **left_out, "cover": cover}
+    return {"format": 3, **({"stages": stages} if stages else {}), **left_out, "cover": cover}
 
 
 def _left_out(clocks: Sequence[str]) -> Dict[str, List[str]]:

@@ -36,10 +36,10 @@ def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fract
 
 
 def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
-    """The data file of the observer: for each state the zones in which the strategy is defined, wait or command."""
+    """The data file of the observer: for each state in which zones the strategy waits, and in which it commands."""
     head = (
-        f"Where the strategy for {scenario_name} knows what to do, written by pursue-gen {generator}.",
-        "In a state below, it holds as long as one of the zones (clocks in time units) does.",
+        f"What the strategy for {scenario_name} does, written by pursue-gen {generator}.",
+        "In a state below, it waits or commands as long as one of the zones (clocks in time units) holds.",
         *((_WHEREVER, _STAGES) if strategy.stages else ()),
     )
     data = cover_data(strategy)

@@ -120,7 +120,8 @@ def of_plan(data: Mapping[str, Any]) -> Orders:
                     zones = tuple(read_zone(zone) for zone in command["when"])
                     orders.commands.add(entry["state"], Command(str(command["agent"]), str(command["do"]), zones))
         for entry in data["cover"]["cover"]:
-            orders.cover.add(entry["state"], tuple(read_zone(zone) for zone in entry["zones"]))
+            texts = [*entry.get("wait", ()), *(text for each in entry.get("commands", ()) for text in each["when"])]
+            orders.cover.add(entry["state"], tuple(map(read_zone, texts)))
     except (KeyError, TypeError, AttributeError) as problem:
         raise ValueError(f"it lacks or misspells something: {problem!r}") from None
     return orders

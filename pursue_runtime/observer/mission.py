@@ -22,10 +22,11 @@ from pursue_runtime.words import (
     STOP,
     RobotReport,
     Word,
+    format_word,
     parse_report,
     parse_word,
 )
-from pursue_runtime.zones import EPSILON, INFINITY, due
+from pursue_runtime.zones import EPSILON, INFINITY, due, was_reached
 
 MAX_WORD_LENGTH = 1000
 """The most characters of a word; longer texts are dropped."""
@@ -74,7 +75,7 @@ class Mission(MissionStatus):
         elif word.seq is not None and not self._is_current(word):
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         elif word.seq is not None:
-            moves = self._moves_of(word, now)
+            moves = self._moves_of(word, now) if self._is_commanded(word, now) else None
             return self._take_command(moves, now) if moves else []
         else:
             return self._on_report(word, now)
@@ -220,6 +221,20 @@ class Mission(MissionStatus):
         known = [(names, since) for (names, _), since in self._since.items()]
         since = [since for names, since in known if word.agent in names] or [since for _, since in known]
         return word.seq is not None and max(since, default=self.seq) <= word.seq <= self.seq
+
+    def _is_commanded(self, word: Word, now: float) -> bool:
+        """Return True, else count it, if the strategy commands this in the present state, now or sooner while only time
+        passed: a command of anybody else is refused."""
+        if self._cover is None:
+            return True
+        state = self.state(now)
+        doers = [word.agent] if word.agent else list(state.locations)
+        zones = [zone for agent in doers for zone in self._cover.commands(state, agent, word.event)]
+        if was_reached(zones, state.clocks, self._tolerance):
+            return True
+        why = "the strategy does not command it here" if not zones else "the strategy does not command it yet"
+        self._reject("uncommanded", f"{format_word(word)}: {why}")
+        return False
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""

@@ -19,7 +19,7 @@ Log = Callable[[str, str], None]
 """Takes a level (debug, info, warn, err) and a sentence."""
 
 ACTING = ("robot", "human", "agent")
-COUNTED = ("taken", "stale", "held", "impossible", "untimely", "unreadable", "uncovered")
+COUNTED = ("taken", "stale", "held", "uncommanded", "impossible", "untimely", "unreadable", "uncovered")
 
 
 class MissionState:

@@ -128,19 +128,20 @@ def test_files_hold_the_very_data_that_is_sent_when_plans_change(strategy: Strat
 @given(random_strategies())
 def test_the_cover_has_every_zone_of_every_state(strategy: Strategy) -> None:
     data = read(render_cover(strategy, "game", "0.1.0"))
-    assert data["format"] == 1
+    assert data["format"] == 3
     assert len(data["cover"]) == len(strategy.blocks)
     for entry, block in zip(data["cover"], strategy.blocks):
         assert as_text(entry["state"]) == visible(block.state)
-        every = block.wait + tuple(zone for command in block.commands for zone in command.zones)
-        assert [read_zone(text) for text in entry["zones"]] == once(every)
+        assert [read_zone(text) for text in entry.get("wait", ())] == once(block.wait)
+        sub = SubStrategy("all", (), ((block.state, block.commands),))
+        assert entry.get("commands", []) == strategy_data(sub, TENTH)["strategy"][0]["commands"]
 
 
 def test_nothing_to_do_is_an_empty_list() -> None:
     assert read(render(SubStrategy("controller_bot3", ("bot3",), ()), "s", "1", TENTH))["strategy"] == []
     assert read(render_cover(Strategy(()), "s", "1"))["cover"] == []
     silent = read(render_cover(Strategy((Block(STATE, (), ()),)), "s", "1"))
-    assert silent["cover"][0]["zones"] == []
+    assert silent["cover"] == [{"state": silent["cover"][0]["state"]}]
 
 
 @pytest.mark.parametrize("name", ["on", "y", "No", "null", "true", "12", "1e3", "0x1", "12:30", "_", "a-b", "a: b"])

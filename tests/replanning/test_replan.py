@@ -76,7 +76,7 @@ def test_the_plan_knows_what_to_do_where_it_begins(name: str) -> None:
         request = asked(name, state, clocks, ahead=0.0)
         answer = won(request)
         there = SystemState(5, 0.0, request["locations"], request["values"], request["clocks"])
-        zones = [zone for some in read_cover(answer["cover"]).find(there) for zone in some]
+        zones = [zone for covered in read_cover(answer["cover"]).find(there) for zone in covered.zones]
         at_goal = request["locations"].get("reachObj") == "win"
         assert at_goal or any(holds(zone, request["clocks"], 1e-6) for zone in zones)
         for data in answer["strategies"].values():
@@ -91,7 +91,7 @@ def test_the_answer_holds_what_the_files_of_a_workspace_hold() -> None:
     assert answer["people"] is None
     for name, data in answer["strategies"].items():
         assert (data["format"], data["controller"], data["reaction"]) == (1, name, 0.1)
-    assert answer["cover"]["format"] == 1 and answer["cover"]["cover"]
+    assert answer["cover"]["format"] == 3 and answer["cover"]["cover"]
 
 
 @pytest.mark.parametrize("name", ["thesis/scenario_1", "thesis/scenario_3", "thesis/catch_the_thief"])

@@ -22,7 +22,7 @@ from tests.replay.recordings import game
 from tests.replay.test_check import plan_data
 from tests.workspace.worlds import files
 
-PLAN = {**plan_data(), "cover": {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}}
+PLAN = {**plan_data(), "cover": {"format": 1, "cover": [{"state": {}, "wait": ["always"]}]}}
 for part in PLAN["strategies"].values():
     part["strategy"] = []  # the workspace's own would take the blocked way
 

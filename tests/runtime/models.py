@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Dict
 
+from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import Cover, read_cover
 
 
 def mover(name: str, kind: str, speed: int) -> Dict[str, Any]:
@@ -44,6 +46,26 @@ def model_data(*automata: Dict[str, Any]) -> Dict[str, Any]:
     return {"format": 1, "scenario": "example", "clocks": [f"C{a['name']}" for a in automata] + ["Creach"],
             "variables": {"Prule": 0, **{f"P{a['name']}": 1 for a in automata}}, "automata": [*automata, goal],
             "objective": {"kind": "reach", "goal": ["reachObj", "win"], "bad": None}}
+
+
+def commanding(cover: Dict[str, Any], model: Model) -> Dict[str, Any]:
+    """A cover that also commands, in the zones in which it waits, whatever controllable automata can do."""
+    able = {
+        (automaton.name, edge.word): None
+        for automaton in model.automata
+        for edge in automaton.edges
+        if edge.sync != "receive" and edge.controllable
+    }
+    entries = [
+        {**entry, "commands": [{"agent": agent, "do": event, "when": entry["wait"]} for agent, event in able]}
+        for entry in cover["cover"]
+    ]
+    return {**cover, "cover": entries}
+
+
+def everywhere(model: Model) -> Cover:
+    """The cover of a strategy that may command anything at any time."""
+    return read_cover(commanding({"cover": [{"state": {}, "wait": ["always"]}]}, model))
 
 
 def state(model: Any, seq: int, stamp: float, clocks: Dict[str, float], status: str = "running", event: str = "",

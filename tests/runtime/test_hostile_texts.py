@@ -284,7 +284,7 @@ def test_other_texts(tmp_path: Path, reader: str, hostile: str) -> None:
 @pytest.mark.parametrize("where", [
     lambda number: Strategy(data(f"commands_agents: []\nreaction: {number}\nstrategy: []")),
     lambda number: read_trace(f"- {{at: {number}, do: go}}", "trace.yaml", ["go"]),
-    lambda number: read_cover(data(f"cover: [{{state: {{}}, zones: [{number}]}}]")),
+    lambda number: read_cover(data(f"cover: [{{state: {{}}, wait: [{number}]}}]")),
     lambda number: Model(data(
         "scenario: s\nclocks: []\nvariables: {}\nobjective: {kind: reach, goal: null, bad: null}\n"
         f"automata: [{{name: a, kind: k, initial: l, locations: {{l: [{number}]}}, edges: []}}]"

@@ -136,7 +136,7 @@ def stands(block: Block, states: Sequence[Recorded]) -> bool:
 def test_a_decision_stands_for_controllers_as_long_as_for_the_observer(
     blocks: List[Block], happens: List[Tuple[Tuple[str, str], float]]
 ) -> None:
-    cover = read_cover({"cover": [{"state": block.state, "zones": ["always"]} for block in blocks]})
+    cover = read_cover({"cover": [{"state": block.state, "wait": ["always"]} for block in blocks]})
     observer = Mission(MODEL, cover, lambda level, text: None, on_uncovered="warn")
     controllers = {name: CommandScheduler(part_for(name, blocks), name) for name in ROBOTS}
     now = 100.0

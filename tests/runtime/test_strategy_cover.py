@@ -11,9 +11,9 @@ DATA: Dict[str, Any] = {
     "format": 1,
     "stages": [[["left", "done"], ["right", "done"]], [["goal", "win"]]],
     "cover": [
-        {"state": {"one": "a", "left": "open"}, "zones": ["always"]},
-        {"state": {"two": "a", "right": "open"}, "zones": ["Cx <= 5"]},
-        {"state": {"one": "a", "left": "done", "right": "done", "goal": "run"}, "zones": ["always"]},
+        {"state": {"one": "a", "left": "open"}, "wait": ["always"]},
+        {"state": {"two": "a", "right": "open"}, "wait": ["Cx <= 5"]},
+        {"state": {"one": "a", "left": "done", "right": "done", "goal": "run"}, "wait": ["always"]},
     ],
 }
 

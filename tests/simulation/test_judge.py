@@ -53,7 +53,7 @@ def test_another_command_is_seen() -> None:
     old = "do: polBot1_a2b\n    agent: polBot1\n    from: a\n    to: going_a_to_b"
     stage = sabotaged(THIEF, path, old, old.replace("a2b", "a2d").replace("a_to_b", "a_to_d"))
     outcomes = missions(THIEF, 10, Settings("random"), stage)
-    assert_seen(outcomes, "wrong command: the strategy does not hold polBot1_a2d")
+    assert_seen(outcomes, "the strategy does not command it here")
 
 
 def assert_seen(outcomes: Sequence[Outcome], problem: str) -> None:

@@ -7,22 +7,26 @@ from typing import Any, Dict, List
 
 import pytest
 
+from pursue_runtime.model import Model
 from pursue_runtime.state import format_state, parse_state
+from tests.runtime.models import commanding
 from tests.runtime.observer.test_mission import CHASE, Journey
+from tests.runtime.texts import read
 
 COVER = """
 format: 1
 cover:
 - state: {bot: a}
-  zones: [Cbot <= 3]
+  wait: [Cbot <= 3]
 - state: {bot: going_a_to_b}
-  zones: [Cbot <= 4]
+  wait: [Cbot <= 4]
 - state: {bot: b, Sopen: 0}
-  zones: [Cbot - Creach <= -5 && Cbot <= 20]
+  wait: [Cbot - Creach <= -5 && Cbot <= 20]
 - state: {bot: b, Sopen: 1}
-  zones: [always]
+  wait: [always]
 """
-EVERYWHERE = {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}
+EVERYWHERE = {"format": 1, "cover": [{"state": {}, "wait": ["always"]}]}
+MODEL = Model(read(CHASE))
 NOWHERE = {"format": 1, "cover": []}
 
 
@@ -37,7 +41,7 @@ def journey(**options: Any) -> Journey:
 def answer(cover: Dict[str, Any]) -> Dict[str, Any]:
     """A plan as the planner finds it (through JSON, as it comes)."""
     answered: Dict[str, Any] = json.loads(json.dumps({"format": 1, "won": True, "strategies": {"one": {}, "two": {}},
-                                                      "people": None, "cover": cover}))
+                                                      "people": None, "cover": commanding(cover, MODEL)}))
     return answered
 
 
@@ -178,10 +182,10 @@ def test_a_search_that_was_long_and_finds_that_there_is_no_plan_stops() -> None:
     assert state.status == "stopped" and "the thief is faster" in state.reason
 
 
-@pytest.mark.parametrize("cover", [None, {"format": 1}, {"format": 1, "cover": [{"state": {}, "zones": ["?"]}]}])
+@pytest.mark.parametrize("cover", [None, {"format": 1}, {"format": 1, "cover": [{"state": {}, "wait": ["?"]}]}])
 def test_a_plan_that_cannot_be_read_is_none(cover: Any) -> None:
     made = uncovered()
-    (state,) = made.mission.on_plan(made.mission.plan_request.number, answer(cover), 4.2)
+    (state,) = made.mission.on_plan(made.mission.plan_request.number, {**answer(NOWHERE), "cover": cover}, 4.2)
     assert state.status == "stopped" and "cannot be read" in state.reason
 
 

@@ -12,13 +12,13 @@ BEGINNING = """
 format: 1
 cover:
 - state: {bot: a, rule: first, reachObj: initial_location}
-  zones: [always]
+  wait: [always]
 - state: {bot: going_a_to_b, rule: first, reachObj: initial_location}
-  zones: [always]
+  wait: [always]
 """
 COVER = BEGINNING + """\
 - state: {bot: b, rule: first, reachObj: initial_location}
-  zones: [always]
+  wait: [always]
 """
 WALKING = CHASE.replace(
     "locations: {b: [], gone: []}", "locations: {b: [], gone: [Cthief <= 4]}"
@@ -82,9 +82,9 @@ def test_a_plan_that_names_everybody_is_as_before() -> None:
 
 STAGES = BEGINNING + """\
 - state: {bot: b, thief: gone, reachObj: initial_location}
-  zones: [Cthief <= 30]
+  wait: [Cthief <= 30]
 - state: {bot: b, thief: b, reachObj: initial_location}
-  zones: [always]
+  wait: [always]
 """
 """Only when the bot is in b does it matter where the thief is."""
 
@@ -134,25 +134,25 @@ def test_clocks_are_covered_by_the_entries_that_apply() -> None:
     assert state.status == "holding" and "has passed; " in state.reason
 
 
-def test_where_no_entry_applies_a_command_counts_in_its_own_state_alone() -> None:
+def test_where_no_entry_applies_no_command_counts() -> None:
     made = Journey(CHASE, COVER.replace("bot: a", "bot: b"), on_uncovered="warn")
     made.hear("_start_", 0.0)
     made.hear("thief_leaves", 12.0)
     assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
-    assert made.hear("bot:bot_a2b@2", 12.1).locations["bot"] == "going_a_to_b"
+    assert made.hear("bot:bot_a2b@2", 12.1) is None and made.mission.counts["uncommanded"] == 1
 
 
 PARTS = """
 format: 1
 cover:
 - state: {bot: a, rule: first}
-  zones: [Cbot <= 20]
+  wait: [Cbot <= 20]
 - state: {bot: going_a_to_b, rule: first}
-  zones: [always]
+  wait: [always]
 - state: {dog: b, thief: b, rule: first}
-  zones: [always]
+  wait: [always]
 - state: {dog: b, thief: gone, rule: first}
-  zones: [Cthief <= 30]
+  wait: [Cthief <= 30]
 """
 """Bot and dog are commanded at the same time, and only to the dog it matters where the thief is."""
 

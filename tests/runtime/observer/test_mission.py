@@ -14,6 +14,7 @@ from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.strategy import read_cover
+from tests.runtime.models import commanding
 from tests.runtime.texts import read
 
 CHASE = """
@@ -98,9 +99,10 @@ class Journey:
 
     def __init__(self, text: str = CHASE, cover: Any = None, **options: Any) -> None:
         self.logs: List[Tuple[str, str]] = []
-        table = None if cover is None else read_cover(read(cover))
+        model = Model(read(text))
+        table = None if cover is None else read_cover(commanding(read(cover), model))
         log = lambda level, message: self.logs.append((level, message))
-        self.mission = Mission(Model(read(text)), table, log, **options)
+        self.mission = Mission(model, table, log, **options)
 
     def hear(self, word: str, now: float) -> Any:
         """The last state published for the word, None: none."""
@@ -371,11 +373,11 @@ COVER = """
 format: 1
 cover:
 - state: {bot: a, rule: first}
-  zones: [Cbot <= 3]
+  wait: [Cbot <= 3]
 - state: {bot: going_a_to_b}
-  zones: [Cbot - Creach <= -2 && Cbot <= 4]
+  wait: [Cbot - Creach <= -2 && Cbot <= 4]
 - state: {bot: b}
-  zones: []
+  wait: []
 """
 
 
@@ -392,6 +394,43 @@ def test_clocks_may_be_beside_a_zone_by_the_tolerance_and_no_more() -> None:
         journey = Journey(cover=COVER)
         journey.hear("_start_", 0.0)
         assert journey.hear("bot_a2b", moment).status == status
+
+
+COMMANDING = """
+format: 3
+cover:
+- state: {bot: a}
+  wait: [Cbot <= 3]
+  commands:
+  - {do: bot_a2b, agent: bot, when: [3 < Cbot && Cbot <= 9]}
+- state: {bot: going_a_to_b}
+  wait: [always]
+"""
+
+
+def commanded() -> Journey:
+    """A mission, under way, whose strategy has the bot leave a from 3 on."""
+    model = Model(read(CHASE))
+    journey = Journey()
+    journey.mission = Mission(model, read_cover(read(COMMANDING)), lambda *said: journey.logs.append(said))
+    journey.hear("_start_", 0.0)
+    return journey
+
+
+def test_a_command_that_the_strategy_does_not_hold_in_the_state_is_refused() -> None:
+    journey = commanded()
+    for word in ("bot:catch@1", "thief:thief_leaves@1", "thief_leaves@1"):
+        assert journey.hear(word, 4.0) is None
+    assert journey.mission.counts["uncommanded"] == 3
+    assert journey.logs[-1] == ("warn", "thief_leaves@1: the strategy does not command it here")
+
+
+def test_a_command_counts_from_when_the_strategy_commands_it_also_if_it_comes_late() -> None:
+    journey = commanded()
+    assert journey.hear("bot:bot_a2b@1", 2.0) is None
+    assert journey.logs[-1] == ("warn", "bot:bot_a2b@1: the strategy does not command it yet")
+    assert commanded().hear("bot_a2b@1", 3.1).commanded
+    assert commanded().hear("bot:bot_a2b@1", 9.05).locations["bot"] == "going_a_to_b"
 
 
 def test_it_may_go_on_without_cover() -> None:

@@ -9,13 +9,10 @@ import pytest
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.simulator.simulator import Delays, Simulator
-from pursue_runtime.strategy import read_cover
-from tests.runtime.models import model_data, mover, worker
-from tests.runtime.texts import read
+from tests.runtime.models import everywhere, model_data, mover, worker
 from tests.together import HOTEL
 from tests.together import model as hotel
 
-COVER = read_cover(read("{format: 1, cover: [{state: {}, zones: [always]}]}"))
 RIDE = "doing_ride_in_lift"
 RIDING = (
     (101.5, "waiter:waiter_lobby2lift"), (103.9, "waiter_going_lobby_to_lift2lift"), (105.0, "porter:ride"),
@@ -35,7 +32,7 @@ class Play:
     def __init__(self, model: Model, *simulated: str) -> None:
         self.logs: List[Tuple[str, str]] = []
         log = lambda level, text: self.logs.append((level, text))
-        self.mission = Mission(model, COVER, log, on_uncovered="warn", lost_after=10.0)
+        self.mission = Mission(model, everywhere(model), log, on_uncovered="warn", lost_after=10.0)
         self.world = Simulator(model, simulated, Delays("middle"))
         self.hear(100.0, "_start_")
 

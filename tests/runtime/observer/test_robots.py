@@ -10,13 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_runtime.model import Model
 from pursue_runtime.state import format_state, parse_state
 from pursue_runtime.words import RobotReport, format_report, parse_report, parse_word
+from tests.runtime.models import commanding
 from tests.runtime.observer.test_mission import Journey
+from tests.runtime.texts import read
 
-EVERYWHERE = "{format: 1, cover: [{state: {}, zones: [always]}]}"
+EVERYWHERE = "{format: 1, cover: [{state: {}, wait: [always]}]}"
 
-EVERYWHERE_DATA = {"format": 1, "cover": [{"state": {}, "zones": ["always"]}]}
+EVERYWHERE_DATA = {"format": 1, "cover": [{"state": {}, "wait": ["always"]}]}
 
 HANDOVER = """
 format: 1
@@ -141,7 +144,7 @@ def test_a_lost_robot_that_cannot_return_again_does_not_hold_the_mission(made: J
     state = made.hear("taker:_failed_", 3.0)
     assert state.lost == ("taker",)
     number = made.mission.plan_request.number
-    made.mission.on_plan(number, {"strategies": {}, "people": None, "cover": EVERYWHERE_DATA}, 3.1)
+    made.mission.on_plan(number, {"strategies": {}, "people": None, "cover": commanding(EVERYWHERE_DATA, Model(read(HANDOVER)))}, 3.1)
     assert made.mission.status == "running"
     state = made.hear("taker:_displaced_", 3.2)
     state = made.hear(f"giver:handOver@{state.seq}", 3.3)

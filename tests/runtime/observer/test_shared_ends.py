@@ -12,11 +12,9 @@ from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.shared_ends import ALL, DOER
 from pursue_runtime.state import SystemState, format_state, parse_state
-from pursue_runtime.strategy import read_cover
-from tests.runtime.texts import read
+from tests.runtime.models import everywhere
 from tests.together import CARRY, HOTEL, model
 
-COVER = read_cover(read("{format: 1, cover: [{state: {}, zones: [always]}]}"))
 RIDE = "doing_ride_in_lift"
 
 
@@ -26,8 +24,9 @@ class Story:
     def __init__(self, whose: str = ALL, found: Optional[Model] = None) -> None:
         self.logs: List[Tuple[str, str]] = []
         log = lambda level, text: self.logs.append((level, text))
+        played = found or model(HOTEL)
         self.mission = Mission(
-            found or model(HOTEL), COVER, log, on_uncovered="warn", lost_after=10.0, shared_ends=whose
+            played, everywhere(played), log, on_uncovered="warn", lost_after=10.0, shared_ends=whose
         )
         for at, word in (
             (0.0, "_start_"), (1.5, "waiter:waiter_lobby2lift"), (3.9, "waiter_going_lobby_to_lift2lift"),
@@ -154,7 +153,7 @@ def test_who_is_no_robot_reports_nothing() -> None:
 
 def test_only_those_who_take_part_are_waited_for() -> None:
     """bot2 is elsewhere: the child alone takes part, and reports nothing."""
-    mission = Mission(model(CARRY), COVER, lambda level, text: None, on_uncovered="warn")
+    mission = Mission(model(CARRY), everywhere(model(CARRY)), lambda level, text: None, on_uncovered="warn")
     words = [
         (0.0, "_start_"), (1.2, "child_van2ramp"), (3.5, "child_going_van_to_ramp2ramp"), (4.6, "child_ramp2store"),
         (8.8, "child_going_ramp_to_store2store"), (10.0, "bot1:lift"),

@@ -75,7 +75,7 @@ def test_the_way_back_begins_when_the_plan_has_it_begin() -> None:
 
 
 def test_a_plan_that_comes_too_late_for_the_way_back_is_made_again_with_more_time_ahead() -> None:
-    cover = {"format": 1, "cover": [{"state": {"bot": "going_b_to_a"}, "zones": ["Cbot <= 4"]}]}
+    cover = {"format": 1, "cover": [{"state": {"bot": "going_b_to_a"}, "wait": ["Cbot <= 4"]}]}
     made = journey()
     made.hear("bot:_blocked_", 3.0)
     assert planned(made, cover, 13.0) == []

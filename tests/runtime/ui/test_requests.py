@@ -11,13 +11,9 @@ from hypothesis import strategies as st
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import SystemState
-from pursue_runtime.strategy import read_cover
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.requests import ANSWERED, PageRequest, Presses, read_request
-from tests.runtime.models import model_data, mover, state, worker
-from tests.runtime.texts import read
-
-COVER = read_cover(read("{format: 1, cover: [{state: {}, zones: [always]}]}"))
+from tests.runtime.models import everywhere, model_data, mover, state, worker
 
 
 def bell() -> Any:
@@ -39,7 +35,8 @@ class Play:
 
     def __init__(self) -> None:
         self.model, self.now = endless(), 100.0
-        self.mission = Mission(self.model, COVER, lambda *_: None, on_uncovered="warn", lost_after=1000.0)
+        options = {"on_uncovered": "warn", "lost_after": 1000.0}
+        self.mission = Mission(self.model, everywhere(self.model), lambda *_: None, **options)
         self.presses = Presses(lambda: self.now)
         self.hear("_start_")
 
