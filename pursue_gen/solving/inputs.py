@@ -14,6 +14,7 @@ from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.assumed_alone import check_assumed_alone
+from pursue_gen.solving.forbidden import check_forbidden
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.synthesis.limits import Listener
@@ -38,7 +39,10 @@ def findings_of(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings = check_reading(reading)
     if reading.scenario is None or any(finding.severity is Severity.ERROR for finding in findings):
         return findings
-    return in_order((*findings, *translation_notes(reading.scenario), *check_assumed_alone(reading.scenario)))
+    scenario = reading.scenario
+    return in_order(
+        (*findings, *translation_notes(scenario), *check_assumed_alone(scenario), *check_forbidden(scenario))
+    )
 
 
 def exit_status(findings: Iterable[Diagnostic]) -> int:

@@ -1,0 +1,137 @@
+"""Events that can never happen because of what is assumed.
+
+What can happen is looked for without clocks, so whatever is found never to happen never does. Where there are few
+discrete states, all of them are looked at. Where there are many, automata and variables keep what they have been beside
+what they become (delete relaxation, Hoffmann and Nebel 2001), which takes little time and finds less.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, Callable, Dict, Iterator, Optional, Set, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, warning
+from pursue_gen.language.scenario import Assumption, AtMost, Scenario
+from pursue_gen.language.wording import assumption_words, listed
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import NO_CHANNEL, Game, initial_state, joint_moves
+from pursue_gen.tga import translate
+from pursue_gen.tga.network import Kind, Objective
+
+_MOST_MOVES = 10_000
+"""The moves between discrete states that are looked at: some tenths of a second."""
+
+_MOST_EDGES = 20_000
+"""The edges of a network that is looked at; beyond that nothing is reported."""
+
+_Search = Callable[[Game], Optional[Set[int]]]
+"""The edges of a game that can be taken, or more; None: that would take too long."""
+
+_Deeds = Set[Tuple[str, str]]
+"""Agents with events that they begin."""
+
+
+def check_forbidden(scenario: Scenario) -> Iterator[Diagnostic]:
+    """A warning for each assumption with which events never happen that can happen without any."""
+    if not scenario.assumptions:
+        return
+    for search in (_by_states, _relaxed):
+        usual, kept = _possible(scenario, (), search), _possible(scenario, scenario.assumptions, search)
+        if usual is not None and kept is not None:
+            yield from _findings(scenario, usual, kept, search)
+            return
+
+
+def _findings(scenario: Scenario, usual: _Deeds, kept: _Deeds, search: _Search) -> Iterator[Diagnostic]:
+    lost: Dict[Tuple[Assumption, ...], _Deeds] = {}
+    alone = {(one,): _possible(scenario, (one,), search) for one in scenario.assumptions} if usual - kept else {}
+    for deed in usual - kept:
+        enough = next((one for one, done in alone.items() if done is not None and deed not in done), None)
+        lost.setdefault(enough or scenario.assumptions, set()).add(deed)
+    for assumed in sorted(lost, key=lambda some: (scenario.assumptions.index(some[0]), len(some))):
+        # Of "does call at_most 0 times" nobody has to be told that there is no call.
+        said = {(each.agent.name, each.event.name) for each in assumed if isinstance(each, AtMost) and not each.times}
+        words = _words(scenario, kept, lost[assumed] - said)
+        if words:
+            why = " and ".join(assumption_words(each) for each in assumed)
+            hint = "correct what is assumed, or add what makes these events possible; if this is meant, delete them"
+            yield warning("PML266", f"as long as {why}, {words}", assumed[0].span, hint)
+
+
+def _words(scenario: Scenario, kept: _Deeds, lost: _Deeds) -> str:
+    """Which events never happen any more, and which agents can do none of theirs; "" where there are no such."""
+    gone = {event for _, event in lost} - {event for _, event in kept}
+    idle = {agent for agent, _ in lost} - {agent for agent, _ in kept}
+    events = [event.name for event in scenario.events if event.name in gone]
+    words = [f"{listed(events)} can never happen"] if events else []
+    for agent in scenario.agents:
+        if agent.name in idle:
+            words.append(f"{agent.name} can do nothing{' but move' if scenario.movements(agent) else ''}")
+    return ", and ".join(words)
+
+
+def _possible(scenario: Scenario, assumed: Tuple[Assumption, ...], search: _Search) -> Optional[_Deeds]:
+    """All that agents can ever do where this is assumed, or more; None: that would take too long."""
+    network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives keep nobody from it
+    if sum(len(automaton.edges) for automaton in network.automata) > _MOST_EDGES:
+        return None
+    anywhere = network.automata[0].name, network.automata[0].initial  # a game has an objective
+    game = compile_game(network, Objective(Kind.SAFETY, bad=(anywhere,)))
+    taken = search(game)
+    events = {event.name for event in scenario.events}
+    if taken is None:
+        return None
+    return {
+        (game.automata[edge.automaton].name, game.channels[edge.channel])
+        for edge in (game.edges[k] for k in taken)
+        if edge.sends and edge.channel != NO_CHANNEL and game.channels[edge.channel] in events
+    }
+
+
+def _by_states(game: Game) -> Optional[Set[int]]:
+    """The edges that are taken from discrete states that can be reached whatever the clocks are."""
+    first = initial_state(game)
+    found, pending, moves = {first}, [first], 0
+    taken: Set[int] = set()
+    while pending:
+        for move in joint_moves(game, pending.pop()):
+            moves += 1
+            if moves > _MOST_MOVES:
+                return None
+            taken.update(move.edges)
+            if move.target not in found:
+                found.add(move.target)
+                pending.append(move.target)
+    return taken
+
+
+def _relaxed(game: Game) -> Set[int]:
+    """The edges that can be taken where nothing is lost that has been reached once."""
+    places = {(number, automaton.initial) for number, automaton in enumerate(game.automata)}
+    values = set(enumerate(game.initial_values))
+    channels = {NO_CHANNEL}
+    taken: Set[int] = set()
+    waiting = set(range(len(game.edges)))
+    while True:
+        new = {k for k in waiting if _can_be_taken(game, k, places, values, channels)}
+        if not new:
+            return taken
+        taken |= new
+        waiting -= new
+        for edge in (game.edges[k] for k in new):
+            places.add((edge.automaton, edge.target))
+            values.update(edge.assignments)
+            channels.update([edge.channel] if edge.sends else [])
+
+
+def _can_be_taken(
+    game: Game,
+    number: int,
+    places: AbstractSet[Tuple[int, int]],
+    values: AbstractSet[Tuple[int, int]],
+    channels: AbstractSet[int],
+) -> bool:
+    edge = game.edges[number]
+    if (edge.automaton, edge.source) not in places or not (edge.sends or edge.channel in channels):
+        return False
+    return all(any(test in values for test in clause) for clause in edge.clauses)
