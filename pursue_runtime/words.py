@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Tuple
 
 EVENTS = "pursue/events"
 STATE, SYSTEM_STATE = "pursue/state", "pursue/system_state"
@@ -13,6 +13,7 @@ SEEN = "pursue/seen"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"
+REPORTED = "_reported_"
 FAILED, BLOCKED, FREE = "_failed_", "_blocked_", "_free_"
 HELD, RESUME, DISPLACED, BACK = "_held_", "_resume_", "_displaced_", "_back_"
 
@@ -24,49 +25,54 @@ class Word(NamedTuple):
     """A word on pursue/events: who does what.
 
     `seq` is the number of the state it is a command for, None: a report. `as_of` is the number of a state in which
-    what is reported was going on, None: the report has no number, and counts in any state.
+    what is reported was going on, None: the report has no number, and counts in any state. `at` is the ROS time
+    (seconds) at which it became true, None: when it was received.
     """
 
     agent: str
     event: str
     seq: Optional[int] = None
     as_of: Optional[int] = None
+    at: Optional[float] = None
 
 
-_WORD = re.compile(r"\s*(?:(\w+):)?(\w+)[!?]?(?:@(\d{1,1000})|#(\d{1,1000}))?\s*", re.ASCII)
+_NUMBER = r"#(\d{1,1000})(?:~(\d{1,12}\.\d{1,9}))?"
+_WORD = re.compile(rf"\s*(?:(\w+):)?(\w+)[!?]?(?:@(\d{{1,1000}})|{_NUMBER})?\s*", re.ASCII)
 
 
 def parse_word(text: str) -> Optional[Word]:
-    """Reads `[agent:]event[@seq]` or `[agent:]event#as_of` (agent "" where none is named); None for anything else."""
+    """Reads `[agent:]event[@seq]` or `[agent:]event#as_of[~at]` (agent "" where none is named); None for anything else.
+    """
     match = _WORD.fullmatch(text)
     if match is None:
         return None
-    agent, event, seq, as_of = match.groups()
-    return Word(agent or "", event, None if seq is None else int(seq), None if as_of is None else int(as_of))
+    agent, event, seq, as_of, at = match.groups()
+    return Word(agent or "", event, None if seq is None else int(seq), *_read_number(as_of, at))
 
 
 def format_word(word: Word) -> str:
     """Writes what parse_word reads."""
     prefix = word.agent + ":" if word.agent else ""
     number = "" if word.seq is None else f"@{word.seq}"
-    return prefix + word.event + number + _number(word.as_of)
+    return prefix + word.event + number + _number(word.as_of, word.at)
 
 
 class RobotReport(NamedTuple):
     """A word about a robot or a way, such as `bot1:_failed_`, and a text that says why ("": none).
 
-    `as_of` is as in Word.
+    `as_of` and `at` are as in Word.
     """
 
     agent: str
     event: str
     text: str = ""
     as_of: Optional[int] = None
+    at: Optional[float] = None
 
 
 _REPORT = re.compile(
     rf"\s*(\w+):({'|'.join((FAILED, BLOCKED, FREE, HELD, RESUME, DISPLACED, BACK))})"
-    r"(?:#(\d{1,1000}))?(?:\s+(\S.*))?\s*",
+    rf"(?:{_NUMBER})?(?:\s+(\S.*))?\s*",
     re.ASCII,
 )
 
@@ -76,18 +82,30 @@ def parse_report(text: str) -> Optional[RobotReport]:
     match = _REPORT.fullmatch(text)
     if match is None:
         return None
-    agent, event, as_of, why = match.groups()
-    return RobotReport(agent, event, _one_line(why or ""), None if as_of is None else int(as_of))
+    agent, event, as_of, at, why = match.groups()
+    return RobotReport(agent, event, _one_line(why or ""), *_read_number(as_of, at))
 
 
 def format_report(report: RobotReport) -> str:
     """Write what parse_report reads."""
-    return f"{report.agent}:{report.event}{_number(report.as_of)} {_one_line(report.text)}".rstrip()
+    return f"{report.agent}:{report.event}{_number(report.as_of, report.at)} {_one_line(report.text)}".rstrip()
 
 
-def _number(as_of: Optional[int]) -> str:
-    """The number of a report as it stands in a word."""
-    return "" if as_of is None else f"#{as_of}"
+def said_at(text: str) -> Optional[float]:
+    """Return the ROS time (seconds) at which what a text reports became true; None where it does not say."""
+    report = parse_report(text) or parse_word(text)
+    return report.at if report is not None else None
+
+
+def _number(as_of: Optional[int], at: Optional[float]) -> str:
+    """The number and the time of a report as they stand in a word: a time only behind a number."""
+    number = "" if as_of is None else f"#{as_of}"
+    return number if at is None or not number else f"{number}~{at:.6f}"
+
+
+def _read_number(as_of: Optional[str], at: Optional[str]) -> Tuple[Optional[int], Optional[float]]:
+    """The number and the time of a report from their texts."""
+    return None if as_of is None else int(as_of), None if at is None else float(at)
 
 
 def _one_line(text: str) -> str:

@@ -14,7 +14,7 @@ from pursue_runtime.words import FINISH, Word, parse_report, parse_word
 class RecordedWord:
     """A word on pursue/events: when it was received (seconds), and the node that published it ("": not known).
 
-    `seq` and `as_of` are as in Word.
+    `seq`, `as_of` and `since` (there: `at`) are as in Word.
     """
 
     at: float
@@ -24,6 +24,12 @@ class RecordedWord:
     event: str = ""
     seq: Optional[int] = None
     as_of: Optional[int] = None
+    since: Optional[float] = None
+
+    @property
+    def moment(self) -> float:
+        """Since when what the word says is true, as far as that is known (seconds)."""
+        return self.at if self.since is None else min(self.since, self.at)
 
 
 @dataclass(frozen=True)
@@ -66,7 +72,7 @@ def read_word(at: float, text: str, node: str = "") -> RecordedWord:
     bare = text.strip()
     report = parse_report(bare)
     if report is not None:
-        return RecordedWord(at, bare, node, report.agent, report.event, as_of=report.as_of)
+        return RecordedWord(at, bare, node, report.agent, report.event, None, report.as_of, report.at)
     word = Word("", FINISH) if bare == FINISH else parse_word(bare) or Word("", "")
     return RecordedWord(at, bare, node, *word)
 

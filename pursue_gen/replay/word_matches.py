@@ -80,7 +80,7 @@ def match_words(
     """
     received: Dict[Tuple[str, Optional[int]], List[Tuple[float, int]]] = {}
     for place, word in enumerate(record.words):
-        received.setdefault((word.event, word.seq), []).append((word.at, place))
+        received.setdefault((word.event, word.seq), []).append((word.moment, place))
     for words in received.values():
         words.sort()
     used: Set[int] = set()

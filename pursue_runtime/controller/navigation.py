@@ -32,8 +32,6 @@ from pursue_runtime.words import (
     RESUME,
     RobotReport,
     Word,
-    format_report,
-    format_word,
 )
 
 GRACE = 2.0
@@ -182,6 +180,11 @@ class Navigation:
         """Take a position on the map; None: it is not published any more."""
         self._at.on_position(position, now)
 
+    def say_again(self) -> None:
+        """Have the present report published again at once: an observer has appeared."""
+        if self._report is not None:
+            self._report.say_again()
+
     # What is to be done -----------------------------------------------------------------------------------------------
 
     def due(self, now: float, real: float) -> Due:
@@ -197,7 +200,7 @@ class Navigation:
             goal = self._due_goal(trip, now, real)
         if self._action is not None and self._may_act(self._action, now):
             action, self._action = self._action, None
-        word = self._report.due(real) if self._report is not None else None
+        word = self._report.due(now, real) if self._report is not None else None
         return Due(goal, action, word)
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
@@ -327,7 +330,7 @@ class Navigation:
         self._at.on_arrival(poi)
         trip.has_arrived, trip.goal_at, trip.cancelled, self.trouble = True, None, None, ""
         word = Word("", f"{self.name}_{trip.movement.location}2{poi}", as_of=self._as_of)
-        self._report = Report(format_word(word), self.reaction)
+        self._report = Report(word, self.reaction)
 
     def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
         what = trip.describe(how, text)
@@ -367,8 +370,8 @@ class Navigation:
 
     # Reports ----------------------------------------------------------------------------------------------------------
 
-    def _word(self, event: str, text: str = "") -> str:
-        return format_report(RobotReport(self.name, event, text, self._as_of))
+    def _word(self, event: str, text: str = "") -> RobotReport:
+        return RobotReport(self.name, event, text, self._as_of)
 
     def _reports(self, event: str) -> bool:
         """Return True if the present report is of this kind."""

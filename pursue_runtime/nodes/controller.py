@@ -45,6 +45,7 @@ class Controller:
         self.observer = ""
         self.exegg = Exeggutor(self.ending)
         self.alarm = Alarm(self.on_alarm, self.ending)
+        self.exegg.on_observer = self.on_alarm  # a command that is due is published again at once, too
         try:
             self.follower.load_current()
         except DataError as problem:

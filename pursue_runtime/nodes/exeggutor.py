@@ -6,7 +6,7 @@ import contextlib
 import threading
 import time
 from functools import partial
-from typing import Dict, List, Mapping, Optional, Sequence
+from typing import Callable, Dict, List, Mapping, Optional, Sequence
 
 import rospy
 from std_msgs.msg import String
@@ -19,7 +19,7 @@ from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.locations import is_action, is_movement, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.node import Alarm, Ending, Later
-from pursue_runtime.nodes.publishing import ServedFirst, listeners
+from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.poses import Table
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
@@ -43,6 +43,9 @@ class Exeggutor:
         self._events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self._observer = ""
         self._precedence = ServedFirst(self._events, lambda node: node == self._observer)
+        self.on_observer: Callable[[], None] = lambda: None
+        """Called when an observer has connected, once the reports of robots were published again."""
+        Newcomers(self._events, lambda node: node == self._observer, self._say_again)
         self._robots: Dict[str, Navigation] = {}
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
@@ -97,6 +100,14 @@ class Exeggutor:
     def observers(self) -> List[str]:
         """The nodes that are subscribed to what is published here."""
         return listeners(self._events)
+
+    def _say_again(self) -> None:
+        """Publish reports that no state has shown once more: an observer has connected."""
+        with self._lock:
+            for robot in self._robots.values():
+                robot.say_again()
+            self._act()
+        self.on_observer()
 
     def follow(self, state: SystemState, begun: Sequence[StartedActivity] = ()) -> None:
         """Handle a state: drop orders that are over, and reports that the state shows; order what has `begun`."""

@@ -9,11 +9,12 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import math
 import os
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -45,12 +46,13 @@ from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
+from pursue_runtime.observer.returning import Returning
 from pursue_runtime.observer.settings import read_settings
 from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
 from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
-from pursue_runtime.words import EVENTS, FINISH, PLAN, STATE, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, STOP, SYSTEM_STATE
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -96,11 +98,11 @@ class Observer:
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
         self.alarm = Alarm(self.on_alarm, self.ending)
-        self.take_up()
+        self.returning = self.take_up()
         self.repeats = StateRepeats(self.mission.model.reaction * self.settings.time_unit)
         self.await_clock()
         self.witnesses.await_subscribers(self.states)
-        self.publish([self.mission.state(self.now())])
+        self.publish([self.mission.state(self.returning.floor if self.returning else self.now())])
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
@@ -173,17 +175,26 @@ class Observer:
         """ROS time in seconds, but nothing comes before what is written down."""
         return max(float(rospy.get_time()), self.journal.last)
 
-    def take_up(self) -> None:
-        """Take up the mission where the journal and the other nodes have it; stop it where that is unclear."""
+    def take_up(self) -> Optional[Returning]:
+        """Take up the mission where the journal and the other nodes have it; stop it where that is unclear.
+
+        Return what other nodes have to report of the time in which there was no observer; None where they do not, or
+        none of them has seen the mission: then nobody knows until when the observer was there.
+        """
         own, journal = self.mission.state(self.now()), self.journal
         found = find_state(own, journal.damage, journal.after, self.witnesses.seen, self.begun)
         why = found.stop
+        awaited = self.witnesses.reporting(self.mission.name)
+        stamps = (self.witnesses.seen[node].stamp for node in awaited)
         if found.adopt is not None:
             try:
-                journal.adopt(found.adopt, rospy.get_time())
+                journal.adopt(found.adopt, found.adopt.stamp if awaited else rospy.get_time())
             except DataError as problem:
                 why = f"the observer was restarted, and cannot go on from state {found.adopt.seq}: {problem}"
-        journal.call("stop" if why else "restarted", *([why] if why else []), now=self.now())
+        goes_on = awaited and not why and self.mission.status in LIVE
+        floor = max([journal.last, *stamps]) if goes_on else self.now()
+        journal.call("stop" if why else "restarted", *([why] if why else []), now=floor)
+        return Returning(floor, awaited, time.monotonic()) if goes_on else None
 
     def await_clock(self) -> None:
         """Wait for simulated time where a mission goes on: it is 0 until /clock was received."""
@@ -200,10 +211,33 @@ class Observer:
         dropped, and comes again once it receives the states.
         """
         publisher = message._connection_header.get("callerid", "")
+        if message.data == REPORTED:
+            self.on_reported(publisher)
+            return
         if self.is_controller(publisher) and not is_connected(self.states, publisher):
             self.log_soon("warn", f"{publisher} does not receive the states; its word is dropped: {message.data[:80]}")
             return
         self.call("hear", message.data)
+
+    def on_reported(self, node: str) -> None:
+        """Handle that a node has reported all that it had to."""
+        with self.lock, self.log_lines:
+            if self.returning is not None:
+                self.returning.on_reported(node)
+                self.settle()
+
+    def settle(self, at_once: bool = False) -> None:
+        """Take what was reported of the time without an observer, if nobody is waited for any more."""
+        returning = self.returning
+        if returning is None:
+            return
+        if not (at_once or returning.is_over(time.monotonic())):
+            self.publish([])  # sets the alarm
+            return
+        if returning.missing():
+            self.log_soon("warn", f"no answer on {EVENTS} from {', '.join(returning.missing())}")
+        self.returning = None
+        self.publish(returning.settle(self.mission, self.journal))
 
     def is_controller(self, node: str) -> bool:
         """Return True for the name of a controller of the mission, as rospy has it."""
@@ -223,7 +257,10 @@ class Observer:
             state = self.repeats.due(time.monotonic())
             if state is not None:
                 self.send(self.states, message_of(state))
-            self.call("tick")
+            if self.returning is None:
+                self.call("tick")
+            else:
+                self.settle()
 
     def answer(self, answer: PlannerAnswer) -> None:
         """Handle the planner's answer."""
@@ -253,7 +290,8 @@ class Observer:
                 if is_silent and node not in self.mission.silent and self.mission.status in LIVE:
                     self.call("silent", node)
             with self.lock:
-                if now >= self.published_at + self.settings.heartbeat and self.mission.status not in ENDED:
+                due = now >= self.published_at + self.settings.heartbeat
+                if due and self.returning is None and self.mission.status not in ENDED:
                     if self.mission.proposal is not None:
                         self.proposed = 0  # a controller has not reported that it has the plan: publish it again
                     self.publish([self.mission.state(self.now())])
@@ -277,6 +315,10 @@ class Observer:
         with self.lock, self.log_lines:
             if self.over and self.mission.status == WAITING:
                 return
+            if self.returning is not None and name == "hear" and args[0].strip() != STOP:
+                self.returning.hear(args[0], self.now())
+                return
+            self.settle(at_once=True)
             self.publish(self.journal.call(name, *args, now=self.now()))
 
     # Publishing -------------------------------------------------------------------------------------------------------
@@ -296,7 +338,10 @@ class Observer:
         self.planner.request_plan(self.mission.plan_request)
         repeat = self.repeats.next_moment()
         patience = None if repeat is None else max(0.0, repeat - time.monotonic())
-        self.alarm.set(self.mission.next_moment(self.now()), patience)
+        moment = self.mission.next_moment(self.now())
+        if self.returning is not None:
+            moment, patience = None, max(0.0, min(repeat or math.inf, self.returning.deadline) - time.monotonic())
+        self.alarm.set(moment, patience)
         if self.mission.status in ENDED and not self.over:
             self.over = True
             if self.mission.status == WON:

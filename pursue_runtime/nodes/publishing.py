@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import time
+from functools import partial
 from typing import Any, Callable, List
 
 import rospy
 from rospy.impl.tcpros_pubsub import QueuedConnection
+from std_msgs.msg import String
+
+from pursue_runtime.words import REPORTED
 
 
 def listeners(publisher: rospy.Publisher) -> List[str]:
@@ -26,9 +31,12 @@ def publish_to_one(publisher: rospy.Publisher, peer_publish: Callable[[Any], Non
     That function serializes into a buffer that all calls share, and leaves the lock to its caller: without it, messages
     that two threads publish at the same time are mixed. Raises rospy.ROSException where the topic is closed.
     """
-    impl = publisher.impl
-    if impl is None:
+    if publisher.impl is None:
         raise rospy.ROSException(f"{publisher.name} is closed")
+    _publish_locked(publisher.impl, peer_publish, message)
+
+
+def _publish_locked(impl: Any, peer_publish: Callable[[Any], object], message: Any) -> None:
     impl.acquire()
     try:
         peer_publish(message)
@@ -64,6 +72,37 @@ class ServedFirst(rospy.SubscribeListener):
                 if is_queued and self._is_first(connection.endpoint_id):
                     connection.write_data = AtOnce(connection).write
             self._impl.connections = connections
+
+
+class Newcomers(rospy.SubscribeListener):
+    """Calls `on_observer` when an observer has connected to what is published on pursue/events, also one that was
+    restarted, and then tells it that this node has said all that it has to report.
+
+    What is published in `on_observer` comes to the observer before that.
+    """
+
+    def __init__(
+        self, publisher: rospy.Publisher, is_observer: Callable[[str], bool], on_observer: Callable[[], None]
+    ) -> None:
+        """`is_observer` returns True for the name of the node that publishes the states; both are called in a thread of
+        rospy's."""
+        super().__init__()
+        self._impl, self._is_observer, self._on_observer = publisher.impl, is_observer, on_observer
+        self._known: List[object] = list(self._impl.connections)
+        self._impl.add_subscriber_listener(self)
+
+    def peer_subscribe(self, topic_name: str, topic_publish: object, peer_publish: object) -> None:
+        """A node has connected (rospy calls this, and does not say which one)."""
+        with self._impl.c_lock:
+            connections = list(self._impl.connections)
+            new = [each for each in connections if each not in self._known and self._is_observer(each.endpoint_id)]
+            self._known = connections
+        if new:
+            self._on_observer()
+        for connection in new:
+            with contextlib.suppress(rospy.ROSException):  # the node is going down
+                publish = partial(self._impl.publish, connection_override=connection)
+                _publish_locked(self._impl, publish, String(REPORTED))
 
 
 class AtOnce:

@@ -30,7 +30,7 @@ from pursue_runtime.nodes.node import (
     run_node,
     subscribe,
 )
-from pursue_runtime.nodes.publishing import listeners
+from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
 from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
@@ -57,6 +57,7 @@ class SimulatorNode:
         self.reported = 0
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         self.alarm = Alarm(self.act, self.ending)
+        Newcomers(self.events, lambda node: node == self.observer, self.say_again)
         self.subscribers: List[rospy.Subscriber] = []
         for robot in self.robots:
             for topic, kind in ((f"{robot}/move_base_simple/goal", PoseStamped), (f"{robot}/pursue/actions", String)):
@@ -84,6 +85,12 @@ class SimulatorNode:
         """A goal or an action for the robot."""
         with self.lock:
             self.simulator.on_order(robot, rospy.get_time(), message.data if isinstance(message, String) else "")
+            self.act()
+
+    def say_again(self) -> None:
+        """Publish reports that no state has shown once more: an observer has connected."""
+        with self.lock:
+            self.simulator.say_again()
             self.act()
 
     def act(self) -> None:

@@ -32,7 +32,7 @@ from pursue_runtime.nodes.node import (
     start_thread,
     subscribe,
 )
-from pursue_runtime.nodes.publishing import listeners
+from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
@@ -54,7 +54,7 @@ from pursue_runtime.ui.mission_view import (
 )
 from pursue_runtime.ui.options import Options, read_options
 from pursue_runtime.ui.requests import numbered
-from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal
+from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import INTERRUPTED, NOT_STARTED, Verdict, write_verdict
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START
@@ -95,6 +95,7 @@ class UI:
         self.page = UIPage(self)
         self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+        Newcomers(self.events, lambda node: node == self.observer, self.say_again)
         self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
         awaited = ", ".join(options.nodes) or "the observer"
@@ -237,6 +238,12 @@ class UI:
             elif self.phase == RUNNING:
                 self.act()
 
+    def say_again(self) -> None:
+        """Publish an instruction that no state has answered once more: an observer has connected."""
+        with self.lock:
+            self.mission.say_again()
+            self.act()
+
     def act(self) -> None:
         """Publishes what is due, and sleeps until there is more."""
         if self.phase != RUNNING or self.verdict is not None:
@@ -360,11 +367,6 @@ def typed_lines() -> Iterator[str]:
         yield from sys.stdin
     except (OSError, ValueError) as problem:  # the terminal is gone, or what was typed is no text
         rospy.logwarn("standard input is not read any more: %s", problem)
-
-
-def on_terminal() -> bool:
-    """True where a person reads and writes."""
-    return all(stream is not None and not stream.closed and stream.isatty() for stream in (sys.stdin, sys.stdout))
 
 
 def save_verdict(path: str, outcome: str, sentence: str) -> None:

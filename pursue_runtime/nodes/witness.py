@@ -15,8 +15,8 @@ from pursue_runtime.nodes.links import is_gone
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.publishing import listeners, publish_to_one
 from pursue_runtime.nodes.state_message import message_of, subscribe_states
-from pursue_runtime.state import WAITING, SystemState
-from pursue_runtime.words import SEEN
+from pursue_runtime.state import LIVE, WAITING, SystemState
+from pursue_runtime.words import EVENTS, SEEN
 
 PATIENCE = 5.0
 """Seconds of real time for which an observer that starts waits for the nodes that publish there."""
@@ -91,17 +91,27 @@ class Witnesses:
         for node, state in list(self.seen.items()):
             on_state(state, node)
 
+    def reporting(self, mission: str) -> List[str]:
+        """Return the nodes that have seen this mission under way and may have something to report: they publish words.
+        """
+        there = [node for node, state in self.seen.items() if state.mission == mission and state.status in LIVE]
+        return sorted(set(there) & set(_publishers(EVENTS))) if there else []
+
     def _missing(self) -> List[str]:
         """The nodes that publish there, as far as the master knows, and have not answered."""
-        try:
-            publishers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
-        except (OSError, rosgraph.MasterException) as problem:
-            rospy.logwarn("the master does not say who publishes on %s: %s", SEEN, problem)
-            return []
-        nodes = publishers.get(rospy.resolve_name(SEEN), [])
-        return [node for node in nodes if node not in self.seen and node != rospy.get_name()]
+        return [node for node in _publishers(SEEN) if node not in self.seen and node != rospy.get_name()]
 
     def _receive(self, state: SystemState, publisher: str) -> None:
         self.seen[publisher] = state
         if self._on_state is not None:
             self._on_state(state, publisher)
+
+
+def _publishers(topic: str) -> List[str]:
+    """The nodes that publish on a topic, as far as the master knows; none where it does not answer."""
+    try:
+        publishers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
+    except (OSError, rosgraph.MasterException) as problem:
+        rospy.logwarn("the master does not say who publishes on %s: %s", topic, problem)
+        return []
+    return list(publishers.get(rospy.resolve_name(topic), []))

@@ -36,19 +36,22 @@ class EndWindow(NamedTuple):
 
 @dataclass
 class Activity:
-    """A movement or an action that goes on; moments are seconds of ROS time, `sent` of the real clock.
+    """A movement or an action that goes on; moments are seconds of ROS time, `sent` of the real clock. `at_once`: the
+    word is to be published again whenever it was sent.
 
-    `word` reports its end, with the number of the first state that has shown it.
+    `word` reports its end, with the number of the first state that has shown it; what is published again carries the
+    time of the end.
     """
 
     location: str
     since: float
-    word: str
+    word: Word
     shortest: float
     moment: float
     under_way: bool
     sends: int = 0
     sent: float = 0.0
+    at_once: bool = False
 
 
 def end_window(model: Model, automaton: Automaton, location: str) -> Optional[EndWindow]:
@@ -78,10 +81,15 @@ def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
 
 
 def report_word(model: Model, agent: str, event: str, as_of: Optional[int] = None) -> str:
+    """Return the text of the word that reports an event, as `report_of`."""
+    return format_word(report_of(model, agent, event, as_of))
+
+
+def report_of(model: Model, agent: str, event: str, as_of: Optional[int] = None) -> Word:
     """Return the word that reports an event, with the agent's name only if another agent has the same event; `as_of`
     as in Word."""
     able = {a.name for a in model.automata for edge in a.edges if edge.word == event and reports(a, edge)}
-    return format_word(Word(agent if able - {agent} else "", event, as_of=as_of))
+    return Word(agent if able - {agent} else "", event, as_of=as_of)
 
 
 def reports(automaton: Automaton, edge: Edge) -> bool:
@@ -164,6 +172,11 @@ class Simulator:
         elif robot in self._orders:  # the state that it is for comes later
             self._orders[robot][order] = now
 
+    def say_again(self) -> None:
+        """Have all reports that no state has shown published again at once: an observer has appeared."""
+        for activity in self._activities.values():
+            activity.at_once = True
+
     def due(self, now: float, real: float) -> List[str]:
         """Return the words to publish at this ROS time and time of the monotonic clock."""
         words = []
@@ -172,9 +185,10 @@ class Simulator:
                 continue
             ended = activity.under_way and now >= activity.moment - 1e-6
             if ended and (activity.sends == 0 or self._is_unanswered(activity, real)):
+                word = activity.word._replace(at=activity.moment) if activity.sends else activity.word
                 activity.sends += 1
-                activity.sent = real
-                words.append(activity.word)
+                activity.sent, activity.at_once = real, False
+                words.append(format_word(word))
         return words
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
@@ -202,7 +216,7 @@ class Simulator:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
         activity = Activity(
-            location, since, report_word(self._model, name, window.event, state.seq), window.low * state.unit,
+            location, since, report_of(self._model, name, window.event, state.seq), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
             under_way=automaton.kind != "robot" or newborn,
         )
@@ -219,6 +233,8 @@ class Simulator:
         activity.moment = max(activity.moment, now + activity.shortest)
 
     def _resend_at(self, activity: Activity) -> float:
+        if activity.at_once:
+            return 0.0
         unit = self._state.unit if self._state is not None else 1.0
         return max(activity.sent, self._state_received) + resend_timeout(activity.sends, self._model.reaction * unit)
 

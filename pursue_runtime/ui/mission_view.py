@@ -181,6 +181,11 @@ class MissionView:
             self._environment.on_state(state, self.start, now)
         return self._lines(state, last)
 
+    def say_again(self) -> None:
+        """Have the last instruction published again at once, unless a state has answered it: an observer has appeared.
+        """
+        self._ordered = (-1, 0.0, 0)
+
     def due(self, now: float, real: float) -> List[str]:
         """The words to publish at this moment."""
         if self.state is None or self.state.status not in LIVE:

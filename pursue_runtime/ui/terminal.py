@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from typing import Mapping, TextIO
 
 GOOD, BAD, BOLD, PLAIN = "32", "31", "1", ""
 """Styles: the codes of ANSI terminals."""
+
+
+def on_terminal() -> bool:
+    """Return True where a person reads and writes."""
+    return all(stream is not None and not stream.closed and stream.isatty() for stream in (sys.stdin, sys.stdout))
 
 
 class Terminal:

@@ -14,7 +14,17 @@ from pursue_runtime import zones as runtime_zones
 from pursue_runtime.data import DataError, Package, data_file, read_data
 from pursue_runtime.state import SystemState, format_state, older, parse_state
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import BACK, FAILED, RobotReport, Word, format_report, format_word, parse_report, parse_word
+from pursue_runtime.words import (
+    BACK,
+    FAILED,
+    RobotReport,
+    Word,
+    format_report,
+    format_word,
+    parse_report,
+    parse_word,
+    said_at,
+)
 from pursue_runtime.zones import due, parse_zone
 from tests.runtime.texts import read
 
@@ -135,13 +145,31 @@ def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
 def test_words_come_back(agent: str, event: str, seq: object) -> None:
     word = Word(agent, event, seq)
     assert parse_word(format_word(word)) == word
-    assert parse_word(format_word(word._replace(seq=None, as_of=seq))) == (agent, event, None, seq)
+    assert parse_word(format_word(word._replace(seq=None, as_of=seq))) == (agent, event, None, seq, None)
 
 
-@given(names, st.sampled_from((FAILED, BACK)), st.none() | st.integers(0, 10**6), st.sampled_from(("", "no way", "#7")))
-def test_reports_about_robots_come_back(robot: str, event: str, as_of: object, why: str) -> None:
-    report = RobotReport(robot, event, why, as_of)
-    assert parse_report(format_report(report)) == report
+times = st.none() | st.integers(0, 10**16).map(lambda micros: micros / 10**6)
+
+
+@settings(deadline=None)
+@given(names, st.integers(0, 10**6), times)
+def test_a_report_carries_the_time_at_which_it_became_true(event: str, as_of: int, at: object) -> None:
+    read = parse_word(format_word(Word("", event, as_of=as_of, at=at)))
+    assert read is not None and (read.event, read.as_of) == (event, as_of)
+    assert read.at == (at if at is None else pytest.approx(at, abs=1e-6))
+    assert said_at(format_word(read)) == read.at
+
+
+@settings(deadline=None)
+@given(
+    names, st.sampled_from((FAILED, BACK)), st.none() | st.integers(0, 10**6), times,
+    st.sampled_from(("", "no way", "#7", "~1.0")),
+)
+def test_reports_about_robots_come_back(robot: str, event: str, as_of: object, at: object, why: str) -> None:
+    report = RobotReport(robot, event, why, as_of, None if as_of is None else at)
+    read = parse_report(format_report(report))
+    assert read is not None and read._replace(at=report.at) == report
+    assert said_at(format_report(report)) == (None if report.at is None else pytest.approx(report.at, abs=1e-6))
 
 
 @pytest.mark.parametrize(
@@ -153,15 +181,18 @@ def test_reports_about_robots_come_back(robot: str, event: str, as_of: object, w
         (" bot1_c2b! ", "", "bot1_c2b", None),
         ("catch@99999999999999999999", "", "catch", 10**20 - 1),
         ("polBot2:catchDONE#7", "polBot2", "catchDONE", None),
+        ("polBot2:catchDONE#7~12.5", "polBot2", "catchDONE", None),
     ],
 )
 def test_words_by_hand_are_understood(text: str, agent: str, event: str, seq: object) -> None:
-    assert parse_word(text) == (agent, event, seq, 7 if "#" in text else None)
+    as_of, at = 7 if "#" in text else None, 12.5 if "~" in text else None
+    assert parse_word(text) == (agent, event, seq, as_of, at)
 
 
 @pytest.mark.parametrize(
     "text",
-    ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…", "a@" + 5000 * "9", "a@1#2", "a#", "a#1@2"],
+    ["", "two words", "catch@", "catch@x", ":catch", "a:b:c", "\x00", "…", "a@" + 5000 * "9", "a@1#2", "a#", "a#1@2",
+     "a~1.0", "a@1~1.0", "a#1~", "a#1~x", "a#1~1", "a#1~-1.0", "a#1~nan", "a#1~1e3", "a#1~" + 13 * "9" + ".0"],
 )
 def test_what_is_no_word_is_none(text: str) -> None:
     assert parse_word(text) is None

@@ -29,7 +29,7 @@ class Robot:
         self.enter(1, "c")
 
     def report(self, agent: str, word: str) -> None:
-        self.reports.append(word)
+        self.reports.append(word.partition("~")[0])
 
     def enter(self, seq: int, location: str) -> None:
         """The state of this number has it at another location, since now."""

@@ -175,7 +175,20 @@ def test_news_of_others_give_the_report_more_time() -> None:
     assert world.due(126.0, 2.0)
     world.on_state(state(MODEL, 3, 126.0, {"Cthief": 21.0}, thief="going_a_to_b"), real=2.4)
     assert world.due(126.0, 2.6) == []
-    assert world.due(126.0, 2.9) == [THIEF_ARRIVES]
+    assert world.due(126.0, 2.9) == [f"{THIEF_ARRIVES}~125.450000"]
+
+
+def test_a_report_is_published_again_at_once_for_an_observer_that_appears_with_the_time_of_the_end() -> None:
+    world = simulator()
+    world.on_state(leaves(bot="a", thief="going_a_to_b"), real=1.0)
+    world.say_again()
+    assert world.due(124.0, 1.5) == [], "there is nothing to report"
+    assert world.due(126.0, 2.0) == [THIEF_ARRIVES]
+    for real in (2.0, 2.001, 700.0):
+        world.say_again()
+        assert world.next_moments()[1] <= real
+        assert world.due(126.0 + real, real) == [f"{THIEF_ARRIVES}~125.450000"]
+        assert world.due(126.0 + real, real) == []
 
 
 def test_the_same_state_again_changes_nothing() -> None:
@@ -279,7 +292,7 @@ def test_each_robot_that_takes_part_reports_the_end_for_itself() -> None:
     assert sorted(world.due(109.5, 2.0)) == ["porter:rideDONE#2", "waiter:rideDONE#2"]
     assert world.next_moments()[1] is not None, "they are published again"
     world.on_state(riding(stamp=109.6, finished=("porter",)), real=2.1)
-    assert world.due(120.0, 100.0) == ["waiter:rideDONE#2"], "the state shows that the porter has finished"
+    assert world.due(120.0, 100.0) == ["waiter:rideDONE#2~109.450000"], "the state shows that the porter has finished"
 
 
 def test_who_is_no_robot_does_not_report_what_another_one_does() -> None:
