@@ -20,11 +20,11 @@ COVER = """
 format: 1
 cover:
 - state: {bot: a}
-  zones: [Cbot <= 20]
+  wait: [Cbot <= 20]
 - state: {bot: going_a_to_b}
-  zones: [Cbot <= 4]
+  wait: [Cbot <= 4]
 - state: {bot: b, thief: b}
-  zones: [Cbot - Creach <= -5 && Cbot <= 20]
+  wait: [Cbot - Creach <= -5 && Cbot <= 20]
 """
 
 TECHNICAL = re.compile(r"=|\b[CPS](bot|thief|reach|rule|open)\b|_")
