@@ -18,6 +18,7 @@ from benchmarks.families import FAMILIES
 from benchmarks.measure import GAMES, ROOT, Bounds, Row
 from benchmarks.process import Ran, run
 from benchmarks.tables import markdown, number, seconds, verdict
+from pursue_gen.outcomes import LimitHit, Lost
 
 MEMORY_GOAL = 2048
 """MiB: what each of these commands should need at most."""
@@ -26,9 +27,6 @@ _QUICK_COMMAND = 5.0
 """Seconds of the processor: what takes less is measured twice, and the better figure counts."""
 
 _STORIES = "stories/"
-
-_LOST, _LIMIT_HIT = 4, 5
-"""The exit statuses of a game that is lost, and of one that is not decided within the command's own limits."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +136,7 @@ def command_measured(goal: Goal, files: List[Path], folder: Path, bounds: Bounds
 def _outcome(ran: Ran) -> Dict[str, Any]:
     if ran.late:
         return {"outcome": "time"}
-    if ran.status not in (0, _LOST, _LIMIT_HIT):
+    if ran.status not in (0, Lost.exit_status, LimitHit.exit_status):
         findings = [line for line in ran.err.splitlines() if ": error " in line]
         return {"outcome": ((findings or [ran.last_line])[0] or f"it ended with status {ran.status}")[:120]}
     try:

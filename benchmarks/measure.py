@@ -31,9 +31,6 @@ MARGIN_STATES = {"story": 5_000}
 _BY_THE_CLOCK = 10
 """On a busy machine deciding and proving may take so many times their limit by the clock."""
 
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
 Row = Dict[str, Any]
 
 
@@ -106,7 +103,7 @@ def _measure(case: Case, bounds: Bounds) -> None:
 
 def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: Bounds) -> None:
     """Decide, prove and compute the margin; print the costs after each of these stages."""
-    from pursue_gen.diagnostics import PursueError
+    from pursue_gen.outcomes import LimitHit, NotProven
     from pursue_gen.proof.margin import strategy_margin
     from pursue_gen.solving.options import SolveOptions
     from pursue_gen.solving.proving import prove
@@ -135,14 +132,9 @@ def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: 
             strategy = prove(network, objective, verdict.strategy, rules.reaction, verdict.ranks, SolveOptions(limits))
         row.update(_size(strategy), proof=time.process_time() - start, memory=_peak())
         _print(row)
-    except PursueError as problem:
+    except (LimitHit, NotProven) as problem:
         message = problem.diagnostics[0].message.split(";")[0]
-        if problem.exit_status == _LIMIT_HIT:
-            failure = "proof" if row else _which_limit(message)
-        elif row:
-            failure = "refused"
-        else:
-            raise
+        failure = "refused" if isinstance(problem, NotProven) else "proof" if row else _which_limit(message)
         _print({**row, "outcome": failure, "reason": message, "memory": _peak()})
         return
     except _TooLong:
@@ -154,10 +146,10 @@ def _in_one_piece(case: Case, network: Any, objective: Any, rules: Any, bounds: 
 
 def _as_commands_do(case: Case, network: Any, objective: Any, rules: Any, bounds: Bounds) -> None:
     """Solve and prove, with some of the robots and in stages where that helps; print what both took together."""
-    from pursue_gen.diagnostics import PursueError
+    from pursue_gen.outcomes import LimitHit, Lost
     from pursue_gen.solving.options import SolveOptions
     from pursue_gen.solving.rules import played
-    from pursue_gen.solving.solution import is_lost, solution
+    from pursue_gen.solving.solution import solution
     from pursue_gen.synthesis.limits import Limits
     from pursue_gen.synthesis.solve import solve
 
@@ -169,14 +161,12 @@ def _as_commands_do(case: Case, network: Any, objective: Any, rules: Any, bounds
             with _at_most(2 * bounds.seconds):
                 won = solution(network, objective, rules, options)
             row = {"verdict": "won", **_counted(won.stats), **_size(won.strategy), "stages": len(won.strategy.stages)}
-        except PursueError as problem:
-            message = problem.diagnostics[0].message.split(";")[0]
-            if not is_lost(problem):
-                if problem.exit_status != _LIMIT_HIT:
-                    raise
-                _print({"outcome": _which_limit(message), "reason": message, "memory": _peak()})
-                return
+        except Lost:
             row = {"verdict": "lost"}
+        except LimitHit as problem:
+            message = problem.diagnostics[0].message.split(";")[0]
+            _print({"outcome": _which_limit(message), "reason": message, "memory": _peak()})
+            return
         except _TooLong:
             _print({"outcome": "time", "memory": _peak()})
             return

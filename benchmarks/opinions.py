@@ -10,12 +10,13 @@ from typing import Callable, Dict, List, Optional
 from unittest import mock
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.native import tables
 from pursue_gen.solving.crowds import Found, won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, is_lost, solution
+from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.without_pauses import lost_to_few_calls, won_without_pauses
 from pursue_gen.synthesis.compile_game import compile_game
@@ -38,9 +39,6 @@ _NATIVE_WORK, _WORK = 20_000_000, 60_000
 
 _POSITIONS, _CLOCKS = 1_200, 2
 """Brute force on regions takes games of about so many positions, and so many clocks."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
 
 _PROOF, _PROOF_TWIN = 20_000, 1_500
 """The symbolic states of a proof; the checker in Python looks at those where the native one took so many."""
@@ -90,10 +88,12 @@ class Opinions:
         verdict = None
         try:
             verdict = decide()
+        except Lost:
+            verdict = False
+        except LimitHit:
+            pass
         except PursueError as problem:
-            verdict = False if is_lost(problem) else None
-            if verdict is None and problem.exit_status != _LIMIT_HIT:
-                self.faults.append(f"{who}: {problem.diagnostics[0].message}")
+            self.faults.append(f"{who}: {problem.diagnostics[0].message}")
         self.verdicts[who] = verdict
         return verdict
 

@@ -22,9 +22,9 @@ from typing import Any, Iterator, List, Optional, Tuple
 from benchmarks.measure import GAMES, Row
 from benchmarks.random_page import LIMIT, MOST, PLUS, TIMES
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import Lost
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import is_lost
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margins
 from pursue_gen.synthesis.compile_game import compile_game
@@ -164,8 +164,10 @@ def _solved(network: Network, objective: Objective, rules: Rules) -> Optional[bo
     try:
         won = solved(network, objective, rules, SolveOptions(limits))
         margins(won, False, limits)
-    except PursueError as problem:
-        return False if is_lost(problem) else None
+    except Lost:
+        return False
+    except PursueError:
+        return None
     return True
 
 

@@ -44,16 +44,21 @@ class Diagnostic:
 
 
 class PursueError(Exception):
-    """The exception for all errors that the command line reports: diagnostics, and the exit status.
+    """The exception for all errors that the command line reports, with diagnostics: what was given has errors.
 
-    Exit statuses: 2 usage, 3 the scenario has errors, 4 the objective cannot be met, 5 a limit was hit, 6 an external
-    tool is missing.
+    Other outcomes are its subclasses (outcomes.py).
     """
 
-    def __init__(self, diagnostics: Iterable[Diagnostic], exit_status: int = 3) -> None:
+    exit_status = 3
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], exit_status: Optional[int] = None) -> None:
         self.diagnostics: Tuple[Diagnostic, ...] = tuple(diagnostics)
-        self.exit_status = exit_status
-        super().__init__("; ".join(d.message for d in self.diagnostics))
+        if exit_status is not None:
+            self.exit_status = exit_status
+        super().__init__(self.diagnostics)  # what it is made of: so it can be sent from one process to another
+
+    def __str__(self) -> str:
+        return "; ".join(finding.message for finding in self.diagnostics)
 
 
 def error(code: str, message: str, span: Optional[Span] = None, hint: str = "") -> Diagnostic:

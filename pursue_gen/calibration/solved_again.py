@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.solution import guaranteed, is_lost
+from pursue_gen.solving.solution import guaranteed
 from pursue_gen.solving.verdict import margin_text, margins, periods_json
-from pursue_gen.synthesis.limits import Listener, is_undecided
+from pursue_gen.synthesis.limits import Listener
 from pursue_gen.tga.network import Kind
 
 WON, LOST, UNDECIDED = "won", "lost", "not decided"
@@ -61,10 +61,8 @@ def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Lis
     """Solves the scenario within the limits of the request. Raises PursueError for what is no verdict."""
     try:
         found = promised_of(settled(scenario, request, progress), request, progress)
-    except PursueError as problem:
-        if not is_lost(problem) and not is_undecided(problem):
-            raise
-        return Verdict(LOST if is_lost(problem) else UNDECIDED, problem.diagnostics[0].message)
+    except (Lost, LimitHit) as problem:
+        return Verdict(LOST if isinstance(problem, Lost) else UNDECIDED, problem.diagnostics[0].message)
     won = found.solution
     has_goal = won.objective.kind is not Kind.SAFETY
     takes = won.guarantee.worst if won.guarantee is not None else None

@@ -43,6 +43,11 @@ def show(diagnostics: Iterable[Diagnostic], stream: Optional[TextIO] = None) -> 
         print(_painted(diagnostic, render(diagnostic, source), out), file=out)
 
 
+def ended(problem: PursueError) -> typer.Exit:
+    """The end of a command, with the exit status of its outcome; the findings are printed."""
+    return typer.Exit(problem.exit_status)
+
+
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
     """Wraps a command: its exceptions become messages and exit statuses."""
 
@@ -58,7 +63,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             status = INTERRUPTED
         except PursueError as problem:
             show(problem.diagnostics)
-            status = problem.exit_status
+            raise ended(problem) from None
         except BrokenPipeError:
             # What is still buffered would fail once more when the interpreter ends.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -7,7 +7,8 @@ from typing import Optional
 import typer
 
 from pursue_gen.cli.console import guarded
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Unavailable
 
 
 @guarded
@@ -29,7 +30,7 @@ def lsp(
             raise
         hint = "install it: pip install 'pursue-gen[lsp]', or pip install pygls"
         message = f"the language server needs the Python package pygls ({missing} was not found)"
-        raise PursueError([error("CLI006", message, hint=hint)], exit_status=6) from None
+        raise Unavailable([error("CLI006", message, hint=hint)]) from None
     status = serve(docs)
     if status:
         raise typer.Exit(status)

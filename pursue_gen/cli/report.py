@@ -12,8 +12,9 @@ import typer
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
 from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, SCENARIO, with_request
-from pursue_gen.diagnostics import PursueError, counted, error, usage_error
+from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
+from pursue_gen.outcomes import LimitHit, Lost, Unavailable
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -159,16 +160,11 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.report.make import lost_report, solved_both, won_report
     from pursue_gen.solving.least_time import decimal
-    from pursue_gen.solving.solution import is_lost
-    from pursue_gen.synthesis.limits import is_undecided
 
     try:
         with progress_line() as progress:
             scenario, both = solved_both(scenario, replace(solving, progress=progress))
-    except PursueError as problem:
-        too_slow = solving.within is not None and not (is_lost(problem) or is_undecided(problem))
-        if problem.exit_status not in (4, 5) or too_slow:
-            raise
+    except (Lost, LimitHit) as problem:
         show(problem.diagnostics)
         option = "" if solving.within is None else f"--within {decimal(solving.within)}"
         with progress_line() as progress:
@@ -199,7 +195,7 @@ def _write_pictures(made: Report, folder: Path) -> None:
     if missing:
         reason = "graphviz could not draw them" if graphviz.installed() else graphviz.HOW_TO_GET
         message = f"{counted(len(missing), 'picture')} could not be drawn: {', '.join(missing)}"
-        raise PursueError([error("REP005", message, hint=reason)], exit_status=6)
+        raise Unavailable([error("REP005", message, hint=reason)])
 
 
 def _write_page(made: Report, target: Path) -> None:

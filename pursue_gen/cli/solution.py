@@ -5,17 +5,16 @@ from __future__ import annotations
 import contextlib
 from typing import Any, Dict, Iterator
 
-from pursue_gen.cli.console import info, show
+from pursue_gen.cli.console import ended, info, show
 from pursue_gen.cli.progress import progress_line
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import condition_of_promise, periods_found, promise_words
+from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import rules_text
-from pursue_gen.solving.solution import is_lost
 from pursue_gen.solving.verdict import verdict_text
-from pursue_gen.synthesis.limits import is_undecided
 from pursue_gen.tga import translate
 
 
@@ -29,7 +28,7 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) ->
             found = promised_of(scenario, request, progress)
     except PursueError as problem:
         if explain and explained(problem, scenario, request):
-            raise PursueError((), problem.exit_status) from None  # its findings are printed
+            raise ended(problem) from None
         raise
     won = found.solution
     show(won.warnings)
@@ -67,7 +66,7 @@ def explained(
     """
     scenario = scenario.giving_up(scenario.optional)
     limits, rules = request.options.limits, request.rules(translate(scenario))
-    if is_lost(problem):
+    if isinstance(problem, Lost) and request.options.solver is None:
         from pursue_gen.explanation.explain import as_json, explain, render
 
         show(problem.diagnostics)
@@ -77,7 +76,7 @@ def explained(
             explanation = explain(scenario, rules, limits, progress)
         info(render(explanation).rstrip())
         return {"explanation": as_json(explanation)}
-    if is_undecided(problem) and request.plan is None and request.options.solver is None:
+    if isinstance(problem, LimitHit) and request.plan is None and request.options.solver is None:
         from pursue_gen.explanation import costs
 
         show(problem.diagnostics)
@@ -101,7 +100,7 @@ def naming_costs(scenario: Scenario, request: SolveRequest, quiet: bool = False)
     """Where a limit ends what is done meanwhile, what makes the scenario so large is printed after the error."""
     try:
         yield
-    except PursueError as problem:
-        if is_undecided(problem) and explained(problem, scenario, request, quiet):
-            raise PursueError((), problem.exit_status) from None  # its findings are printed
+    except LimitHit as problem:
+        if explained(problem, scenario, request, quiet):
+            raise ended(problem) from None
         raise

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, List, Optional, Tuple
 
 import typer
 
-from pursue_gen.cli.console import guarded, info, suggest
+from pursue_gen.cli.console import ended, guarded, info, suggest
 from pursue_gen.cli.inputs import game_from
 from pursue_gen.cli.options import EXPLAIN, GAME, MARGIN, REQUEST, with_request
 from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.files import shell_quoted
+from pursue_gen.outcomes import LimitHit, Lost, NotProven, TooSlow
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
@@ -61,12 +62,11 @@ def solve(
         kept = keep_counter(problem, network, objective, output)
         if kept is not None:
             info(f"The counter-strategy is in {kept}")
-        wanted = explain and problem.exit_status in (4, 5)
-        why = explained(problem, scenario, request, as_json_) if scenario is not None and wanted else {}
-        if as_json_ and problem.exit_status in (4, 5):
-            print(json.dumps({**verdict_json(rules, None, problem.diagnostics), **why}, indent=1))
-        if why:  # its findings are printed
-            raise typer.Exit(problem.exit_status) from None
+        why = explained(problem, scenario, request, as_json_) if scenario is not None and explain else {}
+        if as_json_ and isinstance(problem, (Lost, TooSlow, NotProven, LimitHit)):
+            print(json.dumps({**verdict_json(rules, problem), **why}, indent=1))
+        if why:
+            raise ended(problem) from None
         raise
     plan = write_plan(won.strategy, won.network, won.objective) if printed or output is not None else ""
     if output is not None:
@@ -74,7 +74,7 @@ def solve(
     found = margins(won, margin, limits)
     if as_json_:
         more = {} if promise is None else {**periods_json(promise.scenario), **optional_json(promise.scenario)}
-        print(json.dumps({**verdict_json(rules, won, (), *found), **more}, indent=1))
+        print(json.dumps({**verdict_json(rules, won, *found), **more}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))

@@ -12,8 +12,9 @@ import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import SCENARIO
-from pursue_gen.diagnostics import PursueError, as_json, error, usage_error
+from pursue_gen.diagnostics import as_json, error, usage_error
 from pursue_gen.files import check_new, shell_quoted, write_bytes
+from pursue_gen.outcomes import Unavailable
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -88,7 +89,7 @@ def _check_packages() -> None:
     except ImportError as problem:
         message = f"survey needs the Python packages numpy and scipy, which are not installed here ({problem})"
         hint = "install them: pip install 'pursue-gen[survey]'"
-        raise PursueError([error("MAP002", message, hint=hint)], 6) from None
+        raise Unavailable([error("MAP002", message, hint=hint)]) from None
     del numpy, scipy
 
 

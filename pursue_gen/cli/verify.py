@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, List
 
 import typer
 
-from pursue_gen.cli.console import guarded, show
+from pursue_gen.cli.console import ended, guarded, show
 from pursue_gen.cli.inputs import game_from, scenario_from
 from pursue_gen.cli.options import GAME, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
@@ -30,7 +30,7 @@ def verify(
     """
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.cli.solution import show_promise
-    from pursue_gen.solving.given_plan import exit_status, try_plan
+    from pursue_gen.solving.given_plan import problem_of, try_plan
     from pursue_gen.solving.inputs import are_scenario
     from pursue_gen.solving.optional import try_plan_of
     from pursue_gen.solving.rules import rules_text
@@ -49,7 +49,8 @@ def verify(
     for trial in tried:
         print(f"{rules_text(trial.rules)}: {trial.outcome}")
         show(trial.findings)
-    if scenario is not None and not exit_status(tried):
+    problem = problem_of(tried)
+    if problem is not None:
+        raise ended(problem)
+    if scenario is not None:
         show_promise(scenario, assumptions=False)
-    if exit_status(tried):
-        raise typer.Exit(exit_status(tried))

@@ -18,6 +18,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
+from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.report.make import ReportOptions, lost_report, won_report
 from pursue_gen.report.whole import report_page
 from pursue_gen.solving.inputs import game_of, settled
@@ -25,9 +26,8 @@ from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL
-from pursue_gen.solving.solution import is_lost
 from pursue_gen.solving.solvers import solved
-from pursue_gen.synthesis.limits import Limits, Progress, is_undecided
+from pursue_gen.synthesis.limits import Limits, Progress
 
 WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
 _INTERVAL = 0.3
@@ -105,10 +105,8 @@ def _solve(given: Work, pipe: Connection) -> None:
     scenario = settled(scenario_of(given), request, progress)
     try:
         found = promised_of(scenario, request, progress)
-    except PursueError as problem:
-        if not is_lost(problem) and not is_undecided(problem):
-            raise
-        pipe.send({"verdict": LOST if is_lost(problem) else UNDECIDED, "lines": sentences(problem)})
+    except (Lost, LimitHit) as problem:
+        pipe.send({"verdict": LOST if isinstance(problem, Lost) else UNDECIDED, "lines": sentences(problem)})
         pipe.send({"progress": "looking for what would change that"})
         lost = lost_report(scenario, problem, limits.since(start), progress, floor)
         pipe.send({"page": report_page(lost)})

@@ -13,6 +13,7 @@ from typing import Dict, Optional, Tuple
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.knobs import Knob, Variant, knobs
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
@@ -78,9 +79,10 @@ def findings(
             continue
         try:
             win = _least(knob, budget)
-        except PursueError as problem:
-            if problem.exit_status == 5:
-                undecided[k] = knob.label
+        except LimitHit:
+            undecided[k] = knob.label
+            continue
+        except PursueError:  # no scenario has that value
             continue
         if win is None:
             lost[k] = knob.say(knob.values[-1])
@@ -108,7 +110,7 @@ class _Win:
 def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
     """The smallest change that wins, between two that have been tried; None: the largest does not.
 
-    At the limits, the smallest that is known. Raises PursueError (exit status 5) when none is.
+    At the limits, the smallest that is known. Raises LimitHit when none is.
     """
     last = len(knob.values) - 1
     win: Optional[_Win] = None
@@ -123,9 +125,7 @@ def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
         middle = (win.low + win.high) // 2
         try:
             strategy = _strategy(knob.make(knob.values[middle]), budget)
-        except PursueError as problem:
-            if problem.exit_status != 5:
-                raise
+        except LimitHit:
             break
         win = replace(win, low=middle) if strategy is None else _Win(win.low, middle, strategy)
     return win
@@ -149,7 +149,7 @@ def _price(change: Change) -> Tuple[int, Fraction]:
 
 
 def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
-    """A strategy that wins the changed game, None where it is lost. Raises PursueError (status 5: not decided)."""
+    """A strategy that wins the changed game, None where it is lost. Raises LimitHit."""
     scenario, rules = variant
     network = played(translate(scenario), rules)
     return verdict_of(budget, network, scenario_objective(scenario), rules.reaction, _SHARE).strategy

@@ -9,9 +9,9 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.lesser import Part, without_each
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
@@ -29,9 +29,6 @@ rest for each attempt without several of them.
 
 _SHOWN = 5
 """So many parts are named."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
 
 _Game = Tuple[Network, Objective]
 
@@ -155,9 +152,7 @@ def _cost(without: Tuple[str, ...], game: _Game, rules: Rules, budget: Budget, s
     before = budget.work
     try:
         verdict = budget.verdict(*game, rules.reaction, share)
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None
     stats = verdict.stats
     return Cost(without, verdict.won, stats.discrete_states, round(stats.seconds, 3), int(before - budget.work))

@@ -32,7 +32,7 @@ class Endless:
 def endless(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Tuple[Endless, ...]:
     """Whose actions without end alone prevent the objective of a lost game; empty if it is lost without them too.
 
-    Raises PursueError with exit status 5 where that is not decided within the budget.
+    Raises LimitHit where that is not decided within the budget.
     """
     agents = _repeating(cone_of_influence(network, objective))
     if objective.kind is Kind.SAFETY or not _won_with_pauses(network, objective, reaction, tuple(agents), budget):

@@ -12,7 +12,6 @@ from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, List, Optional, Tuple, Union
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
 from pursue_gen.explanation.play import Play, counter_plays
@@ -20,6 +19,7 @@ from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, 
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import statement_text
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
@@ -32,8 +32,6 @@ _FOR_CHANGES, _FOR_ENDLESS, _FOR_CONFLICT = 0.5, 0.05, 0.1
 """The part of the limits that the search for changes may take, whether time has to pass, and which objectives exclude
 each other; the rest is for plays."""
 
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
 
 
 @dataclass(frozen=True)
@@ -76,23 +74,17 @@ def explain(
     try:
         budget = Budget(_share(limits, _FOR_ENDLESS), progress, phase=EXPLAINING)
         repeating = endless(network, objective, rules.reaction, budget)
-    except PursueError as problem:
-        _check_limit(problem)
+    except LimitHit:
+        pass
     rest = _share(limits, 1 - _FOR_CHANGES - _FOR_ENDLESS - (_FOR_CONFLICT if together else 0))
     try:
         game = network, objective, rules.reaction
         plays.extend(counter_plays(*game, rest, found.helpful, progress, bool(repeating)))
-    except PursueError as problem:
-        _check_limit(problem)
+    except LimitHit:
+        pass
     main = describe(scenario, plays[0]) if plays else ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
     return Explanation(found.changes, found.lost, found.undecided, main, attempts, repeating, together)
-
-
-def _check_limit(problem: PursueError) -> None:
-    """Raises errors that are not about a limit."""
-    if problem.exit_status != _LIMIT_HIT:
-        raise problem
 
 
 def _share(limits: Limits, share: float) -> Limits:

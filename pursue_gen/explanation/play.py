@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.language.network_names import is_going
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
@@ -38,10 +38,6 @@ _FOR_MAIN = 0.5
 """The part of the limits for the play in which the controller begins as it likes."""
 
 _FINE = Fraction(1, 1000)
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
 
 @dataclass(frozen=True)
 class CounterStep:
@@ -87,7 +83,7 @@ def counter_plays(
 
     The network is that of the game as it is played. `helpful` are strategies for games that differ in numbers only, for
     the controller to go by; `needs_no_time`: the game is lost by actions without end alone (see `endless`). Raises
-    PursueError with exit status 5 if no play is found within the limits; they end the rest.
+    LimitHit if no play is found within the limits; they end the rest.
     """
     budget = Budget(limits, progress, phase=EXPLAINING)
     spared = _spared(network, objective, reaction, budget)
@@ -186,9 +182,7 @@ class _CounterPlayer:
             self._been.add(here.state)
             try:
                 choice = self._next(here)
-            except PursueError as problem:  # nothing is left of the limits: what has been played holds
-                if problem.exit_status != _LIMIT_HIT:
-                    raise
+            except LimitHit:  # nothing is left of the limits: what has been played holds
                 break
             if choice is None:
                 return self._finish(steps, here)

@@ -52,7 +52,7 @@ class PositionSolver:
 
     def lost(self, position: Position, elapsed: Fraction = Fraction(0), horizon: Optional[int] = None) -> bool:
         """True if the controller cannot win from here; with a horizon, not even if only so much time since the start
-        counts, of which `elapsed` has passed. Raises PursueError with exit status 5 at a limit.
+        counts, of which `elapsed` has passed. Raises LimitHit at a limit.
         """
         if horizon is not None and elapsed > horizon:
             return False

@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import List, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Reach, Scenario, StatedObjective
 from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.tga import scenario_objective, translate
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
 
 _SHARE = 0.5
 """The part of what is left of the budget that one game may take."""
@@ -68,7 +65,5 @@ def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, bu
     try:
         network = played(translate(fewer), rules)
         return verdict_of(budget, network, scenario_objective(fewer), rules.reaction, _SHARE).won
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass
 from typing import Optional, Tuple, Union
 
@@ -116,9 +117,20 @@ StatedObjective = Union[Safety, Reach]
 longest."""
 
 
+class WhyGivenUp(enum.Enum):
+    """Why an optional objective is not promised, in words that follow it."""
+
+    IMPOSSIBLE = "cannot be promised together with the rest"
+    TOO_MUCH_WORK = "was too much work to decide"
+    REFUSED = (
+        "is not decided: the independent checker refuses the strategy that was found for it (please report that, with "
+        "the scenario)"
+    )
+
+
 @dataclass(frozen=True)
 class GivenUp:
-    """An optional objective that is not promised. `decided`: it cannot be; False: it was too much work to find out."""
+    """An optional objective that is not promised, and why."""
 
     objective: StatedObjective
-    decided: bool = True
+    why: WhyGivenUp = WhyGivenUp.IMPOSSIBLE

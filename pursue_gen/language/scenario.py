@@ -26,6 +26,7 @@ from pursue_gen.language.objectives import (
     Respond,
     Safety,
     StatedObjective,
+    WhyGivenUp,
 )
 from pursue_gen.language.parts import (
     Agent,
@@ -87,9 +88,9 @@ class Scenario:
         """The numbers behind `optional` among its objectives, the one that is to be kept longest first."""
         return tuple(sorted({objective.optional for objective in self.objectives} - {0}))
 
-    def giving_up(self, numbers: Collection[int], decided: bool = True) -> Scenario:
-        """The scenario with these of its optional objectives given up; `decided` as for GivenUp."""
-        given_up = (GivenUp(each, decided) for each in self.objectives if each.optional in numbers)
+    def giving_up(self, numbers: Collection[int], why: WhyGivenUp = WhyGivenUp.IMPOSSIBLE) -> Scenario:
+        """The scenario with these of its optional objectives given up."""
+        given_up = (GivenUp(each, why) for each in self.objectives if each.optional in numbers)
         return replace(
             self,
             safety=tuple(each for each in self.safety if each.optional not in numbers),

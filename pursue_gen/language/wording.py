@@ -54,8 +54,7 @@ def promise_words(scenario: Scenario) -> List[str]:
     for one in scenario.given_up:
         number = one.objective.optional
         texts = (objective_text(each.objective) for each in scenario.given_up if each.objective.optional == number)
-        why = "cannot be promised together with the rest" if one.decided else "was too much work to decide"
-        said[number] = f"optional {number} is given up, it {why}: {'; '.join(texts)}"
+        said[number] = f"optional {number} is given up, it {one.why.value}: {'; '.join(texts)}"
     return [said[number] for number in sorted(said)]
 
 

@@ -13,6 +13,7 @@ from typing import Dict, List, Sequence, Tuple
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.network_names import is_reach_objective, is_safety_objective
 from pursue_gen.language.scenario import Agent
+from pursue_gen.outcomes import NotProven
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
 from pursue_gen.tga.network import Network, is_end
 
@@ -71,7 +72,7 @@ def partition(
     _check_options(controllers, reach_obj, robots)
     if strategy.counter:
         message = "a counter-strategy cannot be given to controllers: its moves are the opponent's"
-        raise PursueError([error("PAR003", message, hint="use a plan whose property is satisfied")], exit_status=4)
+        raise NotProven([error("PAR003", message, hint="use a plan whose property is satisfied")])
     names = tuple(automaton.name for automaton in network.automata)
     known = {agent.name for agent in agents}
     reach = tuple(name for name in names if is_reach_objective(name) and name not in known)

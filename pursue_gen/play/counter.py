@@ -255,7 +255,7 @@ class CounterPlay:
 def counter_game(setup: Setup, memory: int = 0, progress: Optional[Listener] = None) -> CounterPlay:
     """The game against the counter-strategy, for a setup that is lost for the robots.
 
-    `memory`: MiB for each question to the solver (0: no limit). Raises PursueError with exit status 5 at a limit.
+    `memory`: MiB for each question to the solver (0: no limit). Raises LimitHit.
     """
     budget = Budget(Limits(memory=memory), progress, phase=EXPLAINING)
     oracle = PositionSolver(setup.network, setup.objective, setup.rules.reaction, budget)

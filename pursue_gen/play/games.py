@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Optional
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import Lost
 from pursue_gen.play.advice import Advisor
 from pursue_gen.play.counter import counter_game
 from pursue_gen.play.session import GameOf, Session
@@ -15,7 +15,7 @@ from pursue_gen.play.world import StrategyPlay
 from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import is_lost, solve_scenario
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 
 
@@ -28,14 +28,12 @@ def session_of(
 ) -> Session:
     """A new game of a scenario: the person plays the others where its objectives can be met, else the robots.
 
-    Raises PursueError with exit status 5 where a limit is hit before it is decided.
+    Raises LimitHit where a limit is hit before it is decided.
     """
     try:
         options = SolveOptions(limits, progress=progress)
         found = promised(scenario, options, lambda some, how: solve_scenario(some, rules, how))
-    except PursueError as problem:
-        if not is_lost(problem):
-            raise
+    except Lost:
         setup = setup_of(scenario.giving_up(scenario.optional), rules)
         game: GameOf = counter_game(setup, limits.memory, progress)
     else:

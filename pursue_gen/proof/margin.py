@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Callable, Dict, Optional
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.moves import Arena
@@ -34,10 +34,6 @@ USUAL = 3_000
 
 _BLOCKS = 10
 """A strategy with more blocks than so many for each state is not played: each takes a state where plays come to it."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
 
 @dataclass(frozen=True)
 class Margin:
@@ -113,9 +109,7 @@ def _unless_limited(wins: Callable[[Fraction], Optional[bool]]) -> Callable[[Fra
     def answer(delay: Fraction) -> Optional[bool]:
         try:
             return wins(delay)
-        except PursueError as problem:
-            if problem.exit_status != _LIMIT_HIT:
-                raise
+        except LimitHit:
             return None
 
     return answer

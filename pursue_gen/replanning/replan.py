@@ -10,6 +10,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
@@ -29,9 +30,6 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.pauses import pauses
-
-_AT_A_LIMIT = 5
-"""The exit status of errors at a limit."""
 
 _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds."""
@@ -79,9 +77,9 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
             network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT,
             otherwise=verdict.cautious,
         )  # fmt: skip
+    except NotProven as problem:
+        return _lost(f"the plan that was found is not proven: {problem}")
     except PursueError as problem:
-        if problem.exit_status != _AT_A_LIMIT:
-            return _lost(f"the plan that was found is not proven: {problem}")
         return _lost(f"no plan was found{_at_limit(limits.since(start)) or f': {problem.diagnostics[0].message}'}")
     return _won(strategy, network, request, None if states else objective)
 
@@ -92,9 +90,8 @@ def _verdict(network: Network, objective: Objective, reaction: Fraction, limits:
     if pauses(network):
         try:
             return verdict_of(Budget(replace(limits, work=_LITTLE)), network, objective, reaction)
-        except PursueError as problem:
-            if problem.exit_status != _AT_A_LIMIT:
-                raise
+        except LimitHit:
+            pass
     return solve(network, objective, reaction, limits=limits.since(start))
 
 

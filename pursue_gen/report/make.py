@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Callable, Optional, Tuple
 
+from pursue_gen import outcomes
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.explanation.costs import costs
@@ -20,7 +21,7 @@ from pursue_gen.solving.optional import promised, promised_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.solution import Solution, is_lost
+from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.synthesis.limits import Limits, Listener
@@ -91,7 +92,7 @@ def lost_report(
     decided, and what makes it so large (`option` as for `costs`).
     """
     rules, scenario = Rules(), scenario.giving_up(scenario.optional)
-    if is_lost(problem):
+    if isinstance(problem, outcomes.Lost):
         lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress))
     else:
         lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress, option))

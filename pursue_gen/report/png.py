@@ -7,7 +7,8 @@ import shutil
 import subprocess
 from typing import Any
 
-from pursue_gen.diagnostics import PursueError, error, warning
+from pursue_gen.diagnostics import error, warning
+from pursue_gen.outcomes import Unavailable
 
 _SECONDS = 60
 _HINT = "install it (Debian, Ubuntu: sudo apt install librsvg2-bin; or pip install cairosvg)"
@@ -24,7 +25,7 @@ def available() -> bool:
 def png(svg: str, zoom: float = 2.0) -> bytes:
     """The picture as PNG, `zoom` pixels for each of its own; `available` must be true.
 
-    Raises PursueError with exit status 6 where the program fails.
+    Raises Unavailable where the program fails.
     """
     program = shutil.which("rsvg-convert")
     if program is not None:
@@ -55,5 +56,5 @@ def _converted(program: str, svg: str, zoom: float) -> bytes:
         output = getattr(problem, "stderr", None) or b""
         reason = output.decode("utf-8", "replace").strip() or str(problem)
         message = f"rsvg-convert could not make a PNG: {reason}"
-        raise PursueError([error("REP004", message, hint=_HINT)], exit_status=6) from None
+        raise Unavailable([error("REP004", message, hint=_HINT)]) from None
     return done.stdout

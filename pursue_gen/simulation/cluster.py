@@ -12,7 +12,8 @@ from collections import deque
 from typing import Any, Callable, ContextManager, Deque, Iterator, List, Protocol, Sequence
 
 import pursue_runtime
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Unavailable, Unfinished
 from pursue_gen.simulation.outcome import Outcome
 from pursue_gen.simulation.runs import SHARE, Case, MissionRunner
 
@@ -54,12 +55,12 @@ def cluster(address: str) -> Iterator[Client]:
     except ImportError as problem:
         message = f"--scheduler needs the Python package distributed, which is not installed here ({problem})"
         hint = "install it: pip install 'pursue-gen[cluster]', here and on each worker's machine"
-        raise PursueError([error("SIM004", message, hint=hint)], 6) from None
+        raise Unavailable([error("SIM004", message, hint=hint)]) from None
     try:
         client = DaskClient(address, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as problem:
         hint = "start one with 'dask scheduler', and give its address, such as tcp://10.0.0.5:8786"
-        raise PursueError([error("SIM005", f"no Dask scheduler at {address}: {problem}", hint=hint)], 5) from None
+        raise Unfinished([error("SIM005", f"no Dask scheduler at {address}: {problem}", hint=hint)]) from None
     try:
         yield client
     finally:
@@ -104,13 +105,13 @@ def version() -> str:
 def _check(client: Client) -> None:
     if not client.nthreads():
         hint = "start one on each machine with 'dask worker ADDRESS --nthreads 1 --nworkers auto'"
-        raise PursueError([error("SIM005", "the Dask scheduler has no workers", hint=hint)], 5)
+        raise Unfinished([error("SIM005", "the Dask scheduler has no workers", hint=hint)])
     try:
         found = client.run(version)
     except ImportError as problem:
         hint = "install pursue-gen in the Python of each worker"
-        raise PursueError([error("SIM005", f"a Dask worker cannot simulate: {problem}", hint=hint)], 5) from None
+        raise Unfinished([error("SIM005", f"a Dask worker cannot simulate: {problem}", hint=hint)]) from None
     other = sorted({f"{each} on {worker}" for worker, each in found.items() if each != version()})
     if other:
         message = f"this is pursue-gen {version()}, but a Dask worker has {other[0]}"
-        raise PursueError([error("SIM005", message, hint="install the same version on each worker's machine")], 5)
+        raise Unfinished([error("SIM005", message, hint="install the same version on each worker's machine")])

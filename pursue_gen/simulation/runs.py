@@ -11,8 +11,9 @@ from multiprocessing.connection import Connection
 from statistics import median
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import Unfinished
 from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
@@ -151,7 +152,7 @@ def _received(end: Connection) -> List[Outcome]:
     try:
         found: Any = end.recv()
     except EOFError:
-        raise PursueError([error("SIM003", "a process that simulates has died", hint="use fewer --jobs")], 5) from None
+        raise Unfinished([error("SIM003", "a process that simulates has died", hint="use fewer --jobs")]) from None
     if isinstance(found, Exception):
         raise found
     return list(found)

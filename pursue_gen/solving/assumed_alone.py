@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Iterator, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, warning
+from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.language.scenario import Assumption, Patrol, Safety, Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.limits import Limits, is_undecided
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Edge, Network
@@ -37,13 +38,12 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{objective_text(objective)}: this holds without anything that robots do, as long as {why}"
             hint = "assume less where the robots are to see to it; else delete the objective"
             yield warning("PML265", message, objective.span, hint)
-    except PursueError as problem:
-        if not is_undecided(problem):
-            raise
+    except LimitHit:
+        pass
 
 
 def _holds(scenario: Scenario, objective: Safety, assumptions: Tuple[Assumption, ...], budget: Budget) -> bool:
-    """True if the objective holds though no robot does anything. Raises PursueError (exit status 5) at the limit."""
+    """True if the objective holds though no robot does anything. Raises LimitHit."""
     alone = replace(scenario, safety=(objective,), reach=(), assumptions=assumptions)
     rules = Rules()
     return budget.verdict(_idle(played(translate(alone), rules)), scenario_objective(alone), rules.reaction).won

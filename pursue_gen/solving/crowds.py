@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.known import Known, at_start
 from pursue_gen.proof.live import Commanded, Extent, is_controllers, live, taken_over
@@ -41,10 +41,6 @@ _GAME = 8_000_000
 _MOST = 4
 """So many robots at most make a team."""
 
-_LIMIT_HIT, _LOST = 5, 4
-"""The exit statuses of errors at a limit, and of what is lost."""
-
-
 def little_work(network: Network) -> int:
     """The work that is spent on a game in one piece before anything else is tried."""
     return max(1, _FIRST // (len(network.clocks) + 1) ** 2)
@@ -66,9 +62,7 @@ def won_by_some(
     search = _Search(network, objective, reaction, options, budget)
     try:
         strategy = search.found()
-    except PursueError as problem:
-        if problem.exit_status not in (_LIMIT_HIT, _LOST):
-            raise
+    except (NotProven, LimitHit):
         return None
     return None if strategy is None else Found(strategy, search.stats())
 
@@ -243,8 +237,8 @@ class _Search:
                 return None
             how = self._reaction, verdict.ranks, self._options
             proven = prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious)
-        except PursueError as problem:
-            if problem.exit_status not in (_LIMIT_HIT, _LOST) or self._budget.used_up:
+        except (NotProven, LimitHit):
+            if self._budget.used_up:
                 raise
             return None
         blocks = _without_begin(proven)

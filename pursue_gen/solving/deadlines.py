@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import FrozenSet, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import with_counter, with_deadline, worst_case
 from pursue_gen.solving.least_time import Faster, Guarantee, bounds, unscaled
@@ -21,9 +21,6 @@ from pursue_gen.tga.scale import least_common_multiple, scaled
 STATES = 20_000
 """Symbolic states of the checker that a worst-case time may take."""
 
-_NOT_PROVEN, _LIMIT_HIT = 4, 5
-"""The exit statuses of strategies that do not win, and of errors at a limit."""
-
 Moves = FrozenSet[Tuple[str, Edge]]
 """Edges of agents."""
 
@@ -33,7 +30,7 @@ def in_time(
 ) -> Optional[Faster]:
     """A strategy (not proven yet) that comes to the goal within so many time units; None: there is none.
 
-    The network must count the time (see `with_counter`). Raises PursueError with exit status 5 where it is not decided
+    The network must count the time (see `with_counter`). Raises LimitHit where it is not decided
     with that share of what is left of the budget.
     """
     fine = least_common_multiple((deadline.denominator, reaction.denominator))
@@ -67,9 +64,7 @@ def better(
     """The solution with the faster strategy; None where that is not proven in looks of so many symbolic states."""
     try:
         found = proven_in_time(won, faster, options, states)
-    except PursueError as problem:
-        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
-            raise
+    except (NotProven, LimitHit):
         return None
     assert found.guarantee is not None
     least = max(known.least, found.guarantee.least)
@@ -82,9 +77,7 @@ def tried(
     """What `in_time` finds with so much work of the budget, and whether it is decided with that."""
     try:
         return in_time(network, objective, reaction, deadline, budget, min(1.0, work / max(budget.work, 1))), True
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None, False
 
 

@@ -10,12 +10,12 @@ from typing import Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, warning
 from pursue_gen.files import read_text
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played, rules_text
 from pursue_gen.solving.solution import Solution
-from pursue_gen.synthesis.limits import UNDECIDED
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
@@ -28,21 +28,27 @@ class Trial:
 
     rules: Rules
     solution: Optional[Solution]
-    findings: Tuple[Diagnostic, ...] = ()
+    problem: Optional[PursueError] = None
+
+    @property
+    def findings(self) -> Tuple[Diagnostic, ...]:
+        """Why it is not proven."""
+        return () if self.problem is None else self.problem.diagnostics
 
     @property
     def outcome(self) -> str:
         """In words."""
         if self.solution:
             return "the plan wins"
-        return "not decided" if UNDECIDED in (finding.code for finding in self.findings) else "the plan does not win"
+        return "not decided" if isinstance(self.problem, LimitHit) else "the plan does not win"
 
 
-def exit_status(tried: Sequence[Trial]) -> int:
-    """0: the plan wins; 4: it does not; 5: a limit was hit before that was known."""
+def problem_of(tried: Sequence[Trial]) -> Optional[PursueError]:
+    """Why a plan is not proven in any of these games; None where it wins one."""
     if any(trial.solution for trial in tried):
-        return 0
-    return 5 if any(finding.code == UNDECIDED for trial in tried for finding in trial.findings) else 4
+        return None
+    at_limit = any(isinstance(trial.problem, LimitHit) for trial in tried)
+    return (LimitHit if at_limit else NotProven)(finding for trial in tried for finding in trial.findings)
 
 
 def trials(
@@ -67,7 +73,7 @@ def trials(
             left = options.since(start)
             proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
         except PursueError as problem:
-            done.append(Trial(rules, None, problem.diagnostics))
+            done.append(Trial(rules, None, problem))
             continue
         done.append(Trial(rules, Solution(game, objective, proven, rules.reaction, rules=rules)))
         break
@@ -100,12 +106,13 @@ def take_plan(
 ) -> Solution:
     """A plan of the user's, proven; one that wins in the ideal game only has a warning.
 
-    Raises PursueError with exit status 4 or 5 for one that does not win, or that is not decided.
+    Raises NotProven or LimitHit for one that does not win, or that is not decided.
     """
     tried = try_plan(plan, network, objective, games, options)
-    won = tried[-1].solution
-    if won is None:
-        raise PursueError([finding for trial in tried for finding in trial.findings], exit_status(tried))
+    problem, won = problem_of(tried), tried[-1].solution
+    if problem is not None:
+        raise problem
+    assert won is not None
     if len(tried) == 1:
         return won
     ideal, default = rules_text(tried[-1].rules), rules_text(tried[0].rules)

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.budget import Budget
@@ -42,10 +42,6 @@ _SHARE = 0.4
 
 _NEAR = 8
 """A reaction delay that is the unit of the search costs so much or less, as a rule: once per command of a play."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
 
 @dataclass(frozen=True)
 class Guarantee:
@@ -175,9 +171,7 @@ class _Search:
         game = with_deadline(self._network, self._objective, deadline)
         try:
             verdict = self._budget.verdict(game, self._objective, self._reaction, _SHARE)
-        except PursueError as problem:
-            if problem.exit_status != _LIMIT_HIT:
-                raise
+        except LimitHit:
             return None
         if verdict.strategy is None:
             return False

@@ -10,11 +10,13 @@ import time
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import Callable, Iterator, List, Optional, Tuple, TypeVar
+from typing import Callable, Dict, Iterator, List, Mapping, Optional, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving.given_plan import Trial, exit_status, try_plan
+from pursue_gen.outcomes import LimitHit, Lost, NotProven, TooSlow
+from pursue_gen.solving.given_plan import Trial, try_plan
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest, solution_of
@@ -23,9 +25,6 @@ from pursue_gen.synthesis.limits import Listener
 
 WORK = 100_000_000
 """The work of the game in one piece with an optional objective: some twenty seconds. What takes more is given up."""
-
-_LOST, _LIMIT_HIT = 4, 5
-"""The exit statuses of errors for what cannot be met, and at a limit."""
 
 T = TypeVar("T")
 
@@ -50,7 +49,7 @@ def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promise
     start, numbers = time.monotonic(), scenario.optional
     base = scenario.giving_up(numbers)
     best = Promised(base, solve(base, options))
-    given_up: Tuple[Tuple[int, bool], ...] = ()
+    given_up: Dict[int, WhyGivenUp] = {}
     for place, number in enumerate(numbers):
         left = options.since(start)
         seconds = left.limits.left / (len(numbers) - place)
@@ -58,17 +57,19 @@ def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promise
         more = _without(scenario, numbers[place + 1 :], given_up)
         try:
             best = Promised(more, solve(more, share))
-        except PursueError as problem:
-            if problem.exit_status not in (_LOST, _LIMIT_HIT):
-                raise
-            given_up = (*given_up, (number, problem.exit_status == _LOST))
+        except (Lost, TooSlow):
+            given_up[number] = WhyGivenUp.IMPOSSIBLE
+        except LimitHit:
+            given_up[number] = WhyGivenUp.TOO_MUCH_WORK
+        except NotProven:
+            given_up[number] = WhyGivenUp.REFUSED
     return replace(best, scenario=_without(scenario, (), given_up))
 
 
-def _without(scenario: Scenario, later: Tuple[int, ...], given_up: Tuple[Tuple[int, bool], ...]) -> Scenario:
+def _without(scenario: Scenario, later: Tuple[int, ...], given_up: Mapping[int, WhyGivenUp]) -> Scenario:
     scenario = scenario.giving_up(later)
-    for number, decided in given_up:
-        scenario = scenario.giving_up((number,), decided)
+    for number, why in given_up.items():
+        scenario = scenario.giving_up((number,), why)
     return scenario
 
 
@@ -94,7 +95,7 @@ def try_plan_of(
         network, objective = game_of(choice)
         return choice, try_plan(plan, network, objective, request.games(network), options)
 
-    return _first(scenario, tried, lambda found: exit_status(found[1]) == 0)
+    return _first(scenario, tried, lambda found: found[1][-1].solution is not None)
 
 
 def _first(scenario: Scenario, attempt: Callable[[Scenario], T], wins: Callable[[T], bool]) -> T:

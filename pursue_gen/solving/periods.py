@@ -11,9 +11,10 @@ from dataclasses import replace
 from math import ceil
 from typing import Dict, List, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, Span
+from pursue_gen.diagnostics import Span
 from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
 from pursue_gen.language.wording import patrol_text, periods_found
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
@@ -32,10 +33,6 @@ _SHARE = 0.4
 
 _WALKS = 2
 """The longest period that is tried, for each place: walks along all ways there and back, with all events on the way."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
-
 
 def without_period(scenario: Scenario) -> Tuple[Patrol, ...]:
     """The patrols whose period is to be found."""
@@ -122,7 +119,5 @@ def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Option
     try:
         network = played(translate(tried), rules)
         return verdict_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE).won
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None

@@ -6,7 +6,8 @@ import time
 from fractions import Fraction
 from typing import Callable, Mapping, Optional
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, Report, pruned, pruned_ranks, verify
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.simplify import simplified
@@ -34,8 +35,8 @@ def prove(
 
     `simpler`: in fewer zones and bounds, proven once more, where that costs little. `states`: the most symbolic states
     that each look of the checker may take. `otherwise` makes a strategy to try where this one does not win; `unranked`:
-    it is looked at without ranks, too, where it is not proven with them. Raises PursueError with the play that breaks
-    it; with exit status 5 at a limit, the checker's own one on symbolic states included.
+    it is looked at without ranks, too, where it is not proven with them. Raises NotProven with the play that
+    breaks it; LimitHit at a limit, the checker's own one on symbolic states included.
     """
     start, limits, progress = time.monotonic(), options.limits, options.progress
     report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
@@ -48,10 +49,10 @@ def prove(
         strategy, report = (another, again) if again.ok else (strategy, report)
     if report.reason.startswith("limit"):
         hint = "the strategy may win, but only what is proven is used; make the scenario smaller: fewer agents or POIs"
-        raise PursueError([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)], exit_status=5)
+        raise LimitHit([error("SYN010", f"the strategy is not proven: {report.reason}", hint=hint)])
     if not report.ok:
         hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
-        raise PursueError([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)], exit_status=4)
+        raise NotProven([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)])
     kept = pruned(strategy, report)
     if not simpler or report.states > _LITTLE or kept.stages:
         return kept
@@ -59,9 +60,7 @@ def prove(
     fewer = simplified(named_part(network, kept), kept, reaction, left)
     try:
         again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
-    except PursueError as problem:
-        if problem.exit_status != 5:
-            raise
+    except LimitHit:
         return kept  # what is proven stays so when there is no time left to simplify it
     return pruned(fewer, again) if again.ok else kept
 

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.diagnostics import Diagnostic, error
+from pursue_gen.outcomes import TooSlow
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.worst_case import with_counter
 from pursue_gen.solving import soonest
@@ -138,7 +139,7 @@ def _in_less_time(
 def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution:
     """The solution of a reach game with a strategy that comes to the goal within so many time units.
 
-    Raises PursueError with exit status 4 where there is none, and with 5 where that is not decided within the limits.
+    Raises TooSlow where there is none, LimitHit where that is not decided within the limits.
     """
     start = time.monotonic()
     found = quick(won, options)
@@ -151,7 +152,7 @@ def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution
             faster = in_time(with_counter(won.part), won.objective, won.reaction, deadline, budget)
             known = replace(known, least=max(known.least, deadline))
         if faster is None:
-            raise PursueError([_too_short(deadline, known)], exit_status=4)
+            raise TooSlow([_too_short(deadline, known)])
         found = proven_in_time(won, faster, options.since(start))
     return replace(found, within=deadline)
 

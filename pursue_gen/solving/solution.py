@@ -9,6 +9,7 @@ from typing import Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.crowds import Found, has_parts, little_work, won_by_some, works_in_parallel
@@ -37,9 +38,6 @@ them take long to prove, too."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
-
-_NOT_PROVEN = 4
-"""The exit status of a strategy that the checker refuses."""
 
 _FOR_IDEAL = 50_000_000
 """The work that may be spent on whether a lost game is won ideally: some ten seconds."""
@@ -77,9 +75,9 @@ class Solution:
 def solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
     """Solves the game and proves the strategy with the independent checker, both together within the limits.
 
-    Of the options limits, engine and progress count. Raises PursueError with exit status 4 when the objective cannot
-    be met under these rules; the message says so when the ideal game, which no robot can play, would be won. With exit
-    status 5 at a limit.
+    Of the options limits, engine and progress count. Raises Lost where the objective cannot be met under these
+    rules (the message says so where the ideal game, which no robot can play, would be won), NotProven where the checker
+    refuses the strategy, LimitHit at a limit.
     """
     start = time.monotonic()
     game = played(network, rules)
@@ -93,13 +91,13 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
             return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
         verdict = known
     if verdict is None and in_parts and lost_to_few_calls(game, objective, rules.reaction, options.since(start)):
-        raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
+        raise Lost([_cannot_be_met(network, objective, rules, options.since(start))])
     if verdict is None:
         how = options.engine, options.since(start).in_one_piece, options.progress
         first = little_work(game) if alone else 0
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole, first=first)
     if verdict.strategy is None:
-        raise PursueError([_cannot_be_met(network, objective, rules, options.since(start))], exit_status=4)
+        raise Lost([_cannot_be_met(network, objective, rules, options.since(start))])
     strategy = _proven(game, objective, rules.reaction, verdict, options.since(start))
     won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
     return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
@@ -114,8 +112,8 @@ def _proven(
     start = time.monotonic()
     try:
         return prove(game, objective, verdict.strategy, reaction, verdict.ranks, options, otherwise=verdict.cautious)
-    except PursueError as problem:
-        if problem.exit_status != _NOT_PROVEN or objective.kind is Kind.SAFETY:
+    except NotProven as problem:
+        if objective.kind is Kind.SAFETY:
             raise
         refused = problem
     how = options.engine, options.since(start).in_one_piece, options.progress
@@ -175,9 +173,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     left = limits.since(start)
     try:
         strategy = prove(faster.game, objective, faster.strategy, delay, faster.ranks, replace(options, limits=left))
-    except PursueError as problem:
-        if problem.exit_status != 5:
-            raise
+    except LimitHit:
         return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
     counted = with_clocks_of(with_counter(won.part), won.network)
     fast = replace(won, network=counted).with_strategy(unscaled(strategy, counted, faster.fine))
@@ -211,11 +207,6 @@ def with_clocks_of(counted: Network, network: Network) -> Network:
 def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
     """The proven strategy of a scenario. Raises as `solution` does."""
     return solution(translate(scenario), scenario_objective(scenario), rules, options)
-
-
-def is_lost(problem: PursueError) -> bool:
-    """True if the built-in solver found that the objective cannot be met, False for limits and other errors."""
-    return any(finding.code == _CANNOT_BE_MET for finding in problem.diagnostics)
 
 
 def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options: SolveOptions) -> Diagnostic:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Mapping, Optional
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.worst_case import with_counter, worst_case
 from pursue_gen.solving.deadlines import STATES, better, keeping_to, moves_of, tried
@@ -46,10 +46,6 @@ _EASY = 100_000
 
 _LATE = (2, 1)
 """The parts of the reaction delay with which a game is tried: with some to spare, and then without."""
-
-_NOT_PROVEN, _LIMIT_HIT = 4, 5
-"""The exit statuses of strategies that do not win, and of errors at a limit."""
-
 
 @dataclass(frozen=True)
 class Prompt:
@@ -139,9 +135,7 @@ def _verdict(network: Network, won: Solution, reaction: Fraction, budget: Budget
     share = min(1.0, work / max(budget.work, 1))
     try:
         return budget.verdict(network, won.objective, reaction, share, soonest=True)
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None
 
 
@@ -155,9 +149,7 @@ def _proven(
     """The solution with the strategy; None where that is not proven with little work, or not much quicker."""
     try:
         proven = prove(won.part, won.objective, strategy, won.reaction, ranks, options, states=_PROOF, unranked=False)
-    except PursueError as problem:
-        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
-            raise
+    except (NotProven, LimitHit):
         return None
     found = won.with_strategy(proven)
     guarantee = guaranteed(found, STATES, options.limits)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Tuple, Union
 
-from pursue_gen.diagnostics import Diagnostic, as_json, counted
+from pursue_gen.diagnostics import PursueError, as_json, counted
+from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
 from pursue_gen.proof.margin import as_json as margin_json
@@ -13,7 +15,7 @@ from pursue_gen.proof.margin import in_words as margin_in_words
 from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules, rules_text
 from pursue_gen.solving.solution import Solution
-from pursue_gen.synthesis.limits import UNDECIDED, Limits
+from pursue_gen.synthesis.limits import Limits
 
 
 def margins(won: Solution, thorough: bool, limits: Limits) -> Tuple[Margin, Optional[Margin]]:
@@ -46,17 +48,18 @@ def margin_text(won: Solution, margin: Margin, game: Optional[Margin] = None) ->
 
 def verdict_json(
     rules: Rules,
-    won: Optional[Solution],
-    findings: Sequence[Diagnostic],
+    outcome: Union[Solution, PursueError],
     margin: Optional[Margin] = None,
     game_margin: Optional[Margin] = None,
 ) -> Dict[str, Any]:
-    """The outcome as a JSON object; `findings` say why `won` is not true; margins where they were looked for.
+    """The outcome as a JSON object, with margins where they were looked for.
 
-    `won` is null in it where it is not decided: a limit was hit, or the strategy of another tool does not win.
+    `won` is null in it where it is not decided: a limit was hit, or the checker refuses the strategy.
     """
+    won = outcome if isinstance(outcome, Solution) else None
+    findings = outcome.diagnostics if isinstance(outcome, PursueError) else ()
     result: Dict[str, Any] = {
-        "won": True if won else None if any(f.code in (UNDECIDED, "SYN035") for f in findings) else False,
+        "won": None if isinstance(outcome, (LimitHit, NotProven)) else won is not None,
         "ends": rules.ends,
         "reaction": float(rules.reaction),
         "slack": dict(rules.slack),
@@ -93,10 +96,10 @@ def periods_json(scenario: Scenario) -> Dict[str, Any]:
 
 def optional_json(scenario: Scenario) -> Dict[str, Any]:
     """What has become of the numbers behind `optional` in a scenario that is solved; nothing where there are none."""
-    given_up = {one.objective.optional: one.decided for one in scenario.given_up}
+    given_up = {one.objective.optional: one.why for one in scenario.given_up}
     if not scenario.optional and not given_up:
         return {}
-    undecided = sorted(number for number, decided in given_up.items() if not decided)
+    undecided = sorted(number for number, why in given_up.items() if why is not WhyGivenUp.IMPOSSIBLE)
     known = {"promised": list(scenario.optional), "given_up": sorted(given_up), "undecided": undecided}
     return {"optional": known}
 

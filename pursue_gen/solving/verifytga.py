@@ -20,9 +20,10 @@ import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Callable, Optional, Sequence, Tuple
+from typing import Callable, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.outcomes import LimitHit, Lost, NotProven, Unavailable
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.proving import play_that_shows
@@ -39,7 +40,6 @@ _OPTIONS = ("-t0", "-w0")
 _MODEL, _QUERY = "TGA.xml", "TCTL.q"
 _LAST_LINES, _LAST_COLUMNS = 6, 200
 
-_NOT_MET, _LIMIT, _UNUSABLE = 4, 5, 6
 """The exit statuses of the failures: not met or not winning; time or memory; no tool, or one that does not work."""
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
@@ -95,12 +95,26 @@ class ToolError(PursueError):
     `run` is that run; `counter` the counter-strategy, where the tool found that the objective cannot be met and why.
     """
 
-    def __init__(
-        self, diagnostics: Sequence[Diagnostic], exit_status: int, run: Run, counter: Optional[Strategy] = None
-    ) -> None:
-        super().__init__(diagnostics, exit_status)
+    def __init__(self, diagnostics: Sequence[Diagnostic], run: Run, counter: Optional[Strategy] = None) -> None:
+        super().__init__(diagnostics)
         self.run = run
         self.counter = counter
+
+
+class ToolLost(ToolError, Lost):
+    """It found that the objective cannot be met."""
+
+
+class ToolRefused(ToolError, NotProven):
+    """The checker refuses its strategy."""
+
+
+class ToolLimit(ToolError, LimitHit):
+    """It ran out of time or memory, or its strategy is too large to be proven."""
+
+
+class ToolFailed(ToolError, Unavailable):
+    """It does not start, crashes, or says what cannot be read."""
 
 
 def run_verifytga(
@@ -118,8 +132,8 @@ def run_verifytga(
     has to win. In the statistics the discrete states are those of its plan, the zones those on its last line of
     progress.
 
-    Raises PursueError with exit status 6 where there is no tool, and ToolError with status 4 where it finds that the
-    objective cannot be met or its strategy does not win, 5 where it runs out of time or memory, 6 where it fails.
+    Raises Unavailable where there is no tool, and a ToolError: ToolLost where it finds that the objective cannot be
+    met, ToolRefused where its strategy does not win, ToolLimit where it runs out of time or memory, else ToolFailed.
     """
     tool = find_verifytga(path)
     start = time.monotonic()
@@ -134,7 +148,7 @@ def run_verifytga(
 def find_verifytga(path: Optional[Path] = None) -> str:
     """The program to start, as an absolute path: the one that is named, else the verifytga on PATH.
 
-    Raises PursueError (exit status 6).
+    Raises Unavailable.
     """
     if path is None:
         found = shutil.which(TOOL)
@@ -150,7 +164,7 @@ def find_verifytga(path: Optional[Path] = None) -> str:
         else:
             problem, hint = f"{path} may not be started", f"chmod +x {path}, if that is the program"
     if found is None:
-        raise PursueError([error("SYN030", problem, hint=hint)], exit_status=_UNUSABLE)
+        raise Unavailable([error("SYN030", problem, hint=hint)])
     return os.path.abspath(found)
 
 
@@ -202,7 +216,7 @@ def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
         except OSError as problem:
             run = Run(command, "", "", None)
             message = f"{command[0]} cannot be started: {problem.strerror or problem}"
-            raise ToolError([error("SYN031", message, hint=_START_IT)], _UNUSABLE, run) from None
+            raise ToolFailed([error("SYN031", message, hint=_START_IT)], run) from None
         try:
             status: Optional[int] = process.wait(limits.left or None)
         except subprocess.TimeoutExpired:
@@ -229,26 +243,27 @@ def _failure(run: Run, limits: Limits) -> ToolError:
     """What went wrong in a run that printed no strategy."""
     text = run.before
     verdict = _VERDICT.search(run.output)
-    code, exit_status = "SYN032", _UNUSABLE
+    outcome: Type[ToolError] = ToolFailed
+    code = "SYN032"
     hint = f"try it by hand with the files that `pursue-gen tga` writes; {_OURS}"
     if run.status is None:
-        code, exit_status = "SYN010", _LIMIT
+        code, outcome = "SYN010", ToolLimit
         message, hint = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds", f"allow more; {_OURS}"
     elif _MEMORY.search(text) or run.status == -signal.SIGKILL:
-        code, exit_status = "SYN010", _LIMIT
+        code, outcome = "SYN010", ToolLimit
         surely = "ran out of memory" if _MEMORY.search(text) else "was killed, most likely for want of memory"
         of = f" (the limit is {limits.memory} MiB)" if limits.memory else ""
         smaller = "make the scenario smaller: fewer agents, POIs or events"
         message, hint = f"{TOOL} {surely}{of}", f"{'allow more (--memory), or ' if of else ''}{smaller}; {_OURS}"
     elif run.status == -signal.SIGXCPU:
-        code, exit_status = "SYN010", _LIMIT
+        code, outcome = "SYN010", ToolLimit
         message, hint = f"{TOOL} reached the limit on time of this shell (ulimit -t)", f"allow more; {_OURS}"
     elif not verdict and _LICENCE.search(text):
         message, hint = f"{TOOL} asks for a licence", f"start it by hand once and do what it asks for; {_OURS}"
     elif run.status < 0:
         message = f"{TOOL} crashed"
     elif verdict and verdict.group(1):
-        code, exit_status = "SYN033", _NOT_MET
+        code, outcome = "SYN033", ToolLost
         message, hint = f"{TOOL} finds that the objective cannot be met, and prints no counter-strategy", _LOST
     elif verdict:
         message = f"{TOOL} finds that the objective can be met, but prints no strategy"
@@ -256,7 +271,7 @@ def _failure(run: Run, limits: Limits) -> ToolError:
         message = f"{TOOL} failed"
     else:
         message = f"{TOOL} printed no verdict"
-    return ToolError([error(code, message, hint=hint + _particulars(run))], exit_status, run)
+    return outcome([error(code, message, hint=hint + _particulars(run))], run)
 
 
 def _strategy(run: Run, network: Network) -> Strategy:
@@ -267,12 +282,12 @@ def _strategy(run: Run, network: Network) -> Strategy:
     except PursueError as problem:
         message = f"{TOOL} printed a strategy that cannot be read"
         hint = f"its output may be cut, or that version prints it otherwise; {_OURS}{_particulars(run)}"
-        raise ToolError([error("SYN034", message, hint=hint), *problem.diagnostics], _UNUSABLE, run) from None
+        raise ToolFailed([error("SYN034", message, hint=hint), *problem.diagnostics], run) from None
     strategy = unscaled(strategy, network, factor)
     if strategy.counter:
         message = f"{TOOL} finds that the objective cannot be met"
         hint = f"{_LOST}; solve -o FILE keeps its counter-strategy ({len(strategy.blocks)} states) beside that file"
-        raise ToolError([error("SYN033", message, hint=hint + _particulars(run))], _NOT_MET, run, strategy)
+        raise ToolLost([error("SYN033", message, hint=hint + _particulars(run))], run, strategy)
     return strategy
 
 
@@ -292,14 +307,14 @@ def _proven(
         return pruned(strategy, report)
     if report.reason.startswith("limit"):
         message, hint = f"the strategy of {TOOL} is not proven: {report.reason}", f"it is too large; {_OURS}"
-        raise ToolError([error("SYN010", message, hint=hint)], _LIMIT, run)
+        raise ToolLimit([error("SYN010", message, hint=hint)], run)
     if reaction and verify(network, objective, strategy, limits=limits.since(start), progress=progress).ok:
         delay = f"{float(reaction):g} time units"
         message = f"the strategy of {TOOL} wins only where commands take effect at once, not up to {delay} later"
         hint = f"{TOOL} knows no reaction: --reaction 0 takes its strategy as it is; {_OURS}, which knows it"
     else:
         message, hint = f"the strategy of {TOOL} does not win: {report.reason}", _OURS
-    raise ToolError([error("SYN035", message, hint=hint + play_that_shows(report))], _NOT_MET, run)
+    raise ToolRefused([error("SYN035", message, hint=hint + play_that_shows(report))], run)
 
 
 def _particulars(run: Run) -> str:

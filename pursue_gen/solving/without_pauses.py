@@ -13,7 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.solving.crowds import Found
 from pursue_gen.solving.options import SolveOptions
@@ -22,9 +22,6 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.pauses import acting_at_most, pauses
-
-_NOT_PROVEN, _LIMIT_HIT = 4, 5
-"""The exit statuses of strategies that do not win, and of errors at a limit."""
 
 _FEW = 30_000_000
 """The work that is spent on whether few calls are enough for the environment, about a second."""
@@ -46,9 +43,7 @@ def verdict_with(
     how = options.engine, limits, options.progress
     try:
         return solve(game, objective, reaction, *how, without_pauses=without_pauses)
-    except PursueError as problem:
-        if problem.exit_status != _LIMIT_HIT:
-            raise
+    except LimitHit:
         return None
 
 
@@ -68,9 +63,7 @@ def won_without_pauses(
     how = reaction, verdict.ranks, options.since(start)
     try:
         proven = prove(game, objective, verdict.strategy, *how, states=states, otherwise=verdict.cautious)
-    except PursueError as problem:
-        if problem.exit_status not in (_NOT_PROVEN, _LIMIT_HIT):
-            raise
+    except (NotProven, LimitHit):
         return None
     return Found(proven, verdict.stats)
 
@@ -87,15 +80,13 @@ def verdict_of(
     budget: Budget, game: Network, objective: Objective, reaction: Fraction, share: float = 1.0
 ) -> Verdict:
     """The verdict of `budget.verdict`; where agents rest between calls, of a game without rests, or with few calls,
-    where that decides it sooner. Raises PursueError (exit status 5) where that share of what is left is too little."""
+    where that decides it sooner. Raises LimitHit where that share of what is left is too little."""
     if pauses(game):
         few = acting_at_most(game, objective, 1)
         for network, part, free in ((game, _FIRST, False), (game, _PART, True), (few, _PART, False)):
             try:
                 verdict = budget.verdict(network, objective, reaction, share * part, without_pauses=free)
-            except PursueError as problem:
-                if problem.exit_status != _LIMIT_HIT:
-                    raise
+            except LimitHit:
                 continue
             if (network is game and not free) or verdict.won is free:
                 return verdict

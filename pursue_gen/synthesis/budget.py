@@ -9,16 +9,13 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.limits import NOTHING_YET, SOLVING, Limits, Listener, limit_reached
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Network, Objective
 
 _PER_EDGE = 200
 """Work that counts for an edge of a network: it is translated for the engine, in about the time of so many steps."""
-
-_LIMIT_HIT = 5
-"""The exit status of errors at a limit."""
 
 
 class Budget:
@@ -62,7 +59,7 @@ class Budget:
         soonest: bool = False,
         without_pauses: bool = False,
     ) -> Verdict:
-        """The verdict of `solve`. Raises PursueError (exit status 5) where that share of what is left is too little."""
+        """The verdict of `solve`. Raises LimitHit where that share of what is left is too little."""
         limits = self.part(share)
         if self.used_up:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
@@ -70,9 +67,8 @@ class Budget:
         try:
             how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses
             verdict = solve(network, objective, reaction, *how)
-        except PursueError as problem:
-            if problem.exit_status == _LIMIT_HIT:
-                self._spend(limits.work)
+        except LimitHit:
+            self._spend(limits.work)
             raise
         self._spend(verdict.stats.work)
         return verdict

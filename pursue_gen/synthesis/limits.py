@@ -8,7 +8,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Optional
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import LimitHit
 
 CAREFUL = 4096
 """MiB that the commands allow themselves by default, if the machine has them."""
@@ -115,12 +116,12 @@ class LimitMonitor:
             self._next_report = seconds + _REPORT_INTERVAL
             self._listener(self._reached)
 
-    def stopped(self, which: str) -> PursueError:
+    def stopped(self, which: str) -> LimitHit:
         """What to raise where this limit ended the search, see `limit_reached`."""
         return limit_reached(which, self._limits, self._reached)
 
 
-def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
+def limit_reached(which: str, limits: Limits, reached: Progress) -> LimitHit:
     """The error at a limit: which one ("seconds", "memory", "states" or "work"), how far the work was, what to do."""
     proving = reached.phase == PROVING
     shown = {
@@ -140,12 +141,7 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> PursueError:
     if proving:
         hint = f"there is a strategy, but only what is proven is used; {hint}"
     message = f"no {'proof' if proving else 'verdict'} {where}; {far}, {reached.memory} MiB in use"
-    return PursueError([error(UNDECIDED, message, hint=hint)], exit_status=5)
-
-
-def is_undecided(problem: PursueError) -> bool:
-    """True for an error at a limit."""
-    return any(finding.code == UNDECIDED for finding in problem.diagnostics)
+    return LimitHit([error(UNDECIDED, message, hint=hint)])
 
 
 def memory_in_use() -> int:

@@ -17,6 +17,7 @@ import re
 from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.outcomes import NotProven
 from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_stages, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
@@ -345,7 +346,7 @@ def _no_strategy(text: str, file: str) -> PursueError:
     if verdict.group(1):
         message = "the plan says that the objective cannot be met, and holds no counter-strategy"
         hint = "change the scenario; `verifytga -t0` prints the counter-strategy, which shows why it loses"
-        return PursueError([error("PLN002", message, span, hint)], exit_status=4)
+        return NotProven([error("PLN002", message, span, hint)])
     message = "the plan says that the objective is met, and holds no strategy"
     return PursueError([error("PLN001", message, span, _RUN_AGAIN)])
 

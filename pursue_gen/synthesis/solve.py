@@ -8,6 +8,7 @@ from functools import partial
 from typing import Callable, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.outcomes import Unavailable
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.engine import Engine
@@ -72,7 +73,7 @@ def choose(name: Optional[str] = None) -> Engine:
     engine = {engine.name: engine for engine in ENGINES}[name]
     if not engine.available():
         hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
-        raise PursueError([error("SYN011", f"the {engine.name} engine was not built", hint=hint)], exit_status=6)
+        raise Unavailable([error("SYN011", f"the {engine.name} engine was not built", hint=hint)])
     return engine
 
 

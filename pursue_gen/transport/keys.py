@@ -15,6 +15,7 @@ from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
 from pursue_gen.files import write_texts
+from pursue_gen.outcomes import Unavailable
 
 try:
     from cryptography.exceptions import UnsupportedAlgorithm
@@ -30,7 +31,7 @@ try:
 except ImportError:
     _HINT = "pip install cryptography (Debian, Ubuntu: sudo apt install python3-cryptography)"
     _MISSING = "the Python package cryptography is missing, which signs missions"
-    raise PursueError([error("TRN001", _MISSING, hint=_HINT)], exit_status=6) from None
+    raise Unavailable([error("TRN001", _MISSING, hint=_HINT)]) from None
 
 from pursue_runtime.bundle import Refused, fingerprint, read_public_key, write_public_key
 

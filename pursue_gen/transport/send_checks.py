@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Collection, List, Sequence, Set
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Unchanged
 from pursue_gen.transport.client import Status
 from pursue_gen.transport.sender import Check
 from pursue_runtime.manifest import OWN, is_digest, mission_id
 
-UNCHANGED, DIFFERENT = 7, 8
-"""Exit statuses: nothing has changed; the robots differ, or it is not known how they stand."""
 OWN_WORD = "own"
 _SHORTEST = 4
 """The fewest digits that name a mission."""
@@ -19,7 +18,7 @@ _SHORTEST = 4
 def fits(mission: str, packages: Collection[str], size: int, all_robots: bool) -> Check:
     """Refuses a mission with packages that no robot has (where all robots are asked), or too large for a robot.
 
-    `size` is the bundle's, in bytes. What is returned raises PursueError (exit status 7).
+    `size` is the bundle's, in bytes. What is returned raises Unchanged.
     """
 
     def check(statuses: Sequence[Status]) -> None:
@@ -29,25 +28,25 @@ def fits(mission: str, packages: Collection[str], size: int, all_robots: bool) -
             have = "; ".join(f"{status.robot} has {', '.join(status.packages) or 'none'}" for status in statuses)
             message = f"no robot has what this mission needs: {', '.join(missing)}"
             hint = f"start its node on a machine of robots.yaml (nodes:=); the workspace has to be one for it. {have}"
-            raise PursueError([error("TRN030", message, hint=hint)], UNCHANGED)
+            raise Unchanged([error("TRN030", message, hint=hint)])
         for status in statuses:
             if size > status.limit and not status.holds(mission):
                 message = f"the mission has {size} bytes; {status.robot} takes at most {status.limit}"
                 hint = "raise ~limit of its pursue_reader and communication_manager"
-                raise PursueError([error("TRN031", message, hint=hint)], UNCHANGED)
+                raise Unchanged([error("TRN031", message, hint=hint)])
 
     return check
 
 
 def kept_by_all(mission: str) -> Check:
-    """Refuses a mission that a robot does not keep: going back sends nothing. Raises PursueError (exit status 7)."""
+    """Refuses a mission that a robot does not keep: going back sends nothing. Raises Unchanged."""
 
     def check(statuses: Sequence[Status]) -> None:
         without = [status.robot for status in statuses if not status.holds(mission)]
         if without:
             message = f"the mission {mission_id(mission)} is not kept by {', '.join(without)}"
             hint = f"send its scenario or its bundle instead. {_what_each_has(statuses)}"
-            raise PursueError([error("TRN033", message, hint=hint)], UNCHANGED)
+            raise Unchanged([error("TRN033", message, hint=hint)])
 
     return check
 
@@ -62,14 +61,14 @@ def mission_digest(text: str, statuses: Sequence[Status]) -> str:
         return found[0] if found else text
     why = "several missions begin like this" if found else "no robot keeps such a mission"
     hint = f"name own, or at least {_SHORTEST} digits of a mission. {_what_each_has(statuses)}"
-    raise PursueError([error("TRN033", f"{text}: {why}", hint=hint)], UNCHANGED)
+    raise Unchanged([error("TRN033", f"{text}: {why}", hint=hint)])
 
 
 def previous(statuses: Sequence[Status]) -> str:
     """The mission that all robots had before: the last of the earlier ones that all of them still keep. Where they
     differ, since a desk died while it committed, it is the last that all have played: some may still stand at it.
 
-    Raises PursueError (exit status 7) where there is none, or where they do not agree on which it is.
+    Raises Unchanged where there is none, or where they do not agree on which it is.
     """
     differ = len({status.standing for status in statuses}) > 1
     played = [[*_earlier(status), *([status.standing] if differ else [])] for status in statuses]
@@ -79,7 +78,7 @@ def previous(statuses: Sequence[Status]) -> str:
         return last.pop()
     why = "the robots do not agree on an earlier mission" if len(statuses) > 1 else "there is no earlier mission"
     hint = f"name one: pursue-gen send --back DIGEST, or own. {_what_each_has(statuses)}"
-    raise PursueError([error("TRN032", why, hint=hint)], UNCHANGED)
+    raise Unchanged([error("TRN032", why, hint=hint)])
 
 
 def _earlier(status: Status) -> List[str]:

@@ -7,7 +7,7 @@ import shutil
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Type
 from unittest import mock
 
 import pytest
@@ -17,6 +17,7 @@ from benchmarks.agreement import SCENARIO, Job, add, compared, groups, opinions_
 from benchmarks.opinions import Opinions
 from benchmarks.random_games import random_game
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.checker import Report
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.synthesis.native import engine as native
@@ -70,12 +71,12 @@ def test_verdicts_that_differ_and_faults_count(
 def test_an_error_that_is_no_verdict_is_a_fault_and_a_limit_is_not() -> None:
     found = Opinions()
 
-    def fails(code: str, status: int) -> bool:
-        raise PursueError([error(code, "a message")], exit_status=status)
+    def fails(outcome: Type[PursueError]) -> bool:
+        raise outcome([error("SYN000", "a message")])
 
-    assert found.ask("lost", lambda: fails("SYN021", 4)) is False
-    assert found.ask("limit", lambda: fails("SYN010", 5)) is None and found.agreed
-    assert found.ask("unproven", lambda: fails("SYN020", 4)) is None
+    assert found.ask("lost", lambda: fails(Lost)) is False
+    assert found.ask("limit", lambda: fails(LimitHit)) is None and found.agreed
+    assert found.ask("unproven", lambda: fails(NotProven)) is None
     assert not found.agreed and found.faults == ["unproven: a message"]
 
 

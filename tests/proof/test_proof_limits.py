@@ -9,6 +9,7 @@ from unittest import mock
 import pytest
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.native.search import searches_of
@@ -40,7 +41,7 @@ USES: Dict[str, Callable[[LimitMonitor], object]] = {
 
 @pytest.mark.parametrize("use", USES)
 def test_what_ends_the_monitor_ends_every_search(use: str) -> None:
-    for problem in (KeyboardInterrupt, MemoryError, PursueError([], 5)):
+    for problem in (KeyboardInterrupt, MemoryError, LimitHit([])):
         with mock.patch.object(LimitMonitor, "check", side_effect=problem), pytest.raises(
             problem if isinstance(problem, type) else type(problem)
         ):

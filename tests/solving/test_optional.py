@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import FrozenSet, List, Tuple
+from typing import Any, FrozenSet, List, Tuple
 
 import pytest
 from hypothesis import given, settings
@@ -13,8 +13,11 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
+from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.solving import optional
+from pursue_gen.language.wording import promise_words
+from pursue_gen.proof.checker import Report
+from pursue_gen.solving import optional, proving
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.optional import promised, promised_of, try_plan_of
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -23,6 +26,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.verdict import optional_json
 from pursue_gen.synthesis.plan import write_plan
+from pursue_gen.tga.network import Network, Objective
 
 OFFICE = """\
 poi "lobby"
@@ -76,7 +80,7 @@ def test_the_solution_is_that_of_what_is_promised() -> None:
     )
     assert found.solution.objective == game_of(found.scenario)[1]
     assert found.solution.objective.goal == (("reachObj", "win"), ("reachObj2", "win"))
-    assert [one.decided for one in found.scenario.given_up] == [True]
+    assert [one.why for one in found.scenario.given_up] == [WhyGivenUp.IMPOSSIBLE]
     assert optional_json(found.scenario) == {"optional": {"promised": [1], "given_up": [2], "undecided": []}}
 
 
@@ -92,8 +96,25 @@ def test_what_is_too_much_work_is_given_up_and_said_to_be_undecided(monkeypatch:
     whole = replace(DEFAULT, whole=True)
     wanted = MAIL + "optional 1 reach_objective: do fetch"
     found = promised(office(wanted), whole, solve).scenario
-    assert [one.decided for one in found.given_up] == [False]
+    assert [one.why for one in found.given_up] == [WhyGivenUp.TOO_MUCH_WORK]
     assert optional_json(found) == {"optional": {"promised": [], "given_up": [1], "undecided": [1]}}
+
+
+def test_an_optional_objective_whose_strategy_the_checker_refuses_is_not_called_impossible(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    verify = proving.verify
+
+    def refusing(network: Network, objective: Objective, *rest: Any, **more: Any) -> Report:
+        report = verify(network, objective, *rest, **more)
+        return report if len(objective.goal) == 1 else replace(report, ok=False, reason="no block says what to do")
+
+    monkeypatch.setattr(proving, "verify", refusing)
+    found = promised(office(MAIL + "optional 1 reach_objective: do fetch"), DEFAULT, solve).scenario
+    assert optional_json(found) == {"optional": {"promised": [], "given_up": [1], "undecided": [1]}}
+    (sentence,) = promise_words(found)
+    assert "cannot be promised" not in sentence and "too much work" not in sentence
+    assert "the independent checker refuses the strategy" in sentence
 
 
 def test_a_plan_is_proven_for_the_most_that_it_promises(tmp_path: Path) -> None:

@@ -1,0 +1,63 @@
+"""How a command can end other than well: a type of error for each outcome, with the exit status that it gets.
+
+An error of no other type here is a PursueError: what was given has errors. Programs catch these types; the numbers are
+for those who start a command (docs/commands.md lists them).
+"""
+
+from __future__ import annotations
+
+from pursue_gen.diagnostics import PursueError
+
+
+class Unusable(PursueError):
+    """The command line, or a file that it names, cannot be used."""
+
+    exit_status = 2
+
+
+class Lost(PursueError):
+    """The solver found that the objective cannot be met."""
+
+    exit_status = 4
+
+
+class TooSlow(PursueError):
+    """The objective can be met, but its goal not within the time that was asked for."""
+
+    exit_status = 4
+
+
+class NotProven(PursueError):
+    """The checker refuses a strategy, or a plan holds none: whether the objective can be met is not known."""
+
+    exit_status = 4
+
+
+class LimitHit(PursueError):
+    """A limit was reached before it was decided."""
+
+    exit_status = 5
+
+
+class Unfinished(PursueError):
+    """What was begun did not end: a process or a machine failed, or the wait was over."""
+
+    exit_status = 5
+
+
+class Unavailable(PursueError):
+    """Something that is needed is missing, or does not work."""
+
+    exit_status = 6
+
+
+class Unchanged(PursueError):
+    """A robot could not be reached, or refused, and nothing has changed anywhere."""
+
+    exit_status = 7
+
+
+class Different(PursueError):
+    """The robots differ, or the state of one is not known."""
+
+    exit_status = 8
