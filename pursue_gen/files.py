@@ -13,12 +13,19 @@ from pathlib import Path
 from typing import Any, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_runtime import named_files
+
+LARGEST_TEXT = 256 << 20
+"""Bytes of a text that a program has written: a plan, a network."""
 
 
-def read_text(file: Path, what: str) -> str:
-    """The text of a file; `what` describes in messages the expected file. Raises PursueError (exit status 2)."""
+def read_text(file: Path, what: str, most: int = named_files.TEXT) -> str:
+    """The text of a regular file of at most so many bytes; `what` describes in messages the expected file.
+
+    Raises PursueError (exit status 2).
+    """
     try:
-        return file.read_text(encoding="utf-8-sig")
+        return named_files.read_text(file, most)
     except UnicodeDecodeError as problem:
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
         raise PursueError([error("CLI002", message, hint=f"name {what}")], exit_status=2) from None

@@ -38,6 +38,7 @@ from pursue_runtime.manifest import (
     mission_file,
     mission_id,
 )
+from pursue_runtime.named_files import read_text
 
 __all__ = [
     "ABORT", "ACTIONS", "COMMIT", "FILES", "FORMAT", "ID_LENGTH", "LIMIT", "MANIFEST", "MISSION", "ORDER_LENGTH", "OWN",
@@ -65,6 +66,7 @@ _ENTRY = b"PK\1\2"  # how each file begins in a zip's list of files
 _LONGEST_SEAL = 1000  # bytes; longer ones are not even looked at
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's first moment: bundles have no date
 _KEY_TYPE = "pursue-ed25519"
+_LONGEST_KEY = 4096  # bytes of its file
 
 Keys = Mapping[str, Ed25519PublicKey]
 """Those whose missions and orders count, by fingerprint."""
@@ -292,8 +294,7 @@ def read_keys(folder: str) -> Tuple[Dict[str, Ed25519PublicKey], List[str]]:
         return keys, [f"{folder}: {problem}"]
     for path in (os.path.join(folder, name) for name in names if name.endswith(".pub")):
         try:
-            with open(path, encoding="utf-8") as file:
-                key, _ = read_public_key(file.read(4096))
+            key, _ = read_public_key(read_text(path, _LONGEST_KEY))
         except (OSError, UnicodeDecodeError, Refused) as problem:
             problems.append(f"{path}: {problem}")
         else:

@@ -7,6 +7,7 @@ from typing import Any, Dict, NamedTuple
 
 from pursue_runtime import __version__
 from pursue_runtime.bounded import DATA, BadText, read_yaml
+from pursue_runtime.named_files import read_start
 
 FORMAT = 1
 """The format of data files that this run time reads."""
@@ -30,8 +31,7 @@ class DataError(Exception):
 def read_data(path: str) -> Dict[str, Any]:
     """The content of one of the package's YAML files. Raises DataError."""
     try:
-        with open(path, "rb") as file:
-            content = file.read(DATA.size + 1)
+        content = read_start(path, DATA.size)
     except OSError as problem:
         raise DataError(f"cannot read {path}: {problem}") from problem
     return parse_data(content, path)

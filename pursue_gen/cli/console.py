@@ -5,12 +5,12 @@ from __future__ import annotations
 import functools
 import os
 import sys
-from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Optional, TextIO
 
 import typer
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
+from pursue_runtime.named_files import read_text
 
 INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
 """Exit statuses beside those of PursueError: an internal error; Ctrl-C; stdout is closed."""
@@ -89,7 +89,7 @@ def _internal(problem: Exception) -> int:
 def _source(file: str) -> Optional[str]:
     """The text of a file; None where it cannot be shown."""
     try:  # a pipe has been read, and would not give its text again
-        return Path(file).read_text(encoding="utf-8-sig") if Path(file).is_file() else None
+        return read_text(file)
     except (OSError, ValueError):
         return None
 

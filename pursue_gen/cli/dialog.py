@@ -8,6 +8,8 @@ from pursue_gen.authoring.dialog import Answer, Dialog
 from pursue_gen.diagnostics import PursueError, usage_error
 
 _PATIENCE = 20  # bad answers in a row: then it is no person who answers
+LONGEST_LINE = 10_000
+"""Letters of what a person types before Enter."""
 
 
 class StreamDialog(Dialog):
@@ -33,9 +35,11 @@ class StreamDialog(Dialog):
 
     def _line(self) -> str:
         try:
-            line = self._source.readline()
+            line = self._source.readline(LONGEST_LINE)
         except UnicodeDecodeError:
             raise _ended("what was typed is not text in UTF-8") from None
+        if len(line) == LONGEST_LINE:
+            raise _ended("what was typed is no answer: its line does not end")
         if not line:
             print(file=self._screen)
             raise _ended("the answers ended before the questions did")

@@ -23,6 +23,7 @@ def fmt(
     A file with syntax errors is left as it is, and the exit status is 3; where a file cannot be read, it is 2.
     """
     from pursue_gen.language.formatter_files import Layout, layout_of, layout_of_bytes, replace_text
+    from pursue_gen.language.parser import MOST_BYTES
 
     stdin = files == [Path("-")]
     if Path("-") in files and not stdin:
@@ -31,7 +32,10 @@ def fmt(
     problems: List[PursueError] = []
     for file in files:
         try:
-            layout = layout_of_bytes(sys.stdin.buffer.read(), "<stdin>") if stdin else layout_of(str(file))
+            if stdin:
+                layout = layout_of_bytes(sys.stdin.buffer.read(MOST_BYTES + 1), "<stdin>")
+            else:
+                layout = layout_of(str(file))
             if layout.changed and not (stdin or check or diff):
                 replace_text(layout)
             layouts.append(layout)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Optional
 import typer
 
 from pursue_gen.cli.console import guarded
+from pursue_gen.cli.dialog import LONGEST_LINE
 from pursue_gen.cli.options import REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import usage_error
 
@@ -67,9 +68,11 @@ def play(
         if interactive:
             print(_PROMPT, end="", flush=True)
         try:
-            line = sys.stdin.readline()
+            line = sys.stdin.readline(LONGEST_LINE)
         except KeyboardInterrupt:
             line = ""
+        if len(line) == LONGEST_LINE:
+            raise usage_error("what was typed is no command: its line does not end", "type help for a list of commands")
         if not line:
             if not session.play.over:  # else the table has been printed
                 print(("\n" if interactive else "") + farewell(session))

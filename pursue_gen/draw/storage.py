@@ -9,8 +9,9 @@ from typing import Tuple
 from pursue_gen.diagnostics import PursueError, error, usage_error
 from pursue_gen.files import shell_quoted, write_texts
 from pursue_gen.language.formatter_files import Layout, replace_text
-from pursue_gen.language.parser import read_text
+from pursue_gen.language.parser import MOST_BYTES, read_text
 from pursue_gen.lsp.positions import plain
+from pursue_runtime.named_files import read_all
 
 NOTHING = ""
 """The version of a file that is not there."""
@@ -47,7 +48,7 @@ def check_new(file: Path, force: bool) -> None:
 def version(file: Path) -> str:
     """What stands for the content of a file. Raises PursueError (exit status 2) where it cannot be read."""
     try:
-        return hashlib.sha256(file.read_bytes()).hexdigest()
+        return hashlib.sha256(read_all(file, MOST_BYTES)).hexdigest()
     except FileNotFoundError:
         return NOTHING
     except OSError as problem:

@@ -15,10 +15,14 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.png_greys import greys
 from pursue_gen.files import read_text
 from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
+from pursue_runtime.named_files import read_all
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _LARGEST = 64_000_000
 """Pixels; more than any map that map_server was made for."""
+
+_LARGEST_FILE = 160 << 20
+"""Bytes: so many pixels of 16 bits, and more."""
 
 _MODES = ("trinary", "scale", "raw")
 
@@ -141,7 +145,7 @@ def _image(file: Path) -> Tuple[bytes, int, int]:
 def _content(file: Path) -> bytes:
     """What is in a file that begins like an image of a map."""
     try:
-        content = file.read_bytes()
+        content = read_all(file, _LARGEST_FILE)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         hint = "in the yaml file, image: and the name of a file"
@@ -168,10 +172,7 @@ def _pgm_greys(file: Path, content: bytes) -> Tuple[bytes, int, int]:
         raise unusable(file, f"its largest grey is {largest}", "1 to 65535, usually 255")
     body = content[head.end() :]
     if head.group(1) == b"2":
-        words = re.sub(rb"#[^\n]*", b"", body).split()[:count]
-        if not all(word.isdigit() and len(word) < 6 for word in words):
-            raise unusable(file, "there is something that is no grey", f"numbers from 0 to {largest}")
-        found = bytes(min(int(word), largest) * 255 // largest for word in words)
+        found = _plain_greys(file, body, count, largest)
     elif largest < 256:
         found = body[:count].translate(bytes(min(value, largest) * 255 // largest for value in range(256)))
     else:
@@ -180,6 +181,21 @@ def _pgm_greys(file: Path, content: bytes) -> Tuple[bytes, int, int]:
     if len(found) < count:
         raise unusable(file, f"it ends after {len(found)} of {count} pixels", "copy it again")
     return found, width, height
+
+
+def _plain_greys(file: Path, body: bytes, count: int, largest: int) -> bytes:
+    """The greys that stand in words, so many or as many as there are."""
+    found = bytearray()
+    for token in re.finditer(rb"#[^\n]*|[^\s#]+", body):  # one by one: there may be millions
+        word = token.group()
+        if word[:1] == b"#":
+            continue
+        if len(found) == count:
+            break
+        if not word.isdigit() or len(word) > 5:
+            raise unusable(file, "there is something that is no grey", f"numbers from 0 to {largest}")
+        found.append(min(int(word), largest) * 255 // largest)
+    return bytes(found)
 
 
 def _sized(file: Path, width: int, height: int) -> Tuple[int, int]:

@@ -13,7 +13,7 @@ from typing import List
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.parser import read_text
+from pursue_gen.language.parser import read_bytes, text_of
 
 
 @dataclass(frozen=True)
@@ -43,18 +43,12 @@ def layout_of(file: str) -> Layout:
     if path.exists() and not path.is_file():
         message = f"{file} is not a file whose text could be changed"
         raise PursueError([error("CLI001", message, hint="name scenario files; - stands for stdin")], exit_status=2)
-    text = read_text(file)
-    return _layout(path.read_bytes(), text, file)
+    return layout_of_bytes(read_bytes(file), file)
 
 
 def layout_of_bytes(data: bytes, file: str) -> Layout:
     """The layout of a text in UTF-8 that is in no file. Raises PursueError as `layout_of`."""
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as problem:
-        message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("PML002", message, hint="a scenario is plain text in UTF-8")], 2) from None
-    return _layout(data, text, file)
+    return _layout(data, text_of(data, file), file)
 
 
 def _layout(data: bytes, text: str, file: str) -> Layout:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import select
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
@@ -18,11 +16,15 @@ from pursue_gen.language.number_messages import no_count, no_number
 from pursue_gen.language.numbers import Number, is_fine, read_number
 from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
+from pursue_runtime.named_files import read_start
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
 
 _ASSUMPTIONS = (pml.AtMost, pml.Waits, pml.Leaves, pml.NeverAt, pml.NeverHolds)
+
+MOST_BYTES = MOST_LETTERS * 4  # bytes of a letter
+"""The most bytes of a scenario."""
 
 _PATIENCE = 5
 """Seconds in which something has to come where the file is a pipe."""
@@ -53,12 +55,26 @@ def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
 
 def read_text(file: str) -> str:
     """The text of a scenario file. Raises PursueError where it cannot be read or is not text."""
+    return text_of(read_bytes(file), file)
+
+
+def read_bytes(file: str) -> bytes:
+    """The bytes of a scenario file, no more than it may have and one; from a pipe they have to come soon.
+
+    Raises PursueError (exit status 2).
+    """
     try:
-        content = _content(file)
+        return read_start(file, MOST_BYTES, patience=_PATIENCE)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         hint = "name a scenario file, by convention *.pur"
         raise PursueError([error("PML001", f"cannot read {file}: {reason}", hint=hint)], exit_status=2) from None
+
+
+def text_of(content: bytes, file: str) -> str:
+    """The text in the bytes of a scenario. Raises PursueError where there are too many, or they are not text."""
+    if len(content) > MOST_BYTES and b"\0" not in content:  # of a program or a picture that it is large says less
+        raise PursueError([too_large(file)])
     hint = "save the scenario as plain text in UTF-8; a word processor's file is not plain text"
     try:
         text = content.decode("utf-8-sig")
@@ -71,24 +87,6 @@ def read_text(file: str) -> str:
         message = f"{file} is not plain text: it holds bytes that are 0 (the first is byte {content.index(0) + 1})"
         raise PursueError([error("PML002", message, hint=hint)], exit_status=2)
     return text
-
-
-def _content(file: str) -> bytes:
-    """The bytes of a file, no more than a scenario may have; from a pipe they have to come soon."""
-    content = b""
-    with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK), "rb", buffering=0) as stream:  # a pipe does not block
-        ready = select.poll()
-        ready.register(stream, select.POLLIN)
-        while len(content) <= MOST_LETTERS * 4:  # bytes of a letter
-            if not ready.poll(_PATIENCE * 1000):
-                raise OSError(None, f"nothing came from it within {_PATIENCE} seconds")
-            more = stream.read(1 << 20)
-            if not more:
-                return content
-            content += more
-    if b"\0" in content:  # a program or a picture: that it is large says less
-        return content
-    raise PursueError([too_large(file)])
 
 
 def read(text: str, file: str, name: Optional[str] = None) -> Reading:

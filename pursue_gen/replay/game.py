@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.files import read_text
+from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
@@ -95,7 +95,7 @@ def from_workspace(folder: Path) -> Source:
         raise PursueError([error("RPL006", f"{folder} holds no game (src/observer/config/game.yaml)", hint=hint)], 2)
     text = read_text(games[0], "a workspace's game.yaml")
     path = folder / "UPPAAL_plan.txt"
-    plan = (read_text(path, "a plan"), str(path)) if path.is_file() else None
+    plan = (read_text(path, "a plan", LARGEST_TEXT), str(path)) if path.is_file() else None
     return from_data(read_game(text, str(games[0])), str(games[0]), plan)
 
 

@@ -7,7 +7,7 @@ import re
 import struct
 from dataclasses import replace
 from pathlib import Path
-from typing import AbstractSet, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import AbstractSet, Any, BinaryIO, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.replay.bag import MAGIC, Damage, Message, read_bag
@@ -15,6 +15,7 @@ from pursue_gen.replay.journal import Journal, read_journal
 from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.drives.report import DRIVES, Drive, parse_drive
+from pursue_runtime.named_files import open_regular, read_all
 from pursue_runtime.state import SystemState, parse_state
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
@@ -22,12 +23,18 @@ EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an ob
 RECORD = re.compile(rb"[0-9a-f]{8} 0 \d+ \{")
 """How a journal of format 2 begins."""
 
+LARGEST_JOURNAL = 256 << 20
+"""Bytes of a journal; bags may be larger, and are read piece by piece."""
+
 BEHIND = 2.0
 """Seconds by which the recorder's clock may be seen to be behind the observer's; more is another clock."""
 
+_BAG = b"#ROSBAG"
 _SIMPLE, _ACTION = "/move_base_simple/goal", "/move_base/goal"
 _ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
 """Topics of a robot, below its name."""
+_MISSION = ("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")
+_SHOWN = 40  # topics that a message names
 
 
 def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Journal]:
@@ -35,11 +42,12 @@ def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Jou
     drives without one, or nothing yet.
     """
     try:
-        content = file.read_bytes()
+        with open_regular(file) as stream:
+            if stream.read(len(_BAG)) == _BAG:
+                return _bag(file, stream, drives)
+        content = read_all(file, LARGEST_JOURNAL)
     except (OSError, ValueError) as problem:
         raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
-    if content.startswith(b"#ROSBAG"):
-        return _bag(file, content, drives)
     if content.lstrip()[:1] == b"{" or RECORD.match(content):
         journal = read_journal(content)
         if isinstance(journal, str):
@@ -48,21 +56,26 @@ def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Jou
     raise _unreadable(f"{file} is neither a bag nor a journal", "RPL002")
 
 
-def _bag(file: Path, content: bytes, drives: bool) -> MissionRecord:
+def _bag(file: Path, stream: BinaryIO, drives: bool) -> MissionRecord:
     try:
-        messages, problems = read_bag(content)
+        bag = read_bag(stream, _is_ours)
     except Damage as damage:
         known = MAGIC.decode().strip()
         raise _unreadable(f"{file} is a bag of another format than {known}: {damage}", "RPL003") from None
-    record = from_messages(messages, problems)
+    record = from_messages(bag.messages, bag.problems)
     if record.drives and not record.states and not drives:
         message = f"{file} holds drives that were measured, and no mission"
         raise _unreadable(message, "RPL004", f"for times of drives: pursue-gen calibrate SCENARIO.pur {file}")
     if not record.states and not (drives and (record.drives or record.game)):
-        found = ", ".join(sorted({message.topic for message in messages})) or "no messages"
-        hint = "; ".join([*problems, EXPECTED])
+        found = ", ".join(bag.topics[:_SHOWN]) + (", …" if len(bag.topics) > _SHOWN else "") or "no messages"
+        hint = "; ".join([*bag.problems, EXPECTED])
         raise _unreadable(f"{file} holds no state of a mission on pursue/system_state; it has {found}", "RPL004", hint)
     return record
+
+
+def _is_ours(topic: str) -> bool:
+    """True for a topic whose messages `from_messages` does not pass over."""
+    return topic.strip("/").endswith((*_ORDERS, DRIVES, *_MISSION))
 
 
 def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
@@ -89,7 +102,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
             drive = parse_drive(_text(message.data))
             drives += [] if drive is None else [drive]
             strange += drive is None
-        elif topic.endswith(("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")):
+        elif topic.endswith(_MISSION):
             text = _text(message.data)
             state = parse_state(text) if topic.endswith("system_state") else None
             data = _json(text) if topic.endswith(("plan", "game")) else None

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, warning
-from pursue_gen.files import read_text
+from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -97,7 +97,7 @@ def try_plan(
     plan: Path, network: Network, objective: Objective, games: Sequence[Rules], options: SolveOptions = DEFAULT
 ) -> Tuple[Trial, ...]:
     """The plan in a file, tried as `trials` does."""
-    text = read_text(plan, "a plan, such as UPPAAL_plan.txt")
+    text = read_text(plan, "a plan, such as UPPAAL_plan.txt", LARGEST_TEXT)
     return trials(text, str(plan), network, objective, games, options)
 
 

@@ -8,7 +8,7 @@ from typing import Iterable, Optional, Sequence, Tuple
 
 from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
-from pursue_gen.files import read_text
+from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
@@ -87,5 +87,5 @@ def load_game(files: Sequence[Path]) -> Tuple[Network, Objective]:
     from pursue_gen.tga.uppaal_read import read_network, read_query
 
     model, query = files
-    network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml"), str(model))
+    network = read_network(read_text(model, "a network of UPPAAL, such as TGA.xml", LARGEST_TEXT), str(model))
     return network, read_query(read_text(query, "a query of UPPAAL-TIGA, such as TCTL.q"), str(query))

@@ -15,6 +15,7 @@ from pursue_gen.workspace.generate import generate, mission_of
 from pursue_gen.workspace.make import Extras, options_for
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 from pursue_runtime.bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
+from pursue_runtime.named_files import read_start
 
 SUFFIX = ".pursue"
 _SHOWN = 5  # points that a message names
@@ -70,8 +71,7 @@ def sign(manifest: Manifest, files: Mapping[str, bytes], key: Ed25519PrivateKey)
 def read_bundle(file: Path, keys: Keys) -> Tuple[bytes, Bundle]:
     """The bundle in a file, and what is in it once all of it is checked. Raises PursueError (exit status 2)."""
     try:
-        with open(file, "rb") as stream:
-            content = stream.read(LIMIT + 1)
+        content = read_start(file, LIMIT)
     except (OSError, ValueError) as problem:
         message = f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}"
         hint = "name a bundle, such as my_floor.pursue"

@@ -34,6 +34,7 @@ except ImportError:
     raise Unavailable([error("TRN001", _MISSING, hint=_HINT)]) from None
 
 from pursue_runtime.bundle import Refused, fingerprint, read_public_key, write_public_key
+from pursue_runtime.named_files import open_regular, read_text
 
 PRIVATE, PUBLIC = ".key", ".pub"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)
@@ -142,7 +143,7 @@ def load_private(name_or_path: Optional[str] = None, folder: Optional[Path] = No
 def _read_private(file: Path, folder: Path) -> bytes:
     """The content of a file that its owner alone may read."""
     try:
-        with open(file, "rb") as stream:
+        with open_regular(file) as stream:
             mode = os.fstat(stream.fileno()).st_mode
             if file.suffix != PUBLIC and mode & _OTHERS:
                 message = f"others may read or write the private key {file}"
@@ -161,8 +162,7 @@ def load_public(name: str, folder: Path) -> Ed25519PublicKey:
     if not _NAME.fullmatch(name) or not public.exists():
         return load_private(name, folder).public_key()
     try:
-        with open(public, encoding="utf-8") as stream:
-            key, _ = read_public_key(stream.read(_LONGEST))
+        key, _ = read_public_key(read_text(public, _LONGEST))
     except (OSError, UnicodeDecodeError, Refused) as problem:
         message = f"{public} is not a public key: {getattr(problem, 'strerror', None) or problem}"
         hint = f"remove it if {private} is there: keys show then makes it again"

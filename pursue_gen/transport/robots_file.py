@@ -11,6 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.similar import closest
 from pursue_gen.transport.client import PORT, Robot, plain
+from pursue_runtime.named_files import read_all
 
 FORMAT = 1
 TIMEOUT = 5.0
@@ -112,6 +113,7 @@ class _Reader:
             self._wrong("TRN022", "a certificate without TLS", entries["ca"][0], "add   tls: true")
         place = self._file.parent / name
         try:
+            read_all(place)  # OpenSSL would wait for a pipe
             ssl.create_default_context(cafile=str(place))
         except (OSError, ValueError) as problem:
             why = "there is no certificate in it" if isinstance(problem, ssl.SSLError) else _reason(problem)

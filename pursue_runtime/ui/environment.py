@@ -7,6 +7,7 @@ import random
 from typing import List, Optional, Sequence, Tuple
 
 from pursue_runtime.model import Model
+from pursue_runtime.named_files import read_text
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import MARGIN, Environment, possible_words
 from pursue_runtime.ui.options import Options
@@ -117,8 +118,8 @@ def make_player(options: Options, model: Model) -> Environment:
     if options.mode == "trace":
         words = {edge.word for automaton in model.automata for edge in automaton.edges if edge.sync != "receive"}
         try:
-            with open(options.trace, encoding="utf-8") as file:
-                return TraceEnvironment(read_trace(file.read(), options.trace, words))
+            text = read_text(options.trace)
+            return TraceEnvironment(read_trace(text, options.trace, words))
         except (OSError, UnicodeDecodeError) as problem:
             raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
     return IdleEnvironment()
