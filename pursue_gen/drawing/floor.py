@@ -16,10 +16,7 @@ from pursue_gen.drawing.png_greys import greys
 from pursue_gen.files import read_text
 from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 from pursue_runtime.named_files import read_all
-
-_PNG = b"\x89PNG\r\n\x1a\n"
-_LARGEST = 64_000_000
-"""Pixels; more than any map that map_server was made for."""
+from pursue_runtime.png import LARGEST, SIGNATURE, find_damage
 
 _LARGEST_FILE = 160 << 20
 """Bytes: so many pixels of 16 bits, and more."""
@@ -116,7 +113,7 @@ def read_greys(file: Path) -> Tuple[Optional[bytes], int, int]:
     None for the greys of a PNG of an unusual kind (`png_greys`). Raises PursueError (exit status 2).
     """
     content = _content(file)
-    if content.startswith(_PNG):
+    if content.startswith(SIGNATURE):
         width, height = _png_size(file, content)
         return greys(content), width, height
     return _pgm_greys(file, content)
@@ -136,7 +133,7 @@ def _yaml(file: Path) -> Dict[str, Any]:
 def _image(file: Path) -> Tuple[bytes, int, int]:
     """The image as PNG, its width and height."""
     content = _content(file)
-    if content.startswith(_PNG):
+    if content.startswith(SIGNATURE):
         return content, *_png_size(file, content)
     values, width, height = _pgm_greys(file, content)
     return _png(values, width, height), width, height
@@ -150,7 +147,7 @@ def _content(file: Path) -> bytes:
         reason = getattr(problem, "strerror", None) or str(problem)
         hint = "in the yaml file, image: and the name of a file"
         raise unusable(file, f"it cannot be read: {reason}", hint) from None
-    if not content.startswith((_PNG, b"P2", b"P5")):
+    if not content.startswith((SIGNATURE, b"P2", b"P5")):
         raise unusable(file, "it is neither PGM nor PNG", "save it as one of these")
     return content
 
@@ -158,7 +155,11 @@ def _content(file: Path) -> bytes:
 def _png_size(file: Path, content: bytes) -> Tuple[int, int]:
     if len(content) < 29 or content[12:16] != b"IHDR":
         raise unusable(file, "it is a damaged PNG", "save it again")
-    return _sized(file, *struct.unpack(">II", content[16:24]))
+    width, height = _sized(file, *struct.unpack(">II", content[16:24]))
+    damage = find_damage(content)
+    if damage:
+        raise unusable(file, f"it is a damaged PNG: {damage}", "a whole picture: copy or save it again")
+    return width, height
 
 
 def _pgm_greys(file: Path, content: bytes) -> Tuple[bytes, int, int]:
@@ -199,8 +200,8 @@ def _plain_greys(file: Path, body: bytes, count: int, largest: int) -> bytes:
 
 
 def _sized(file: Path, width: int, height: int) -> Tuple[int, int]:
-    if not width or not height or width * height > _LARGEST:
-        raise unusable(file, f"it has {width} times {height} pixels", f"1 to {_LARGEST // 1_000_000} million pixels")
+    if not width or not height or width * height > LARGEST:
+        raise unusable(file, f"it has {width} times {height} pixels", f"1 to {LARGEST // 1_000_000} million pixels")
     return width, height
 
 
@@ -212,7 +213,7 @@ def _png(values: bytes, width: int, height: int) -> bytes:
 
     rows = b"".join(b"\x00" + values[k * width : (k + 1) * width] for k in range(height))
     head = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return _PNG + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
+    return SIGNATURE + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
 
 
 def _number(file: Path, data: Dict[str, Any], key: str, default: Optional[float] = None) -> float:

@@ -7,13 +7,12 @@ import os
 from typing import Any, Dict, NamedTuple, Optional
 
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.png import find_damage
 
 FOLDER, SETTINGS, PICTURE = "map", "floor.yaml", "floor.png"
 
 LARGEST = 10_000_000
 """Bytes of a picture."""
-
-_PNG = b"\x89PNG\r\n\x1a\n"
 
 
 class Floor(NamedTuple):
@@ -48,6 +47,6 @@ def read_floor(config: str) -> Optional[Floor]:
     except (OSError, KeyError, TypeError, ValueError, OverflowError) as problem:
         raise DataError(f"{path} cannot be used: {problem!r}; generate the workspace again") from problem
     sizes = width > 0 and height > 0 and resolution > 0 and all(map(math.isfinite, (resolution, x, y, yaw)))
-    if not sizes or not picture.startswith(_PNG) or len(picture) > LARGEST:
+    if not sizes or len(picture) > LARGEST or find_damage(picture):
         raise DataError(f"{path} does not belong to a picture in {PICTURE}; generate the workspace again")
     return Floor(picture, width, height, resolution, x, y, yaw)

@@ -61,6 +61,51 @@ def test_a_png_is_embedded_as_it_is(tmp_path: Path) -> None:
     assert again == made
 
 
+def png(width: int, height: int, depth: int, kind: int, rows: bytes, interlaced: int = 0) -> bytes:
+    """A PNG of these rows, each with its filter before it."""
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, interlaced)
+    palette = chunk(b"PLTE", bytes(6)) if kind == 3 else b""
+    packed = zlib.compress(rows)
+    halves = (packed[: len(packed) // 2], packed[len(packed) // 2 :])
+    pixels = b"".join(chunk(b"IDAT", half) for half in halves)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + palette + pixels + chunk(b"IEND", b"")
+
+
+PICTURES = {
+    "grey": png(3, 2, 8, 0, bytes(8)),
+    "grey of 16 bits": png(3, 2, 16, 0, bytes(14)),
+    "colours": png(3, 2, 8, 2, bytes(20)),
+    "colours with opacity": png(3, 2, 8, 6, bytes(26)),
+    "a palette": png(3, 2, 1, 3, bytes(4)),
+    "interlaced": png(3, 2, 8, 0, bytes(11), 1),  # passes of 1, 1, 1 and 3 pixels: 2 + 2 + 3 + 4 bytes
+}
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_png_is_used_whole_or_not_at_all(tmp_path: Path, name: str) -> None:
+    content = PICTURES[name]
+    assert plan(tmp_path, content).width == 3
+    for end in range(8, len(content)):
+        with pytest.raises(PursueError, match="damaged PNG") as problem:
+            plan(tmp_path, content[:end])
+        assert problem.value.diagnostics[0].hint
+    for place in range(8, len(content)):
+        with pytest.raises(PursueError, match="cannot be used"):
+            plan(tmp_path, content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_png_without_some_of_its_pixels_is_damaged(tmp_path: Path, name: str) -> None:
+    content = PICTURES[name]
+    second = content.rindex(b"IDAT") - 4
+    with pytest.raises(PursueError, match="bytes of pixels"):
+        plan(tmp_path, content[:second] + content[content.rindex(b"IEND") - 4 :])
+
+
 @pytest.mark.parametrize(
     ("text", "image", "told"),
     [
@@ -139,8 +184,7 @@ def test_a_mode_that_map_server_does_not_know_is_reported(tmp_path: Path) -> Non
 
 
 def test_pixels_that_are_not_known_are_free_unless_they_are_needed(tmp_path: Path) -> None:
-    palette = struct.pack(">IIBBBBB", 1, 1, 8, 3, 0, 0, 0)
-    (tmp_path / "floor.pgm").write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + palette + b"crc.")
+    (tmp_path / "floor.pgm").write_bytes(png(1, 1, 8, 3, bytes(2)))
     (tmp_path / "map.yaml").write_text(GOOD)
     ground = read_ground(tmp_path / "map.yaml")
     assert ground.free_pixels() is None and ground.at(-0.99, 2.01) == "free"
