@@ -26,6 +26,7 @@ from pursue_runtime.folders import ros_home, scenario_folder
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.newest import Newest
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
@@ -56,9 +57,6 @@ from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, STOP, SY
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
-BEGUN = "pursue/begun"
-"""A parameter beside the node: the launch in which a mission has been under way last."""
-
 CLOCK = 10.0
 """Seconds of real time for which a mission that goes on waits for simulated time."""
 
@@ -80,7 +78,7 @@ class Observer:
         own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
-        self.begun = rospy.get_param(BEGUN, None) == self._journal_name()
+        self.newest = Newest(self._journal_name(), self.ending)
         self.witnesses = Witnesses(self.ending)
         self.witnesses.gather()
         self.source = self._source()
@@ -162,14 +160,7 @@ class Observer:
         digest = hashlib.sha256(model.encode()).hexdigest()
         header: Dict[str, object] = {"scenario": self.mission.model.scenario, "model": digest, "settings": settings}
         header.update({"mission": self.source.mission, "launch": self._journal_name()})
-        return Journal(self.mission, self._journal_path(), header, self.log_soon, self.begun)
-
-    def mark_begun(self) -> None:
-        """Note with the master that a mission has been under way in this launch, for an observer without a journal."""
-        try:
-            rospy.set_param(BEGUN, self._journal_name())
-        except Exception as problem:  # whatever a master that is going down answers
-            rospy.logwarn("the master does not keep the parameter %s: %s", BEGUN, problem)
+        return Journal(self.mission, self._journal_path(), header, self.log_soon, self.newest.begun)
 
     def now(self) -> float:
         """ROS time in seconds, but nothing comes before what is written down."""
@@ -182,7 +173,8 @@ class Observer:
         none of them has seen the mission: then nobody knows until when the observer was there.
         """
         own, journal = self.mission.state(self.now()), self.journal
-        found = find_state(own, journal.damage, journal.after, self.witnesses.seen, self.begun)
+        reached = max(journal.reached, self.newest.reached(journal.after))
+        found = find_state(own, journal.damage, journal.after, self.witnesses.seen, self.newest.begun, reached)
         why = found.stop
         awaited = self.witnesses.reporting(self.mission.name)
         stamps = (self.witnesses.seen[node].stamp for node in awaited)
@@ -281,9 +273,9 @@ class Observer:
         while not rospy.is_shutdown():
             time.sleep(min(1.0, self.settings.heartbeat))
             now = time.monotonic()
-            if self.mission.status in LIVE and not self.begun:
-                self.begun = True
-                start_thread("begun", self.mark_begun, self.ending)  # it may have to wait for the master
+            with self.lock:
+                if self.mission.status != WAITING:
+                    self.newest.note((self.mission.seq, self.mission.status in ENDED), self.now())
             self.check_for_another()
             for node, reported in list(self.last_report.items()):
                 is_silent = now > reported + self.settings.silence
@@ -388,6 +380,7 @@ class Observer:
         status = self.ending.wait(linger=self.settings.linger)
         if self.mission.status in ENDED and (self.settings.again or not self.settings.launch):
             self.journal.end(self.now())  # a roscore may see another mission; a launch has one, unless ~again is set
+            self.newest.close()
         if self.ending.renewed:
             restart_process()
         return status

@@ -1,7 +1,7 @@
 """The journal of a mission: a record of each call that changed it, so that a restarted observer can continue.
 
-A journal that could not be written any more is renamed (FAILED): it holds the beginning of a mission only. What other
-nodes have seen tells then where the mission is (see witnesses).
+A journal that could not be written any more is renamed (FAILED): it holds the beginning of a mission only. So does one
+that is behind its mark. What other nodes have seen tells then where the mission is (see witnesses).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.observer.mark import MARK, Mark, MarkFile, Rank, read_mark
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.records import FORMAT, Record, RecordFile, RecordsRead, read_records, sync_folder
 from pursue_runtime.state import ENDED, WAITING, SystemState
@@ -41,6 +42,9 @@ END = "told"
 FAILED = ".failed"
 """What is added to the name of a journal that could not be written any more."""
 
+MISSING = "it is missing"
+"""The damage of a journal that must be there, and is not."""
+
 DELAY = 0.01
 """Seconds until what was written is synced: first it is published, and the next record does not wait for the disk."""
 
@@ -55,7 +59,8 @@ class Journal:
 
     `damage`: why the journal that was found is not all that happened; "" where it is, or where there was none. Then
     nothing is written unless a state is adopted. `last`: the moment of the last entry, in seconds. `after`: the moment
-    at which the mission before this one was over, by the same launch; states of before belong to that one.
+    at which the mission before this one was over, by the same launch; states of before belong to that one. `reached`:
+    how far the mission has come at least, by the mark that was found.
     """
 
     def __init__(
@@ -68,10 +73,13 @@ class Journal:
         """
         self.last = self.after = 0.0
         self.damage = ""
+        self.reached: Rank = (0, False)
         self._mission, self._path, self._log = mission, path, log
         self._header = {"format": FORMAT, **header}
+        self._mark = MarkFile(path + MARK, str(header.get("launch", "")), str(header.get("mission", "")))
         self._file: Optional[RecordFile] = None
         self._lost = not path  # nothing is written any more
+        self._records = 0  # how many the journal has, or should have
         self._entries: List[Record] = []  # what was replayed
         self._lock = threading.RLock()
         self._unsynced, self._written = False, threading.Event()
@@ -147,20 +155,22 @@ class Journal:
                     file.sync()
             except OSError as problem:
                 self._fail(problem)
+            self._mark.sync()
 
     # What was found ---------------------------------------------------------------------------------------------------
 
     def _resume(self, begun: bool) -> None:
         try:
             os.makedirs(os.path.dirname(self._path), exist_ok=True)
-            source, found = _read(self._path)
+            source, found, mark = _read(self._path, str(self._header.get("launch", "")))
+            self.reached = mark.rank if mark else self.reached
         except OSError as problem:
             source, found = self._path, RecordsRead([], 0, f"it cannot be read: {problem}")
             if not os.path.exists(self._path) and not begun:
                 self._log("err", f"no journal: {problem}")
                 return
         if not source and begun:
-            source, found = self._path, RecordsRead([], 0, "it is missing")
+            source, found = self._path, RecordsRead([], 0, MISSING)
         head = dict(found.records[0]) if found.records else {}
         self.after, entries = _moment(head.pop("after", 0.0)), found.records[1:]
         other = bool(head) and head.get("launch") != self._header.get("launch")
@@ -171,6 +181,7 @@ class Journal:
             elif source:
                 with contextlib.suppress(OSError):
                     os.remove(source)
+            self.reached = (0, False)
             self._begin([])
             return
         self.damage = found.damage
@@ -208,23 +219,39 @@ class Journal:
             self._file = how()
         except OSError as problem:
             self._log("err", f"no journal: {problem}")
+        else:
+            self._records = self._file.count
+            self._write_mark()
 
     def _write(self, entry: Mapping[str, Any], sync: bool = False) -> None:
         with self._lock:
-            if self._lost or self.damage:
+            if self.damage or not self._path:
                 return
+            if not self._lost:
+                self._append(entry, sync)
+            self._records += 1
+            self._write_mark()
+            self._unsynced = self._unsynced or not sync
+
+    def _append(self, entry: Mapping[str, Any], sync: bool) -> None:
+        if self._file is None:
+            self._begin([])  # there was no room for it: there may be now
+        try:
             if self._file is None:
-                self._begin([])  # there was no room for it: there may be now
-            try:
-                if self._file is None:
-                    raise OSError("it could not be created")
-                self._file.append(entry)
-                if sync:
-                    self._file.sync()
-                else:
-                    self._unsynced = True
-            except OSError as problem:
-                self._fail(problem)
+                raise OSError("it could not be created")
+            self._file.append(entry)
+            if sync:
+                self._file.sync()
+        except OSError as problem:
+            self._fail(problem)
+
+    def _write_mark(self) -> None:
+        """Mark how far the mission has come, also where the journal has failed."""
+        if self._mark.problem:
+            return
+        self._mark.write(self._records, self._mission.seq, self._mission.status in ENDED)
+        if self._mark.problem:
+            self._log("err", f"no mark beside the journal: {self._mark.problem}")
 
     def _fail(self, problem: OSError) -> None:
         """Mark the journal: it is not the whole mission any more, and whoever reads it has to know."""
@@ -244,7 +271,7 @@ class Journal:
                 self._log("err", f"{self._path} cannot be marked as failed: {another}")
 
     def _set_aside(self) -> None:
-        """Rename what is in the place of the journal to a free name. Raises OSError."""
+        """Rename what is in the place of the journal to a free name, and remove its mark. Raises OSError."""
         stem, ending = os.path.splitext(self._path)
         for path in (self._path, self._path + FAILED):
             number = 1
@@ -252,15 +279,33 @@ class Journal:
                 number += 1
             if os.path.exists(path):
                 os.rename(path, f"{stem}-{number}{ending}")
+        self._mark.remove()  # not before: there must be no journal that it should have shown to be cut
 
 
-def _read(path: str) -> Tuple[str, RecordsRead]:
-    """Return the path of the journal ("" where there is none) and what is in it. Raises OSError."""
+def _read(path: str, launch: str) -> Tuple[str, RecordsRead, Optional[Mark]]:
+    """Return the path of the journal ("" where there is none), what is in it, and the mark of a mission of this launch
+    that has begun. Raises OSError."""
+    source, found = "", RecordsRead([], 0)
     if os.path.exists(path):  # one that is there is newer than one that has failed
-        return path, read_records(path)
-    if os.path.exists(path + FAILED):
-        return path + FAILED, read_records(path + FAILED)._replace(damage="it could not be written any more")
-    return "", RecordsRead([], 0)
+        source, found = path, read_records(path)
+    elif os.path.exists(path + FAILED):
+        source = path + FAILED
+        found = read_records(source)._replace(damage="it could not be written any more")
+    mark = read_mark(path + MARK)
+    if mark is None or mark.launch != launch or mark.rank == (0, False):
+        return source, found, None
+    if not source:
+        source, found = path, RecordsRead([], 0, MISSING)
+    elif found.records and found.records[0].get("launch") != launch:
+        found = RecordsRead([], 0, "it is the one of another launch")
+    elif len(found.records) < mark.records and not found.damage:
+        what = _lacking(mark.records - len(found.records))
+        found = found._replace(damage=f"{what} missing at its end, up to state {mark.seq}")
+    return source, found, mark
+
+
+def _lacking(number: int) -> str:
+    return "1 record is" if number == 1 else f"{number} records are"
 
 
 class LastMission(NamedTuple):
@@ -277,11 +322,11 @@ class LastMission(NamedTuple):
 def last_mission(path: str, launch: str) -> LastMission:
     """Return what is known of the last mission of this launch; nothing where the journal cannot be read."""
     try:
-        _, found = _read(path)
+        _, found, mark = _read(path, launch)
     except OSError:
         return LastMission()
     if not found.records or found.records[0].get("launch") != launch:
-        return LastMission()
+        return LastMission(mark.mission if mark else None)
     head, last = found.records[0], found.records[-1]
     if last.get("call") == END and not found.damage:
         return LastMission(after=_moment(last.get("at")))
@@ -310,8 +355,10 @@ def _end_of(mission: Mission) -> Dict[str, Any]:
 
 
 def _delete_old(folder: str) -> None:
-    """Delete all but the newest MAX_JOURNALS journals."""
-    journals = [entry for entry in os.scandir(folder) if entry.name.startswith("journal-")]
-    for entry in sorted(journals, key=lambda entry: entry.stat().st_mtime)[:-MAX_JOURNALS]:
-        with contextlib.suppress(OSError):
-            os.remove(entry.path)
+    """Delete all but the newest MAX_JOURNALS journals, and as many marks."""
+    found = [entry for entry in os.scandir(folder) if entry.name.startswith("journal-")]
+    for marks in (False, True):
+        kind = [entry for entry in found if entry.name.endswith(MARK) == marks]
+        for entry in sorted(kind, key=lambda entry: entry.stat().st_mtime)[:-MAX_JOURNALS]:
+            with contextlib.suppress(OSError):
+                os.remove(entry.path)

@@ -86,13 +86,13 @@ def read_records(path: str) -> RecordsRead:
 class RecordFile:
     """Appends records to a file. Each is one write: it outlives the process at once, and a power cut once it is synced.
 
-    `synced`: the bytes that a power cut does not take.
+    `count`: the records in it; `synced`: the bytes that a power cut does not take.
     """
 
     def __init__(self, descriptor: int, count: int, size: int) -> None:
         """Use `create` or `resume`."""
-        self.synced = size
-        self._descriptor, self._count, self._size = descriptor, count, size
+        self.count, self.synced = count, size
+        self._descriptor, self._size = descriptor, size
 
     @classmethod
     def create(
@@ -130,9 +130,9 @@ class RecordFile:
 
     def append(self, record: Mapping[str, Any]) -> None:
         """Write a record. Raises OSError, also where only a part of it was written."""
-        line = format_record(self._count, record)
+        line = format_record(self.count, record)
         write_all(self._descriptor, line)
-        self._count += 1
+        self.count += 1
         self._size += len(line)
 
     def sync(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 
+from pursue_runtime.observer.mark import Rank
 from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
 
 SAME = 1e-3
@@ -19,13 +20,22 @@ class Finding(NamedTuple):
 
 
 def find_state(
-    own: SystemState, damage: str, after: float, seen: Mapping[str, SystemState], begun: bool = True
+    own: SystemState,
+    damage: str,
+    after: float,
+    seen: Mapping[str, SystemState],
+    begun: bool = True,
+    reached: Rank = (0, False),
 ) -> Finding:
     """Return where the mission is, from the state to which the journal leads and those that other nodes have seen last.
 
     `damage`: why the journal is not complete ("": it is); `after`: states up to that moment (seconds) are of an earlier
-    mission; `seen`: by the name of the node; `begun`: a mission has been under way in this launch.
+    mission; `seen`: by the name of the node; `begun`: a mission has been under way in this launch; `reached`: how far
+    this mission has come at least.
     """
+    known = max(_rank(own), reached)
+    if known != _rank(own) and not damage:
+        damage = f"it leads to state {own.seq}, and the mission had {_words(reached)}"
     why = f"the observer was restarted, and its journal is not complete ({damage})" if damage else ""
     if own.status in ENDED and not damage:
         return Finding()
@@ -36,8 +46,9 @@ def find_state(
     state, *others = sorted(newest.values(), key=lambda state: -state.stamp)
     if not begun and not why and own.status == WAITING:
         return Finding(stop=other_launch(nodes, state) if state.status in LIVE else "")
-    if why and _rank(state) < _rank(own):
-        return Finding(stop=f"{why}; it leads to state {own.seq}, and {nodes} know of state {state.seq} only")
+    if why and _rank(state) < known:
+        before = f"it leads to state {own.seq}" if known == _rank(own) else f"the mission had {_words(reached)}"
+        return Finding(stop=f"{why}; {before}, and {nodes} know of state {state.seq} only")
     if not why and _rank(state) < _rank(own):
         return Finding()
     if any(_differs(state, other) for other in others):
@@ -75,9 +86,12 @@ def _counts(state: SystemState, own: SystemState, after: float) -> bool:
     return state.mission == own.mission and state.status in (*LIVE, *ENDED) and state.stamp > after
 
 
-def _rank(state: SystemState) -> Tuple[int, bool]:
-    """The order of the states of a mission: its end may have the number of the state before."""
+def _rank(state: SystemState) -> Rank:
     return state.seq, state.status in ENDED
+
+
+def _words(rank: Rank) -> str:
+    return f"ended in state {rank[0]}" if rank[1] else f"come to state {rank[0]}"
 
 
 def _newest(states: Mapping[str, SystemState]) -> Dict[str, SystemState]:

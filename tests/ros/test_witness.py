@@ -13,6 +13,9 @@ from launched_mission import LaunchedMission, launched
 from ros_world import Ros
 from test_faults import FOR_EVER, NODES, ORDERS, check_steps, check_time, orders_of
 
+from pursue_runtime.observer.mark import MARK
+from pursue_runtime.observer.records import read_records
+
 Build = Callable[..., Path]
 
 pytestmark = pytest.mark.ros
@@ -98,12 +101,24 @@ def test_a_journal_that_is_lost_or_damaged_does_not_take_the_mission_back(
                 run.until_back(node, process)
             assert run.now().seq >= before.seq, (step, run.output())
         run.until_over()
-        kept = {path.name for path in journal_of(run).parent.glob("journal-*")} - {journal_of(run).name}
+        kept = {path.name for path in journal_of(run).parent.glob("journal-*.jsonl")} - {journal_of(run).name}
     check_won(run)
     assert len(kept) == len(DAMAGES) - 1, "what was damaged is set aside"
 
 
-@pytest.mark.parametrize("damage", [without_head, os.remove], ids=["damaged", "deleted"])
+def without_its_mark(journal: Path) -> None:
+    """As with a backup of an hour ago: the journal is cut at the end of a record, and the master alone knows better."""
+    cut(journal)
+    os.remove(f"{journal}{MARK}")
+
+
+def cut(journal: Path) -> None:
+    """The first steps are left, each record whole."""
+    journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:3]))
+    assert not read_records(str(journal)).damage
+
+
+@pytest.mark.parametrize("damage", [without_head, os.remove, cut, without_its_mark])
 def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
     ros: Ros, scenario: Path, tmp_path: Path, damage: Callable[[Path], None]
 ) -> None:
@@ -135,7 +150,8 @@ def test_a_node_that_knows_more_stops_an_observer_that_has_lost_the_mission(
             if node not in ("sim_clock", "controller_bot1"):
                 run.kill(node)
         os.remove(journal)
-        run.delete_parameter("/pursue/begun")
+        os.remove(f"{journal}{MARK}")
+        run.delete_parameter("/pursue/newest")
         run.until(lambda: run.now().status == "waiting")
         orders = len(run.orders())
         os.kill(frozen, signal.SIGCONT)
