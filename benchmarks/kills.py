@@ -1,6 +1,7 @@
 """Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
 
-Each mission is recorded, and judged afterwards by `pursue_gen.replay` from the bag and the workspace's strategy alone.
+Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.replay` from what either
+recorder has and the workspace's strategy alone.
 `--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
 missions from 240 on to the 240 that are there. The kills of a mission follow from its number and the seed; the moments
 at which they hit the nodes do not.
@@ -28,10 +29,11 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 from benchmarks.ros_world import ROOT, World, generated, world
+from benchmarks.second_recorder import merged, read_second, topics_of
 from benchmarks.synthesis import machine, version
 from pursue_gen.replay import Findings, check, game_of, read_recording
 from pursue_gen.replay.finding import FAULT
-from pursue_gen.replay.game import from_workspace
+from pursue_gen.replay.game import Game, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.solving.rules import Rules
 
@@ -60,11 +62,14 @@ class Mission(NamedTuple):
     kills: Tuple[str, ...]
 
 
-HEAD = ("seed", "unit", "machine")
+HEAD = ("seed", "unit", "machine", "recorders")
 """What missions have in common that are counted together."""
 
-NOT_RECORDED = ("unsaid", "untold")
-"""The kinds of findings for what is missing in the recording."""
+RECORDERS = 2
+"""How many record a mission."""
+
+READY = 60.0
+"""Seconds within which the second recorder has to be there."""
 
 OUTCOMES = {
     "goal": "the goal was reached, and each step was the strategy's or the world's",
@@ -97,6 +102,17 @@ def process_of(uri: str, node: str) -> int:
     return 0
 
 
+def start_second(there: World, file: Path, game: Game) -> None:
+    """Start the second recorder; return when it has subscribed. Raises SystemExit where it does not come up."""
+    topics = topics_of(agent.name for agent in game.scenario.agents if agent.is_robot)
+    second = there.start("second", [sys.executable, "-m", "benchmarks.second_recorder", str(file), *topics])
+    deadline = time.monotonic() + READY
+    while not (file.is_file() and file.stat().st_size):
+        if second.poll() is not None or time.monotonic() > deadline:
+            raise SystemExit(f"the second recorder does not come up: {there.log('second')}")
+        time.sleep(0.05)
+
+
 def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: float, seed: int) -> None:
     """Play one mission to its end, with these kills; it is recorded in `bag`."""
     bringup = next((workspace / "src").glob("*_bringup")).name
@@ -120,23 +136,22 @@ def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: 
     there.stop("roslaunch")
 
 
-def judge(bag: Path, workspace: Path) -> Tuple[str, str]:
-    """Return a word of OUTCOMES and why, from the bag and the workspace's strategy alone."""
+def judge(bag: Path, second: Path, game: Game) -> Tuple[str, str]:
+    """Return a word of OUTCOMES and why, from what either recorder has and the workspace's strategy alone."""
     found = next((path for path in (bag, Path(f"{bag}.active")) if path.is_file()), None)
     if found is None:
         return "no end", "nothing was recorded"
-    record = read_recording(found)
+    record, other = read_recording(found), read_second(second)
     assert not isinstance(record, Journal)
-    return outcome(check(record, game_of(from_workspace(workspace))))
+    if not other.states:
+        return "no end", "the second recorder has received nothing"
+    return outcome(check(merged(record, other), game))
 
 
 def outcome(findings: Findings) -> Tuple[str, str]:
-    """Return a word of OUTCOMES for what was found in a recording, and why.
-
-    A node that is killed at once, or has just started, may publish what the recorder does not receive: that a word or
-    an order is missing in the bag is no fault of the mission. Steps without a word are checked all the same.
-    """
-    faults = [each for each in findings.findings if each.level == FAULT and each.kind not in NOT_RECORDED]
+    """Return a word of OUTCOMES for what was found in the recordings, and why. Every fault counts: that no recorder has
+    an order means that no robot had it."""
+    faults = [each for each in findings.findings if each.level == FAULT]
     if faults:
         return "wrong", f"state {faults[0].seq}: {faults[0].text}"
     if findings.won:
@@ -146,15 +161,16 @@ def outcome(findings: Findings) -> Tuple[str, str]:
     return ("wrong", "the mission was lost") if findings.status == "lost" else ("no end", findings.status)
 
 
-def mission(number: int, seed: int, workspaces: Sequence[Tuple[str, Path]], unit: float) -> Mission:
+def mission(number: int, seed: int, workspaces: Sequence[Tuple[str, Path, Game]], unit: float) -> Mission:
     """Play and judge one mission on a master of its own."""
-    scenario, workspace = workspaces[number % len(workspaces)]
+    scenario, workspace, game = workspaces[number % len(workspaces)]
     nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
     kills = draw(seed, number, sorted(nodes), 20.0 * unit)
     with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there:
-        bag = Path(home) / "mission.bag"
+        bag, second = Path(home) / "mission.bag", Path(home) / "second.jsonl"
+        start_second(there, second, game)
         play(there, workspace, kills, bag, unit, number)
-        found, why = judge(bag, workspace)
+        found, why = judge(bag, second, game)
         if found in ("wrong", "no end"):
             print(there.log("roslaunch")[-6000:], flush=True)
     return Mission(number, scenario, found, why, tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills))
@@ -166,7 +182,8 @@ def measure(numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Se
         workspaces = []
         for name in names:
             text = (ROOT / "scenarios" / f"{name}.pur").read_text(encoding="utf-8")
-            workspaces.append((name, generated(text, Path(name).name, Path(home) / Path(name).name, RULES)))
+            workspace = generated(text, Path(name).name, Path(home) / Path(name).name, RULES)
+            workspaces.append((name, workspace, game_of(from_workspace(workspace))))
         done: List[Mission] = []
         for each in pool.map(lambda number: mission(number, seed, workspaces, unit), numbers):
             done.append(each)
@@ -196,6 +213,7 @@ def results(done: Sequence[Mission]) -> Dict[str, Any]:
 def mismatch(before: Dict[str, Any], head: Dict[str, Any]) -> str:
     """Return why missions of this seed, unit, machine and first number cannot be added to what was found before; ""
     if they can."""
+    before = {"recorders": 1, **before}
     if head["parts"][0]["first"] == before["missions"] and all(head[key] == before[key] for key in HEAD):
         return ""
     there = f"{before['missions']} missions, " + ", ".join(f"{key} {before[key]}" for key in HEAD)
@@ -216,6 +234,18 @@ def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
     }
 
 
+TWO = (
+    "Two recorders that share nothing record each mission: the workspace's own, and a process that is there before all",
+    "nodes. What either has was published. An order or a word that neither has makes a mission wrong.",
+)
+ONE = (
+    "These missions had one recorder, which may miss what a node publishes that is killed at once or has just started.",
+    "The judge of that day did not count a word or an order that was missing in the recording: an order that reached",
+    "no robot is not found here.",
+)
+"""What the page says of the recorders."""
+
+
 def _part_line(part: Dict[str, Any]) -> str:
     commit = f" with commit {part['commit']}" if part["commit"] else ""
     return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
@@ -229,8 +259,10 @@ def page(found: Dict[str, Any]) -> str:
         "",
         "Written by `python -m benchmarks.kills --out docs`. Each mission runs on a ROS master of its own. One to five",
         "times a random node (observer, controllers, simulator, UI) is killed with SIGKILL; roslaunch starts it again",
-        "after a second. The mission is recorded, and judged from the bag and the workspace's strategy alone, by what",
-        "`pursue-gen replay` does.",
+        "after a second. The mission is recorded, and judged from the recording and the workspace's strategy alone, by",
+        "what `pursue-gen replay` does.",
+        "",
+        *(TWO if found.get("recorders") == RECORDERS else ONE),
         "",
         f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
         f"unit, reaction {float(RULES.reaction)}; {found['machine']}.",
@@ -274,7 +306,7 @@ def main() -> int:
     kept = given.out / "benchmarks" / "kills.json" if given.out else None
     before = json.loads(kept.read_text(encoding="utf-8")) if kept and given.first else None
     part = {"first": given.first, "missions": given.missions, "date": given.date, "commit": version()}
-    head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "parts": [part]}
+    head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "recorders": RECORDERS, "parts": [part]}
     if before and mismatch(before, head):
         options().error(mismatch(before, head))
     numbers = range(given.first, given.first + given.missions)

@@ -48,17 +48,16 @@ def test_a_mission_is_wrong_where_a_node_did_what_it_must_not(
     assert outcome(findings(status, *levels))[0] == expected
 
 
-def test_a_word_that_the_recorder_has_missed_makes_no_mission_wrong() -> None:
-    found = findings("won")
-    missed = Finding(FAULT, "unsaid", 3, "no word for bot1_inb was recorded")
-    assert outcome(replace(found, findings=(missed,)))[0] == "goal"
-    assert outcome(replace(found, findings=(missed, replace(missed, kind="command"))))[0] == "wrong"
+@pytest.mark.parametrize("kind", ["unsaid", "untold", "command", "gap"])
+def test_no_kind_of_fault_is_passed_over(kind: str) -> None:
+    missed = Finding(FAULT, kind, 3, "bot1 got no order to begin bot1_inb (an action)")
+    assert outcome(replace(findings("won"), findings=(missed,))) == ("wrong", f"state 3: {missed.text}")
 
 
 def made(first: int, done: Sequence[Mission], seed: int = 7) -> Dict[str, Any]:
     """What is kept of these missions."""
     part = {"first": first, "missions": len(done), "date": "a day", "commit": f"after{first}"}
-    return {**results(done), "seed": seed, "unit": 0.5, "machine": "a machine", "parts": [part]}
+    return {**results(done), "seed": seed, "unit": 0.5, "machine": "a machine", "recorders": 2, "parts": [part]}
 
 
 def test_missions_are_added_to_those_that_were_played_before() -> None:
@@ -71,6 +70,13 @@ def test_missions_are_added_to_those_that_were_played_before() -> None:
     assert mismatch(made(0, one), made(2, two)) == ""
     for other in (made(1, two), made(3, two), made(2, two, seed=8)):
         assert "cannot be added to what is there: 2 missions, seed 7, unit 0.5" in mismatch(made(0, one), other)
+
+
+def test_missions_that_one_recorder_has_recorded_are_not_counted_with_others() -> None:
+    done = [Mission(0, "one", "goal", "", ())]
+    before = {key: value for key, value in made(0, done).items() if key != "recorders"}
+    assert "recorders 1" in mismatch(before, made(1, done))
+    assert "had one recorder" in page(before) and "had one recorder" not in page(made(0, done))
 
 
 def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
