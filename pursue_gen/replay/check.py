@@ -8,7 +8,7 @@ from typing import Dict, List, Mapping, Optional, Tuple
 from pursue_gen.language.wording import assumption_words
 from pursue_gen.replay.assumptions import newly_broken
 from pursue_gen.replay.beginnings import EXACT, with_beginnings
-from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
+from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import with_missing
 from pursue_gen.replay.moves import Move, Moves, after, place_of
@@ -149,7 +149,7 @@ class _Checker:
 
     def _first(self, state: SystemState) -> None:
         if state.seq > 1:
-            self._report(FAULT, "gap", state, f"the recording begins with state {state.seq}: what led here?")
+            self._report(UNRECORDED, "gap", state, f"the recording begins with state {state.seq}")
         elif place_of(state) != self.moves.initial:
             self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
         self._resume(state)
@@ -330,7 +330,8 @@ class _Checker:
             if word is None:
                 if not own:
                     text = f"no word for {state.event} was recorded"
-                    found.append(Finding(FAULT, "unsaid", state.seq, text))
+                    level = UNRECORDED if state.stamp <= self._record.whole_from else FAULT
+                    found.append(Finding(level, "unsaid", state.seq, text))
                     found += self._unsaid_command(step)
                 continue
             orders = self.orders.get(before.plan)
@@ -370,8 +371,10 @@ class _Checker:
     def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since
         something happened that it sees."""
-        before, state = step.before, step.state
-        back = min(orders.reaction + self._tolerance, (state.stamp - step.since.stamp) / state.unit)
+        before, state, first = step.before, step.state, self._record.states[0]
+        back = orders.reaction + self._tolerance
+        if not (self._record.is_late and step.since.seq == first.seq):  # else it may have been decided before
+            back = min(back, (state.stamp - step.since.stamp) / state.unit)
         return in_time(zones_of(orders, step), aged(before, state), back, self._tolerance)
 
     def _is_reliable(self) -> str:

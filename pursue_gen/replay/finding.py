@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-NOTE, WORLD, FAULT = "note", "world", "fault"
-"""Nothing wrong; the world did what the model does not know; a node did what it must not, or it cannot be known."""
+NOTE, WORLD, FAULT, UNRECORDED = "note", "world", "fault", "unrecorded"
+"""Nothing wrong; the world did what the model does not know; a node did what it must not, or it cannot be known; the
+recorder was not there yet."""
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,9 @@ BEHIND = 2.0
 """Seconds by which the recorder's clock may be seen to be behind the observer's; more is another clock."""
 
 _BAG = b"#ROSBAG"
+CONNECTING = 5.0
+"""Seconds within which a recorder that is started during a mission is connected to every node."""
+
 _SIMPLE, _ACTION = "/move_base_simple/goal", "/move_base/goal"
 _ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
 """Topics of a robot, below its name."""
@@ -119,7 +122,18 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
                 strange += 1
     found = [*problems, *([f"{strange} messages on our topics could not be read"] if strange else [])]
     known = ordered(iter(states))
-    return MissionRecord(known, tuple(words), tuple(orders), plans, game, tuple(found), drives=tuple(drives))
+    record = MissionRecord(known, tuple(words), tuple(orders), plans, game, tuple(found), drives=tuple(drives))
+    return replace(record, whole_from=_connected(messages)) if known and record.is_late else record
+
+
+def _connected(messages: Sequence[Message]) -> float:
+    """The moment from which on a recorder that came late has the messages of all nodes: when it has one of each, and a
+    second more for the other topics of the last one."""
+    first: Dict[str, float] = {}
+    for message in messages:
+        first.setdefault(message.node, message.at)
+    begin = min(first.values())
+    return max(at for at in first.values() if at <= begin + CONNECTING) + 1.0
 
 
 def _is_published_again(message: Message, topic: str, simple: AbstractSet[Tuple[str, bytes]]) -> bool:

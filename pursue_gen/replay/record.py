@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, Iterator, Mapping, Optional, Tuple
 
@@ -55,6 +56,7 @@ class MissionRecord:
     `plans` holds what was on pursue/plan by number, `game` the scenario and rules where the recording has them.
     `problems`: what could not be read of it, in sentences. `by_words`: a journal, which holds no states of its own and
     does not name the nodes that published its words. `drives`: those that were measured without a mission.
+    `whole_from`: the moment (seconds) from which on it has everything, of a recorder that was started late.
     """
 
     states: Tuple[SystemState, ...]
@@ -65,6 +67,12 @@ class MissionRecord:
     problems: Tuple[str, ...] = ()
     by_words: bool = False
     drives: Tuple[Drive, ...] = ()
+    whole_from: float = -math.inf
+
+    @property
+    def is_late(self) -> bool:
+        """True where the recorder was started, or started again, during the mission."""
+        return self.states[0].seq > 1
 
 
 def read_word(at: float, text: str, node: str = "") -> RecordedWord:

@@ -8,7 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.network_names import going, is_doing, is_going
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay.finding import FAULT, WORLD, Finding
+from pursue_gen.replay.finding import FAULT, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.record import MissionRecord, RobotOrder
@@ -38,7 +38,7 @@ def check_robots(
     taken back.
     """
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
-    activities = _activities(steps, robots)
+    activities = _activities(steps, robots, record.states[0] if record.is_late else None)
     where = {robot: _places(game.scenario, robot) for robot in robots}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
@@ -74,14 +74,24 @@ def check_robots(
         for place, (state, _, robot, location) in enumerate(activities):
             if place not in ordered and state.seq in commanded:
                 text = f"{robot} got no order to begin {state.event} ({location or 'an action'})"
-                found.append(Finding(FAULT, "untold", state.seq, text))
+                level = UNRECORDED if state.stamp <= record.whole_from else FAULT
+                found.append(Finding(level, "untold", state.seq, text))
     return found
 
 
-def _activities(steps: Sequence[Done], robots: Sequence[str]) -> List[Activity]:
-    """What robots began, and until when (the next step of the robot)."""
+def _activities(steps: Sequence[Done], robots: Sequence[str], first: Optional[SystemState]) -> List[Activity]:
+    """What robots began, and until when (the next step of the robot); `first`: the state in which a recorder came that
+    was late, and what was under way there."""
     begun: List[Activity] = []
     open_: Dict[str, int] = {}
+    if first is not None:
+        for robot in robots:
+            there = first.locations[robot]
+            if is_going(there) or is_doing(there):
+                open_[robot] = len(begun)
+                begun.append((first, float("inf"), robot, there if is_going(there) else ""))
+            elif first.agent == robot:
+                begun.append((first, first.stamp, robot, ""))
     for before, state, mover, _ in steps:
         for robot in robots:
             here, there = before.locations[robot], state.locations[robot]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any, Dict, Iterator, List
 
 from pursue_gen.replay.check import Findings
-from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
+from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.steps import ReplayedStep
 from pursue_runtime.model import Model
 from pursue_runtime.ui.phrases import sentence
 
-_MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: "}
+_MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: ", UNRECORDED: "NOT RECORDED: "}
 
 
 def listed(findings: Findings, model: Model, notes: bool = True) -> Iterator[str]:
@@ -57,6 +57,10 @@ def verdict(findings: Findings) -> str:
         return f"The mission kept to the model{' and' if findings.won else ', but'} {end}."
     what = [f"left the model {_times(len(world))} (the world)"] if world else []
     what += [f"has {len(faults)} faults of nodes or of the recording"] if faults else []
+    if not what:
+        first = next(finding for finding in findings.findings if finding.level == UNRECORDED)
+        kept = "The mission kept to the model as far as it was recorded"
+        return f"{kept}{', and' if findings.won else ', but'} {end}. Not recorded: state {first.seq}, {first.text}."
     first = (faults or world)[0]
     return f"The mission {' and '.join(what)}, and {end}. First: state {first.seq}, {first.text}."
 
