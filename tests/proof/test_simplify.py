@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Iterator, Tuple
+from typing import Iterator, List, Tuple, Union
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import load
-from pursue_gen.proof.checker import pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import Report, pruned, pruned_ranks, verify
 from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
-from pursue_gen.synthesis.strategy import Block, Strategy, Zone
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Guard, Network, Objective, Test
 from tests.conftest import thesis_scenario
@@ -116,6 +116,26 @@ def test_no_zone_shrinks_and_no_point_gets_a_second_action(
             point = (Fraction(x, 4), Fraction(y, 4))
             if all(dict(zip(("x", "y"), point))[b.clock] <= b.bound for b in invariant) and any(advice(before, point)):
                 assert set(advice(after, point)) == set(advice(before, point))
+
+
+def test_ranks_stand_where_their_zones_stand_once_others_are_pruned() -> None:
+    early, late = (Constraint("x", None, Fraction(3), False),), (Constraint(None, "x", Fraction(-3), True),)
+    state = block(NET, "a").state
+    whole = Block(state, (early, late), (Command((early, late), GO), Command((late,), GO)))
+    strategy = Strategy((whole,) * 4)
+    used = {(0, "wait", 1), (1, "wait", 1), (1, 1, 0), (3, 0, 1)}  # of the third block nothing is left
+    report = Report(True, "", (), frozenset(used), 1)
+    where: List[Tuple[Union[str, int], int]] = [("wait", 0), ("wait", 1), (0, 0), (0, 1), (1, 0)]
+    ranks = {(b, part, n): 100 * b + 10 * where.index((part, n)) for b in range(4) for part, n in where}
+    kept, left = pruned(strategy, report), pruned_ranks(strategy, report, ranks)
+    go = (Command((late,), GO),)
+    assert kept.blocks == (Block(state, (late,), ()), Block(state, (late,), go), Block(state, (), go))
+    assert left == {
+        (0, "wait", 0): ranks[0, "wait", 1],
+        (1, "wait", 0): ranks[1, "wait", 1],
+        (1, 0, 0): ranks[1, 1, 0],
+        (2, 0, 0): ranks[3, 0, 1],
+    }
 
 
 @given(networks(), OBJECTIVES)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from benchmarks.families import pass_bystanders
 from pursue_gen.language import parse
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.left_out import named_part, why_it_matters
@@ -196,7 +197,7 @@ def test_many_bystanders_cost_no_states() -> None:
     assert states(50) == states(0)
 
 
-def _walker(*edges: Edge, bound: int = 5, initial: str = "here") -> Automaton:
+def _walker(*edges: Edge, bound: Number = 5, initial: str = "here") -> Automaton:
     locations = (Location("here"), Location("there", (ClockBound("z", "<=", bound),)))
     return Automaton("walker", locations, initial, edges)
 
@@ -218,7 +219,8 @@ REACH = Objective(Kind.REACH, goal=(("A", "goal"),))
         (_walker(IN, replace(OUT, guard=Guard((), ((Test("v", 1),),)))), "the way out needs a variable"),
         (_walker(IN, replace(OUT, sync=Sync("a", False), guard=Guard())), "it leaves when it is told only"),
         (_walker(replace(IN, resets=()), OUT), "it may come in too late to stay"),
-        (_walker(IN, OUT, bound=0), "it cannot stay at all"),
+        (_walker(IN, replace(OUT, guard=Guard()), bound=0), "it cannot stay at all"),
+        (_walker(IN, replace(OUT, guard=Guard()), bound=Fraction(1, 2)), "its stays are shorter than a time unit"),
         (_walker(IN, replace(OUT, resets=("x",))), "it resets a clock that matters"),
         (_walker(IN, replace(OUT, assign=(("w", 1),))), "it sets a variable that matters"),
         (_walker(IN, OUT, Edge("here", "here", sync=Sync("b", False), controllable=False)), "it takes a command away"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_runtime.controller.goal import Answer
+from pursue_runtime.controller.goal import FIRST_WAIT, Answer, Goal, GoalTracker
+from pursue_runtime.controller.settings import Settings
 from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
@@ -297,3 +298,38 @@ def test_a_goal_that_waits_for_its_second_attempt_is_lost_with_the_movement(robo
     robot.stay()
     robot.wait(9.0)
     assert len(robot.goals) == 1
+
+
+# How often a simple goal may still be answered ------------------------------------------------------------------------
+
+
+def sent_twice() -> GoalTracker:
+    """A tracker of a simple goal that was sent at 100.0, and again at 101.0."""
+    tracker = GoalTracker(Settings(goals="simple"))
+    tracker.send(Goal("first", WAY), 100.0, 0.0)
+    assert tracker.send_again(101.0, 1.0) == Goal("first", WAY)
+    return tracker
+
+
+def test_a_goal_that_was_sent_twice_may_be_cancelled_once_for_the_second_one_to_take_its_place() -> None:
+    tracker = sent_twice()
+    assert not tracker.ends(Answer("one", 100.6, PREEMPTED)) and tracker.current is not None
+    assert tracker.ends(Answer("two", 101.0, PREEMPTED)) and tracker.current is None
+
+
+def test_once_the_robot_drives_by_the_second_one_a_cancelled_goal_is_over() -> None:
+    tracker = sent_twice()
+    assert tracker.on_status([Answer("two", 101.0, ACTIVE)], 1.0 + FIRST_WAIT)
+    assert tracker.ends(Answer("two", 101.0, PREEMPTED)) and tracker.current is None
+
+
+def test_so_long_as_the_first_answer_may_be_under_way_it_is_waited_for() -> None:
+    tracker = sent_twice()
+    assert tracker.on_status([Answer("two", 101.0, ACTIVE)], 0.9 + FIRST_WAIT)
+    assert not tracker.ends(Answer("two", 101.0, PREEMPTED)) and tracker.current is not None
+
+
+def test_a_goal_that_was_sent_once_is_over_when_it_is_cancelled() -> None:
+    tracker = GoalTracker(Settings(goals="simple"))
+    tracker.send(Goal("first", WAY), 100.0, 0.0)
+    assert tracker.ends(Answer("one", 100.0, PREEMPTED)) and tracker.current is None

@@ -6,7 +6,7 @@ from typing import Any, List, Optional
 
 import pytest
 
-from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.controller.scheduler import UNREADY, CommandScheduler
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.words import Word
@@ -257,3 +257,20 @@ strategy:
     under_way = state(4, 100.0, "doing_clean_in_room_in_b")
     assert player(text).on_state(under_way, 100.0) == [("bot", "clean", "", "doing_clean_in_room_in_b")]
     assert player().on_state(state(4, 100.0, "doing_screw_in_s"), 100.0) == [("bot", "screw", "", "doing_screw_in_s")]
+
+
+def test_an_action_waits_until_its_robot_is_in_its_place_and_a_movement_does_not() -> None:
+    bot = player()
+    bot.on_state(state(1, 100.0, bot="b", clock=2.0), 100.0)
+    asked: List[str] = []
+
+    def is_placed(agent: str) -> bool:
+        asked.append(agent)
+        return len(asked) > 2
+
+    assert bot.on_timer(100.0, is_placed) is None and bot.next_wakeup()[1] == UNREADY
+    assert bot.on_timer(100.01, is_placed) is None and bot.counts["sent"] == 0
+    assert bot.on_timer(100.02, is_placed) == Word("bot", "catch", 1) and asked == ["bot"] * 3
+    leaving = player()
+    leaving.on_state(state(1, 100.0, clock=5.0), 100.0)
+    assert leaving.on_timer(100.0, lambda agent: False) == Word("bot", "bot_c2b", 1)

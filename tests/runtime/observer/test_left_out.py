@@ -198,3 +198,24 @@ def test_a_clock_that_is_left_out_makes_no_command_stale(left_out: bool) -> None
     state = made.hear("bot:bot_a2b@1", 6.05)
     assert (made.mission.counts["stale"] == 0) is left_out
     assert (state is not None and state.locations["bot"] == "going_a_to_b") is left_out
+
+
+TWICE = """
+format: 1
+cover:
+- state: {bot: a, rule: first}
+  wait: [Cbot <= 20]
+- state: {bot: a, thief: b}
+  wait: [always]
+- state: {bot: a, thief: gone}
+  wait: [always]
+"""
+"""To one part of the strategy for the bot it matters where the thief is, to the other it does not."""
+
+
+def test_a_command_is_stale_once_anything_has_changed_that_matters_to_its_agent() -> None:
+    made = Journey(CHASE, TWICE, on_uncovered="warn")
+    made.hear("_start_", 0.0)
+    made.hear("thief_leaves", 12.0)
+    assert made.hear("bot:bot_a2b@1", 12.05) is None and made.mission.counts["stale"] == 1
+    assert made.hear("bot:bot_a2b@2", 12.06).locations["bot"] == "going_a_to_b"

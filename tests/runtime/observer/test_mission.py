@@ -280,6 +280,15 @@ def test_a_deadline_that_passes_is_lost() -> None:
     assert (state.status, state.locations["obj"]) == ("lost", "lose") and state.reason == "a deadline has passed"
 
 
+def test_a_deadline_has_passed_when_the_tolerance_for_late_messages_is_over_and_no_sooner() -> None:
+    journey = Journey(DEADLINE)
+    journey.hear("_start_", 0.0)
+    journey.hear("call", 1.0)
+    assert journey.mission.on_time(6.05) == [] and journey.mission.status == "running"
+    assert journey.mission.next_moment(6.05) == pytest.approx(6.1)
+    assert journey.hear("answer", 6.05).status == "running" and journey.mission.on_time(6.2) == []
+
+
 def test_an_answer_in_time_lifts_the_deadline() -> None:
     journey = Journey(DEADLINE)
     journey.hear("_start_", 0.0)
