@@ -37,7 +37,17 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) ->
     elif not won.warnings:
         info(f"{request.plan} wins: {rules_text(won.rules)}")
     show_promise(found.scenario, request.plan is None)
+    show_unneeded(found)
     return found
+
+
+def show_unneeded(found: Promised) -> None:
+    """Prints which robots and allies the strategy does without, if any."""
+    from pursue_gen.partition import unneeded, unneeded_words
+
+    words = unneeded_words(unneeded(found.scenario, found.solution.strategy))
+    if words:
+        info(words)
 
 
 def show_promise(scenario: Scenario, assumptions: bool = True) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 
 import typer
 
@@ -43,8 +43,9 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained, show_promise
+    from pursue_gen.cli.solution import explained, show_promise, show_unneeded
     from pursue_gen.files import write_texts
+    from pursue_gen.partition import unneeded
     from pursue_gen.solving.optional import promised_of
     from pursue_gen.solving.request import solution_of
     from pursue_gen.solving.solvers import keep_counter
@@ -73,13 +74,17 @@ def solve(
         write_texts({output: plan})
     found = margins(won, margin, limits)
     if as_json_:
-        more = {} if promise is None else {**periods_json(promise.scenario), **optional_json(promise.scenario)}
+        more: Dict[str, Any] = {}
+        if promise is not None:
+            alone = [agent.name for agent in unneeded(promise.scenario, won.strategy)]
+            more = {"not_needed": alone, **periods_json(promise.scenario), **optional_json(promise.scenario)}
         print(json.dumps({**verdict_json(rules, won, *found), **more}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
     if promise is not None:
         show_promise(promise.scenario)
+        show_unneeded(promise)
     info(margin_text(won, *found))
     if len(files) == 1:
         suggest(f"pursue-gen ws {shell_quoted(files[0])}")

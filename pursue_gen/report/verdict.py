@@ -12,6 +12,7 @@ from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_t
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words, units
+from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.report.html import Section, table
 from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules
@@ -42,6 +43,8 @@ def section(
         parts.append(f"<p>What is assumed of others:</p><ul>{assumed}</ul>")
     if won is not None:
         parts += _won(won, margin)
+        words = unneeded_words(unneeded(scenario, won.strategy))
+        parts += [f"<p>{safe(words)}</p>"] if words else []
     elif lost is not None:
         parts += _lost(lost)
     parts.append(f"<p class='quiet'>{safe(_game(rules))}</p>")

@@ -17,7 +17,7 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed, objective_text
-from pursue_gen.partition import SubStrategy, partition, strategy_file
+from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
@@ -75,7 +75,10 @@ def generate(
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
-        "ui": ui_file.render(scenario, network, where, options, values["controllers"], values["reported"], __version__),
+        "ui": ui_file.render(
+            scenario, network, where, options, values["controllers"], values["reported"], __version__,
+            [agent.name for agent in unneeded(scenario, strategy)],
+        ),
         "strategies": ui_file.render_strategies(controllers, scenario, options.reaction, __version__) or b"",
         "controllers": _controllers(values),
         "trace": yaml_text([inline({"at": 2.0, "do": trace})] if trace else []).encode(),

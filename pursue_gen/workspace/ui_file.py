@@ -31,10 +31,11 @@ def render(
     controllers: Sequence[str],
     reported: Sequence[str],
     generator: str,
+    idle: Sequence[str] = (),
 ) -> bytes:
     """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends are `reported`, the connections of
     the map with their lengths, what is to be achieved and in which time, the robots' spots that are not the pose of
-    their place, and what all but agents is at, in words."""
+    their place, what all but agents is at, in words, and the `idle` agents that the strategy does without."""
     spots = {
         robot: {name: inline([pose.x, pose.y]) for name, pose in table.items() if pose != where.places[name]}
         for robot, table in where.spots.items()
@@ -49,6 +50,8 @@ def render(
     }
     if options.guarantee is not None:
         data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
+    if idle:
+        data["not_needed"] = inline(idle)
     data["statuses"] = [
         inline({"of": each.of, "label": each.label, "texts": dict(each.texts)}) for each in statuses(scenario, network)
     ]

@@ -225,13 +225,13 @@ class Page:
             agent.update(since=_round(since), low=_round(since + window.low), high=_end(since, window.high))
         return agent
 
-    @staticmethod
-    def _notes(state: SystemState) -> Sequence[Tuple[str, Sequence[str]]]:
+    def _notes(self, state: SystemState) -> Sequence[Tuple[str, Sequence[str]]]:
         """What has to be known of agents besides, and of which."""
         return (
             ("counts as lost", state.lost), ("held, until it is resumed", state.held),
             ("is not known to be there", [name for name in state.displaced if name not in state.returning]),
             ("is sent back there", state.returning), ("has finished", state.finished),
+            ("is not needed in this mission", () if state.plan else self._promise.unneeded),
         )
 
     def _where(self, automaton: Automaton, location: str) -> Tuple[str, str]:

@@ -31,10 +31,12 @@ class Objective(NamedTuple):
 
 class Promise(NamedTuple):
     """The objectives of a mission. `most`: in how many time units the workspace's own strategy comes to the goal at
-    worst, if everybody keeps to the model; None where that is not known."""
+    worst, if everybody keeps to the model; None where that is not known. `unneeded`: the agents that it never commands,
+    and that nobody needs."""
 
     objectives: Tuple[Objective, ...] = ()
     most: Optional[float] = None
+    unneeded: Tuple[str, ...] = ()
 
 
 NOTHING = Promise()
@@ -47,11 +49,13 @@ def read_promise(settings: Mapping[str, Any]) -> Promise:
         given = [(str(each["says"]), tuple(map(str, each["of"]))) for each in settings.get("objectives", ())]
         most = settings.get("guarantee")
         number = None if most is None else float(most)
+        unneeded = tuple(map(str, settings.get("not_needed", ())))
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise DataError(f"ui.yaml lacks or misspells something in objectives: {problem!r}") from problem
+        where = "objectives, guarantee or not_needed"
+        raise DataError(f"ui.yaml lacks or misspells something in {where}: {problem!r}") from problem
     if number is not None and not (math.isfinite(number) and number >= 0):
         raise DataError(f"ui.yaml: guarantee is {most!r}; expected a number of time units")
-    return Promise(tuple(Objective(says, of) for says, of in given), number)
+    return Promise(tuple(Objective(says, of) for says, of in given), number, unneeded)
 
 
 def objectives_now(
