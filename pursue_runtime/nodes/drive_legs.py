@@ -36,7 +36,7 @@ from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.node import Alarm, Ending, Later, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
-from pursue_runtime.ui.recording import GAME, reserve_file
+from pursue_runtime.ui.recording import ACTIVE, GAME, keep_file, reserve_file
 from pursue_runtime.words import EVENTS, STATE
 
 DEFAULTS: Mapping[str, Any] = {"goals": "action", "ends": "result", "on_stop": "cancel"}
@@ -67,7 +67,7 @@ class DriveLegs:
         folder = scenario_folder(os.environ, package.scenario)
         self.path = reserve_file(file or os.path.join(folder, "drives.bag"), folder)
         self._lock = threading.RLock()
-        self._bag: Optional[rosbag.Bag] = rosbag.Bag(self.path + ".active", "w", chunk_threshold=CHUNK)
+        self._bag: Optional[rosbag.Bag] = rosbag.Bag(self.path + ACTIVE, "w", chunk_threshold=CHUNK)
         with contextlib.suppress(DataError):
             self._bag.write(rospy.resolve_name(GAME), String(json.dumps(source.read("game.yaml"))), stamp())
         self._drives = rospy.Publisher(DRIVES, String, queue_size=100, latch=True)
@@ -103,10 +103,12 @@ class DriveLegs:
     def _keep(self) -> None:
         """Gives the bag its name, and logs what is in it; a bag without drives is removed."""
         if not self._count:
-            os.remove(self.path + ".active")
+            os.remove(self.path + ACTIVE)
             rospy.logwarn("nothing was measured")
             return
-        os.rename(self.path + ".active", self.path)
+        wanted, self.path = self.path, keep_file(self.path)
+        if self.path != wanted:
+            rospy.logwarn("%s has come meanwhile, and stays as it is", wanted)
         for session in self._done:
             for text in session.summary():
                 rospy.loginfo("%s", text)

@@ -41,7 +41,7 @@ from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import expected
-from pursue_runtime.ui.recording import GAME, missing_connections, reserve_file, topics
+from pursue_runtime.ui.recording import ACTIVE, GAME, keep_file, missing_connections, reserve_file, topics
 from pursue_runtime.words import STATE, SYSTEM_STATE
 
 CHUNK = 64 * 1024  # bytes; what is not yet in a whole chunk is harder to read after a crash
@@ -81,7 +81,7 @@ class Recorder:
         self.lock = threading.Lock()
         self.status = ""
         self.count = 0
-        self.bag = Bag(self.path + ".active")
+        self.bag = Bag(self.path + ACTIVE)
         self.open = True
         self.master = rosgraph.Master(rospy.get_name())
         self.states, self.texts = rospy.resolve_name(STATE), rospy.resolve_name(SYSTEM_STATE)
@@ -148,10 +148,12 @@ class Recorder:
                 self.open = False
                 self.bag.close()
             if self.status == WAITING or (self.ending.renewed and not self.status):  # nothing has happened yet
-                os.remove(self.path + ".active")
+                os.remove(self.path + ACTIVE)
                 rospy.loginfo("no mission began: nothing is kept of %s", self.path)
             else:
-                os.rename(self.path + ".active", self.path)
+                wanted, self.path = self.path, keep_file(self.path)
+                if self.path != wanted:
+                    rospy.logwarn("%s has come meanwhile, and stays as it is", wanted)
                 rospy.loginfo("recorded %d messages in %s", self.count, self.path)
             if self.ending.renewed:
                 restart_process()

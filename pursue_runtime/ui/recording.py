@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
-from typing import Callable, Collection, List, Mapping, Sequence
+from itertools import count
+from typing import Callable, Collection, Iterator, List, Mapping, Sequence
 
 from pursue_runtime.model import Model
 from pursue_runtime.words import EVENTS, PLAN, STATE, SYSTEM_STATE
@@ -17,6 +19,12 @@ OF_A_ROBOT = (
     "amcl_pose",
 )
 """Topics of each robot; those that nobody publishes cost nothing."""
+
+ACTIVE = ".active"
+"""What ends the name of a bag that is being written."""
+
+_NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOTSUP, errno.ENOSYS, errno.EMLINK)
+"""What file systems without hard links answer, such as FAT."""
 
 GAME = "pursue/game"
 """Only in the recording: the scenario and the rules of the game, so that nothing else is needed to check it."""
@@ -36,18 +44,52 @@ def reserve_file(wanted: str, folder: str) -> str:
     """
     path = os.path.abspath(os.path.expanduser(wanted)) if wanted else os.path.join(folder, "mission.bag")
     os.makedirs(os.path.dirname(path), exist_ok=True)
+    return next(free for free in _names(path) if not os.path.lexists(free) and _is_made(free + ACTIVE))
+
+
+def keep_file(path: str) -> str:
+    """Give what was written in `<path>.active` its name, and return that: the path, or the next with a number where
+    something is there by now, which stays as it is. Raises OSError.
+    """
+    written = path + ACTIVE
+    return next(
+        free
+        for free in _names(path)
+        if (free == path or not os.path.lexists(free + ACTIVE)) and _is_taken(free, written)
+    )
+
+
+def _names(path: str) -> Iterator[str]:
+    """The path, then with numbers."""
     stem, ending = os.path.splitext(path)
-    number = 1
-    while True:
-        free = path if number == 1 else f"{stem}-{number}{ending}"
-        number += 1
-        if os.path.lexists(free):
-            continue
-        try:
-            os.close(os.open(free + ".active", os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-        except FileExistsError:
-            continue
-        return free
+    yield path
+    yield from (f"{stem}-{number}{ending}" for number in count(2))
+
+
+def _is_made(path: str) -> bool:
+    """True where an empty file was made; False where something is there. Raises OSError."""
+    try:
+        os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    except FileExistsError:
+        return False
+    return True
+
+
+def _is_taken(name: str, written: str) -> bool:
+    """True where the written file has this name now; False where something else has it. Raises OSError."""
+    try:
+        os.link(written, name)  # replaces nothing, as a rename would
+    except FileExistsError:
+        return False
+    except OSError as problem:
+        if problem.errno not in _NO_LINKS:
+            raise
+        if not _is_made(name):
+            return False
+        os.replace(written, name)  # what it replaces was made here, and is empty
+        return True
+    os.unlink(written)
+    return True
 
 
 def missing_connections(

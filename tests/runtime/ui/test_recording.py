@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Dict, Set
 import pytest
 
 from pursue_runtime.model import Model
-from pursue_runtime.ui.recording import missing_connections, reserve_file, topics
+from pursue_runtime.ui.recording import keep_file, missing_connections, reserve_file, topics
 from tests.runtime.models import model_data, mover
 
 MODEL = Model(model_data(mover("bot", "robot", 3), mover("thief", "agent", 3)))
@@ -40,6 +41,62 @@ def test_nothing_is_ever_overwritten(tmp_path: Path) -> None:
     assert reserve_file("", str(tmp_path)) == str(tmp_path / "mission-3.bag")
     assert reserve_file("", str(tmp_path)) == str(tmp_path / "mission-4.bag")
     assert (finished.read_text(), begun.read_text()) == ("a mission", "another one")
+
+
+@pytest.fixture(params=["links", "no links"])
+def links(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file system with hard links, and one without."""
+
+    def refused(*_: object) -> None:
+        raise OSError(errno.EPERM, "Operation not permitted")
+
+    if request.param == "no links":
+        monkeypatch.setattr(os, "link", refused)
+
+
+def begun(folder: Path, content: str) -> str:
+    """A bag that was begun."""
+    path = reserve_file("", str(folder))
+    Path(path + ".active").write_text(content)
+    return path
+
+
+@pytest.mark.usefixtures("links")
+def test_what_was_written_gets_the_name_that_was_reserved(tmp_path: Path) -> None:
+    path = begun(tmp_path, "a mission")
+    assert keep_file(path) == path == str(tmp_path / "mission.bag")
+    assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"mission.bag": "a mission"}
+
+
+@pytest.mark.usefixtures("links")
+@pytest.mark.parametrize("comes", ["file", "link", "folder"])
+def test_what_has_come_meanwhile_is_not_replaced(tmp_path: Path, comes: str) -> None:
+    path, second = begun(tmp_path, "a mission"), tmp_path / "mission-2.bag"
+    meanwhile = Path(path)
+    if comes == "file":
+        meanwhile.write_text("a person's")
+    elif comes == "link":
+        meanwhile.symlink_to(tmp_path / "nowhere")
+    else:
+        meanwhile.mkdir()
+    other = begun(tmp_path, "another one's")
+    assert other == str(second)
+    kept = tmp_path / "mission-3.bag"
+    assert keep_file(path) == str(kept) and kept.read_text() == "a mission"
+    assert keep_file(other) == other and second.read_text() == "another one's"
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["mission-2.bag", "mission-3.bag", "mission.bag"]
+    assert meanwhile.is_symlink() if comes == "link" else meanwhile.is_dir() or meanwhile.read_text() == "a person's"
+
+
+def test_a_bag_that_cannot_be_named_stays_where_it_was_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    path = begun(tmp_path, "a mission")
+    monkeypatch.setattr(os, "link", full)
+    with pytest.raises(OSError, match="No space"):
+        keep_file(path)
+    assert [each.read_text() for each in tmp_path.iterdir()] == ["a mission"]
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
