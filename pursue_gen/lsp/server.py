@@ -22,6 +22,7 @@ from pursue_gen.lsp.checker import Checker
 from pursue_gen.lsp.completion import complete
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.fixes import fixes
+from pursue_gen.lsp.framing import BoundedInput
 from pursue_gen.lsp.hover import hover
 from pursue_gen.lsp.map_preview import picture
 from pursue_gen.lsp.navigation import definition, rename, same_name
@@ -34,11 +35,16 @@ _REQUEST_FAILED = -32803
 
 
 def serve(pages: Optional[str] = None) -> int:
-    """Serve an editor until it exits; return the exit status: 0 after the protocol's shutdown request, else 1."""
+    """Serve an editor until it exits; return the exit status: 0 after the protocol's shutdown request, else 1.
+
+    Raises PursueError (exit status 2) for a message that is refused (`framing`).
+    """
     logging.disable(logging.CRITICAL)  # what goes wrong is answered; on stderr editors show it as a failure
-    session = Session(pages)
+    session, messages = Session(pages), BoundedInput(sys.stdin.buffer)
     with suppress(SystemExit), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:  # how pygls 1 ends
-        session.server.start_io(stdout=answers)  # which it closes
+        session.server.start_io(messages, answers)  # which it closes
+    if messages.refusal is not None:
+        raise PursueError([messages.refusal], exit_status=2)
     return 0 if session.is_shut_down else 1
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Tuple
 
 import pytest
@@ -19,6 +21,7 @@ from pursue_gen.lsp.navigation import definition, rename, same_name
 from pursue_gen.lsp.outline import folds, symbols
 from pursue_gen.lsp.statements import ordered
 
+from .client import PATIENCE
 from .scenarios import SCENARIOS, SMALL
 
 PIECES = SMALL.split() + list('",:()/*\n\t é😀\u200b\x0c\u2028\x00') + ["//", "/*", "*/", '"', "control: x", "//[1,2]"]
@@ -111,3 +114,29 @@ def test_ten_thousand_lines() -> None:
     assert hover(document, at) is not None
     assert len(symbols(document)) == 10_002
     assert len(rename(document, at, "middle")) == 3
+
+
+HEADS = {
+    "a length of 100 GB": b"Content-Length: 99999999999\r\n\r\n{}",
+    "a length in small letters": b"content-length : 99999999999\r\n\r\n{}",
+    "a length of many digits": b"Content-Length: " + b"9" * 5000 + b"\r\n\r\n{}",
+    "a length below zero": b"Content-Length: -1\r\n\r\n{}",
+    "no length": b"Content-Length: \r\n\r\n{}",
+    "a length in words": b"Content-Length: many\r\n\r\n{}",
+    "a line without end": b"x" * 1_000_000,
+}
+
+
+@pytest.mark.parametrize("name", HEADS)
+def test_a_message_whose_head_says_no_good_length_is_refused(name: str) -> None:
+    words = [sys.executable, "-m", "pursue_gen", "lsp"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
+        assert server.stdin is not None and server.stderr is not None
+        try:
+            server.stdin.write(HEADS[name])
+            server.stdin.flush()  # and stays open: it is the head that ends the server
+        except BrokenPipeError:
+            pass
+        assert server.wait(PATIENCE) == 2
+        told = server.stderr.read().decode()
+    assert "LSP005" in told and "is refused" in told and "Traceback" not in told
