@@ -6,7 +6,7 @@ Clocks are in time units, stamps in seconds of ROS time.
 from __future__ import annotations
 
 import re
-from typing import Any, Dict, Iterable, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
 
@@ -112,6 +112,14 @@ def format_state(state: SystemState) -> str:
     lines.append("")
     lines += [f"{name}={value:.9f}" for name, value in state.clocks.items()]
     return "\n".join(lines)
+
+
+def state_lines(state: SystemState, node: str) -> List[str]:
+    """The lines that a node prints of a state: all automata, variables and clocks, as in the thesis's listing 4.4."""
+    facts: List[Tuple[str, object]] = [("seq", state.seq), ("status", state.status)]
+    facts += [*state.locations.items(), *state.values.items()]
+    facts += [(clock, f"{value:.3f}") for clock, value in state.clocks.items()]
+    return [f"{node}: the system state is:", *(f"{node}: {name} is {value}" for name, value in facts)]
 
 
 def parse_state(text: str) -> Optional[SystemState]:

@@ -10,6 +10,7 @@ STATE, SYSTEM_STATE = "pursue/state", "pursue/system_state"
 PLAN = "pursue/plan"
 MARKERS = "pursue/markers"
 SEEN = "pursue/seen"
+PLAIN_WORDS = "pursue/plain_words"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"
@@ -83,12 +84,12 @@ def parse_report(text: str) -> Optional[RobotReport]:
     if match is None:
         return None
     agent, event, as_of, at, why = match.groups()
-    return RobotReport(agent, event, _one_line(why or ""), *_read_number(as_of, at))
+    return RobotReport(agent, event, one_line(why or ""), *_read_number(as_of, at))
 
 
 def format_report(report: RobotReport) -> str:
     """Write what parse_report reads."""
-    return f"{report.agent}:{report.event}{_number(report.as_of, report.at)} {_one_line(report.text)}".rstrip()
+    return f"{report.agent}:{report.event}{_number(report.as_of, report.at)} {one_line(report.text)}".rstrip()
 
 
 def said_at(text: str) -> Optional[float]:
@@ -108,6 +109,6 @@ def _read_number(as_of: Optional[str], at: Optional[str]) -> Tuple[Optional[int]
     return None if as_of is None else int(as_of), None if at is None else float(at)
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
     """The text without line breaks and other characters that are not printed, cut where it is too long."""
     return " ".join("".join(char if char.isprintable() else " " for char in text).split())[:MAX_TEXT_LENGTH].rstrip()

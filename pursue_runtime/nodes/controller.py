@@ -21,6 +21,7 @@ from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag, text
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
@@ -44,6 +45,7 @@ class Controller:
         self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)
         self.observer = ""
         self.exegg = Exeggutor(self.ending)
+        self.printer = StatePrinter(self.ending)
         self.alarm = Alarm(self.on_alarm, self.ending)
         self.exegg.on_observer = self.on_alarm  # a command that is due is published again at once, too
         try:
@@ -100,6 +102,7 @@ class Controller:
             receipt = scheduler.repeated_receipt()
             if receipt:
                 self.exegg.announce(format_word(receipt))
+        self.printer.on_state(state)
         if state.status == WON:
             self.ending.end(0)
         elif state.status in (LOST, STOPPED):

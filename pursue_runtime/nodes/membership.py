@@ -15,6 +15,7 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
@@ -41,6 +42,7 @@ class Membership:
         given = rospy.get_param("~", {})
         self.received, self.again = flag(given, "received"), flag(given, "again")
         self.trouble, self.scenario = "", package.scenario
+        self.printer = StatePrinter(ending)
         self._ending = ending
         self._missions = Missions(own, package.name, ros_home(os.environ) if self.received else "")
         self.source = self._choose()
@@ -98,6 +100,8 @@ class Membership:
             self.trouble = ""
             if state.status == WAITING and self._missions.moved(state.mission, self.source):
                 self._ending.renew()
+        if verdict == OURS:
+            self.printer.on_state(state)
         return verdict == OURS
 
     def _choose(self) -> Source:

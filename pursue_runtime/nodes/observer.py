@@ -41,8 +41,10 @@ from pursue_runtime.nodes.node import (
     start_thread,
     subscribe,
 )
+from pursue_runtime.nodes.plain_words import PlainWords
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
 from pursue_runtime.nodes.state_message import message_of
+from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
@@ -95,10 +97,12 @@ class Observer:
         self.texts = rospy.Publisher(SYSTEM_STATE, String, queue_size=1000, latch=True, tcp_nodelay=True)
         self.plans = rospy.Publisher(PLAN, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
+        self.printer = StatePrinter(self.ending)
         self.alarm = Alarm(self.on_alarm, self.ending)
         self.returning = self.take_up()
         self.repeats = StateRepeats(self.mission.model.reaction * self.settings.time_unit)
         self.await_clock()
+        self.plain_words = PlainWords(self.mission.state(self.now())) if self.settings.plain_words else None
         self.witnesses.await_subscribers(self.states)
         self.publish([self.mission.state(self.returning.floor if self.returning else self.now())])
         self.witnesses.follow(self.on_seen)
@@ -344,6 +348,10 @@ class Observer:
     def send_text(self, state: SystemState) -> None:
         """Publishes the state as the thesis's text. Controllers react to the message that was published before it."""
         self.send(self.texts, format_state(state))
+        if self.plain_words is not None:
+            with contextlib.suppress(rospy.ROSException):
+                self.plain_words.on_state(state)
+        self.printer.on_state(state)
 
     def log_soon(self, level: str, text: str) -> None:
         """Log a sentence a little later: a line takes as long as a reaction."""

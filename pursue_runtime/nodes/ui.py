@@ -1,6 +1,4 @@
-"""The terminal: starts the mission when every node is ready, plays the uncontrollable agents or lets a person play
-them, instructs people as the strategy prescribes, shows what happens, and how the mission ends.
-"""
+"""The terminal: starts the mission, plays agents or lets a person play them, instructs people, shows how it goes."""
 
 from __future__ import annotations
 
@@ -35,6 +33,7 @@ from pursue_runtime.nodes.node import (
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
+from pursue_runtime.nodes.ui_traffic import Traffic
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.environment import make_player
@@ -100,6 +99,7 @@ class UI:
         self.alarm.set(patience=options.wait)
         awaited = ", ".join(options.nodes) or "the observer"
         self.terminal.line(f"{model.scenario}: waiting for {awaited}", PLAIN)  # before anything can come
+        self.traffic = Traffic(self)
         self.states = subscribe_states(self.on_state, ending, on_malformed=membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)

@@ -29,6 +29,7 @@ class Settings(NamedTuple):
     received: bool
     again: bool
     shared_ends: str
+    plain_words: bool
 
 
 def read_settings(given: Mapping[str, Any]) -> Settings:
@@ -48,4 +49,5 @@ def read_settings(given: Mapping[str, Any]) -> Settings:
         received=flag(given, "received"),
         again=flag(given, "again"),
         shared_ends=choice(given, "shared_ends", ALL, WHOSE),
+        plain_words=flag(given, "plain_words"),
     )

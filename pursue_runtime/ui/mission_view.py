@@ -14,7 +14,7 @@ from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
 from pursue_runtime.ui.phrases import in_labels, not_promised, phrase, sentence, where
-from pursue_runtime.words import RESUME, START, RobotReport, Word, format_report, format_word
+from pursue_runtime.words import PING, RESUME, START, RobotReport, Word, format_report, format_word, one_line
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
@@ -134,6 +134,14 @@ class Environment(Protocol):
 
     def next_moment(self) -> Optional[float]:
         """Return when to call `due` again if no other state comes."""
+
+
+def traffic_lines(topic: str, text: str, elapsed: float) -> List[str]:
+    """The lines to print of a message on a topic, `elapsed` time units after the start; none for `_ping_`."""
+    first, *more = [one_line(line) for line in text.splitlines()] or [""]
+    if first == PING:
+        return []
+    return [f"{elapsed:8.1f}  on {topic}: {first}", *(f"{'':10}{line}" for line in more)]
 
 
 class MissionView:

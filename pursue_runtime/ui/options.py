@@ -15,6 +15,14 @@ MODES = {
     "trace": "they do what a trace file says",
 }
 
+IN_WORDS, EVENT_TOPIC, ALL_TOPICS = "words", "e", "f"
+SHOWS = {
+    IN_WORDS: "what happens, in words",
+    EVENT_TOPIC: "each word on pursue/events as well",
+    ALL_TOPICS: "all communication: also the robots' actions and the system state",
+}
+"""What the terminal shows; e and f are modes of the thesis's UI."""
+
 MIN_TOKEN_LENGTH = 8  # characters of a token
 
 
@@ -37,6 +45,7 @@ class Options:
     token: str = ""
     verdict: str = ""
     stay: bool = False
+    show: str = IN_WORDS
 
 
 def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: bool, nodes: Sequence[str]) -> Options:
@@ -73,6 +82,7 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
         token=token,
         verdict=text(found, "verdict"),
         stay=web and flag(found, "stay", terminal and not autostart),
+        show=choice(found, "show", IN_WORDS, tuple(SHOWS)),
     )
 
 
@@ -94,6 +104,7 @@ def _parser() -> argparse.ArgumentParser:
         "Every option is also a parameter of the node (~mode, ~trace and so on).",
     )
     parser.add_argument("--mode", metavar="MODE", help="; ".join(f"{mode}: {what}" for mode, what in MODES.items()))
+    parser.add_argument("--show", metavar="WHAT", help="; ".join(f"{what}: {says}" for what, says in SHOWS.items()))
     parser.add_argument("--trace", metavar="FILE", help="YAML list of {at: time units, do: word}; implies --mode trace")
     parser.add_argument("--seed", metavar="N", help="for --mode random (default 0)")
     parser.add_argument("--pace", metavar="T", help="for --mode random: mean time units between two events (default 5)")

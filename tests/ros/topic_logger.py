@@ -48,6 +48,7 @@ class TopicLogger:
             ("pursue/events", String),
             ("pursue/system_state", String),
             ("pursue/plan", String),
+            ("pursue/plain_words", String),
             ("/diagnostics", DiagnosticArray),
         ):
             rospy.Subscriber(topic, kind, self.receive, callback_args=(topic, ""), queue_size=10000)

@@ -115,6 +115,16 @@ def test_what_an_earlier_launch_has_set_on_the_same_master_does_not_count(launch
     assert left <= found.cleared and "recorder" in found.cleared
 
 
+def test_nodes_behave_as_those_of_the_thesis_where_that_is_asked_for(launch: Any) -> None:
+    usual = launch("mission.launch", "record:=true", "markers:=true")
+    asked = ("print_state:=true", "plain_words:=true", "show:=e")
+    found = launch("mission.launch", "record:=true", "markers:=true", *asked)
+    for node in (*MISSION, "recorder", "markers"):
+        assert (usual.params[f"/{node}/print_state"], found.params[f"/{node}/print_state"]) == (False, True)
+    assert (usual.params["/observer/plain_words"], found.params["/observer/plain_words"]) == (False, True)
+    assert (usual.params["/UI/show"], found.params["/UI/show"]) == ("words", "e")
+
+
 def test_the_monitor_groups_the_diagnostics_of_every_node(launch: Any) -> None:
     found = launch("monitor.launch")
     assert found.names == ["diagnostic_aggregator"]

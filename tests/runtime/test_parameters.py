@@ -28,6 +28,7 @@ def test_what_is_not_given_is_as_documented() -> None:
         "time_unit": 1.0, "tolerance": 0.1, "on_uncovered": "plan", "lost_after": 30.0, "silence": 20.0,
         "heartbeat": 1.0, "planner": "pursue-gen replan", "planning_limit": 10.0, "journal": "on", "launch": "",
         "linger": 1.0, "received": False, "again": False, "shared_ends": "all",
+        "plain_words": False,
     }  # fmt: skip
 
 

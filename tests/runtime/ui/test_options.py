@@ -125,3 +125,9 @@ def test_progress_is_replaced_on_a_terminal() -> None:
 def test_no_colours_where_they_are_not_wanted() -> None:
     text = written(Screen(), {"TERM": "xterm", "NO_COLOR": "1"})
     assert "on the way" in text and "\033[3" not in text
+
+
+def test_the_terminal_shows_words_unless_a_mode_of_the_thesis_is_asked_for() -> None:
+    assert [read().show, read(["--show", "e"]).show, read(params={"show": "f"}).show] == ["words", "e", "f"]
+    with pytest.raises(ParameterError, match="~show is 'all'; expected one of words, e, f"):
+        read(["--show", "all"])
