@@ -18,7 +18,7 @@ def table(results: Mapping[str, Any]) -> str:
             "proven by both checkers")  # fmt: skip
     rows: List[Row] = found["rows"]
     lines = [
-        [row["name"], row["game"], f"{row['date']}, version {row['version']}"]
+        [row["name"], row["game"], row["date"] + (f", version {row['version']}" if row["version"] else "")]
         + [*map(number, (row["games"], row["most_states"], row["won"], row["lost"]))]
         + [number(row["undecided"]), number(len(row["differ"])), number(row["proven"])]
         for row in rows

@@ -109,9 +109,12 @@ def tchecker_figures(case: Case, binary: Path, bounds: Bounds) -> Row:
 
 
 def version() -> str:
-    """Return the commit that is played; "" outside a repository."""
+    """Return the commit that is played; "" outside a repository, and where there is no git."""
     command_line = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
-    found = subprocess.run(command_line, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    try:
+        found = subprocess.run(command_line, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    except FileNotFoundError:
+        return ""
     return found.stdout.strip()
 
 

@@ -134,6 +134,11 @@ def test_no_two_cases_are_the_same() -> None:
     assert len(set(keys)) == len(keys)
 
 
+def test_without_git_the_commit_is_unknown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert synthesis.version() == ""
+
+
 def points(name: str, game: str) -> "list[Dict[str, Any]]":
     """Rows for a picture."""
     row = {"group": "family", "name": name, "game": game, "verdict": "won", "outcome": ""}
