@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, List, Set, Tuple
 
 import pytest
-from hypothesis import HealthCheck, is_hypothesis_test, settings
+from hypothesis import HealthCheck, settings
+from hypothesis.internal.detection import is_hypothesis_test  # in hypothesis itself later than Python 3.8 gets
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -208,7 +208,8 @@ def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, 
     at = len(before)
     if data.draw(st.booleans()) and not typed:
         text += document.text[at:]  # what follows is there already
-    declarations = "\n".join(document.text[p.start : p.end] for p in document.statements if p.name is not None)
+    named = [p for p in document.statements if p.name is not None and p.kind != "BATTERY"]  # a robot has one battery
+    declarations = "\n".join(document.text[p.start : p.end] for p in named)
     offered = complete(Document.of(text + "\n" + declarations, name + ".pur"), at + typed)
     if token.type == "TAIL":
         return  # understood, but nobody should write it

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import re
 import sys
@@ -9,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple, Tuple
 
 import pytest
-from typer.testing import CliRunner
 
 from pursue_gen.cli.app import app
 from pursue_gen.report import graphviz, png
@@ -51,8 +52,10 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def pursue(*words: object) -> Result:
     """The command line; `err` holds all that was message."""
-    done = CliRunner().invoke(app, [str(word) for word in words])
-    return Result(done.exit_code, done.stdout, done.output)
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as end:
+        app([str(word) for word in words])
+    return Result(int(end.value.code or 0), out.getvalue(), err.getvalue())
 
 
 def test_the_page_goes_to_the_file_or_beside_and_is_named_on_stdout(tmp_path: Path) -> None:

@@ -12,7 +12,10 @@ from typing import Any, Dict, Iterator, List
 import pytest
 from worlds import files
 
-STUBS = ("rospy", "rostest", "diagnostic_msgs.msg", "geometry_msgs.msg", "std_msgs.msg", "pursue_msgs.msg")
+STUBS = (
+    "rosgraph", "rosgraph.xmlrpc", "rospy", "rostest",
+    "diagnostic_msgs.msg", "geometry_msgs.msg", "pursue_msgs.msg", "rosgraph_msgs.msg", "std_msgs.msg",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
