@@ -1,4 +1,5 @@
-"""Installs the generator with its templates; builds the native solver where a C++17 compiler is found, else says so."""
+"""Installs the generator with its templates and dependencies; builds the native solver where a C++17 compiler is found,
+else says so."""
 
 from __future__ import annotations
 
@@ -10,6 +11,9 @@ from typing import Any, List
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
 from setuptools.command.build_py import build_py
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # not every installer runs this file with its folder there
+from pursue_gen.needs import NEEDS
 
 TEMPLATES = "templates/catkin"
 PAGES = "docs/diagnostics"
@@ -94,4 +98,8 @@ class WithTemplates(build_py):
             shutil.copytree(folder, str(target), ignore=shutil.ignore_patterns("__pycache__", ".*", *left_out))
 
 
-setup(ext_modules=native_modules(), cmdclass={"build_ext": OptionalBuild, "build_py": WithTemplates})
+setup(
+    install_requires=[need.requirement for need in NEEDS],
+    ext_modules=native_modules(),
+    cmdclass={"build_ext": OptionalBuild, "build_py": WithTemplates},
+)

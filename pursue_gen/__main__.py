@@ -1,5 +1,5 @@
 """`python -m pursue_gen` is `pursue-gen`."""
 
-from pursue_gen.cli.app import main
+from pursue_gen.cli.start import main
 
 main()

@@ -17,6 +17,10 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, NoReturn, Tu
 
 import yaml
 
+from pursue_runtime.needs import PYYAML, require
+
+require(PYYAML)
+
 DIGITS = 18
 """The most digits of a whole number; it fits 64 bits."""
 

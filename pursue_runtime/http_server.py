@@ -7,6 +7,10 @@ from typing import Any, Callable, Dict
 
 from tornado.httpserver import HTTPServer
 
+from pursue_runtime.needs import TORNADO, require
+
+require(TORNADO)
+
 
 class LimitedServer(HTTPServer):
     """An HTTP server with a limit on connections and on their duration; WebSockets are counted elsewhere."""

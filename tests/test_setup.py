@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +17,7 @@ import pytest
 from catkin_pkg.package import parse_package
 
 from pursue_gen import __version__
+from pursue_gen.needs import NEEDS
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
@@ -90,6 +92,14 @@ def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with zipfile.ZipFile(str(wheel)) as archive:
         archive.extractall(str(place))
     return place
+
+
+def test_the_wheel_asks_for_what_the_program_checks_at_its_start(unpacked: Path) -> None:
+    (metadata,) = unpacked.glob("pursue_gen-*.dist-info/METADATA")
+    asked = re.findall(r"^Requires-Dist: ([^;\n]*)$", metadata.read_text(encoding="utf-8"), re.MULTILINE)
+    parts = [set(re.findall(r"[<>]=?[\d.]+|[A-Za-z]\w*", requirement.replace("-", "_"))) for requirement in asked]
+    wanted = [set(re.findall(r"[<>]=?[\d.]+|[A-Za-z]\w*", need.requirement)) for need in NEEDS]
+    assert sorted(map(sorted, parts)) == sorted(map(sorted, wanted))
 
 
 def test_the_wheel_carries_the_pages_on_messages(unpacked: Path, tmp_path: Path) -> None:

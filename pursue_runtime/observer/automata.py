@@ -12,8 +12,11 @@ from weakref import WeakKeyDictionary
 from transitions import Machine
 
 from pursue_runtime.model import Automaton, Edge, Model, Move, Position
+from pursue_runtime.needs import TRANSITIONS, require
 from pursue_runtime.state import SystemState
 from pursue_runtime.zones import due, holds
+
+require(TRANSITIONS)
 
 _machines: MutableMapping[Model, Dict[str, Machine]] = WeakKeyDictionary()
 

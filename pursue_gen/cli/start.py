@@ -1,0 +1,23 @@
+"""The program `pursue-gen`: says which packages are missing or too old before anything imports them."""
+
+from __future__ import annotations
+
+import sys
+
+from pursue_gen.needs import NEEDS
+from pursue_runtime.needs import NeedError, require
+
+_MISSING = 6
+"""The exit status where something that is needed is missing."""
+
+
+def main() -> None:
+    """Runs the command line, if all that it needs is here."""
+    try:
+        require(*NEEDS)
+    except NeedError as problem:
+        print(f"pursue-gen: {problem}\n    help: {problem.hint}", file=sys.stderr)
+        sys.exit(_MISSING)
+    from pursue_gen.cli.app import main as run
+
+    run()
