@@ -276,6 +276,22 @@ def test_a_machine_that_does_not_know_its_name_is_reported_what_to_do(machine: P
     assert "/etc/hosts" in told.stdout and "127.0.0.1" in told.stdout
 
 
+@pytest.mark.parametrize(("fails", "status"), [("none", 0), ("test", 1), ("sanitize", 1)])
+def test_continuous_integration_ends_with_the_test_that_is_flaky(fails: str, status: int, tmp_path: Path) -> None:
+    (tmp_path / ".ci").mkdir()
+    (tmp_path / ".venv" / "bin").mkdir(parents=True)
+    shutil.copy(str(ROOT / ".ci" / "run"), str(tmp_path / ".ci" / "run"))
+    fake(tmp_path / ".venv" / "bin", "python", "exit 0")
+    says = 'case $1 in test) echo "$@"; echo FLAKY tests/test_a.py::test_b ;; sanitize) echo 9 passed ;; esac'
+    fake(tmp_path, "run", f"{says}\n[[ $1 != {fails} ]]")
+    done = called(["bash", tmp_path / ".ci" / "run"], tmp_path, dict(os.environ))
+    assert done.returncode == status
+    lines = done.stdout.splitlines()
+    assert lines[0] == "test --retry"
+    if status == 0:
+        assert lines[-2:] == ["9 passed", "FLAKY tests/test_a.py::test_b"]
+
+
 @pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
 def test_set_up_again_does_nothing(tmp_path: Path) -> None:
     for name in ("apt-get", "sudo", "pip"):
