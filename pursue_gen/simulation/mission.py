@@ -136,7 +136,7 @@ class SimulatedMission:
         happened = dict(sorted(self.fault_plan.happened.items()))
         return Outcome(
             self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
-            self._judge.lateness, cause, tuple(problems), happened, tuple(self.lines),
+            self._judge.lateness, cause, tuple(problems), happened, tuple(self.lines), self._promises.duties,
         )
 
     def _cause(self, mission: Mission) -> str:

@@ -18,11 +18,15 @@ OPPONENTS = {
     "random": "each does any of what it may do, or nothing, at any moment; the first and the last one often",
     "worst": "each does what leaves the strategy the longest way to the goal, as far as it guarantees any",
     "still": "they stand still",
-    "mixed": "one of these three in each mission; where looking ahead costs much, the worst is rare",
+    "mixed": "one of these three in each mission, seldom the one who stands still; the worst as looking ahead costs",
 }
 
 FIRST = 1e-3
 """Time units by which the first or last moment is inside a window that begins or ends with a strict bound."""
+
+_STILL = 0.3
+"""Of the missions of mixed opponents that a fair draw gives to those who stand still, which is a third, the part that
+they keep: one mission in ten."""
 
 SPANS = (0.5, 3.0, 10.0, 40.0)
 """Where an agent may wait for ever, it waits up to one of these, in time units."""
@@ -151,5 +155,7 @@ def kind_in_mission(kind: str, seed: str, remaining: Optional[Remaining]) -> str
         return kind
     draw = random.Random(f"{seed}/kind")
     chosen = draw.choice([k for k in OPPONENTS if k != "mixed"])
+    if chosen == "still" and draw.random() >= _STILL:  # nothing is asked of the robots then
+        chosen = "random"
     rare = chosen == "worst" and remaining is not None and draw.random() >= remaining.ease
     return "random" if rare else chosen

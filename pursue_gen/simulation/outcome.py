@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Mapping, Optional, Tuple
 
+from pursue_gen.simulation.promises import Duty
+
 GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
 """How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these
 STOPPED, a safe stop, and LOST, because a fault broke what the strategy was promised."""
@@ -30,7 +32,7 @@ class Outcome:
 
     `lateness`: the longest time, in time units, for which a command was due; `cause`: which fault was too long for the
     strategy, if the mission was not won; `problems`: what must never be; `happened`: how often which fault did;
-    `play`: what happened, a line for each event, where it was asked for.
+    `play`: what happened, a line for each event, where it was asked for; `duties`: as `Promises` has them.
     """
 
     seed: int
@@ -46,3 +48,4 @@ class Outcome:
     problems: Tuple[str, ...] = ()
     happened: Mapping[str, int] = field(default_factory=dict)
     play: Tuple[str, ...] = ()
+    duties: Tuple[Duty, ...] = ()

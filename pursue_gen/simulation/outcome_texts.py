@@ -21,15 +21,23 @@ END_TEXTS = {
 def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
     """The outcomes with their times; `guaranteed` is a sentence on the time that the strategy guarantees."""
     cells = [["outcome", "missions", "%", "min", "median", "worst"]]
+    answers = [["objective", "called upon", "worst answer", "limit", "missions without a call"]]
+    for each in summary.answers:
+        latest = "-" if each.latest is None else f"{each.latest:.2f}"
+        answers.append([each.objective, f"{each.calls:,}", latest, f"{each.limit:g}", f"{each.untried:,}"])
     for row in summary.rows:
         share = f"{100 * row.missions / summary.missions:.1f}"
         times = [f"{time:.2f}" for time in (row.least, row.median, row.worst)]
         cells.append([END_TEXTS[row.end], f"{row.missions:,}", share, *times])
+    lines = [*_aligned(cells), ""]
+    lines += [*_aligned(answers), ""] if summary.answers else []
+    return "\n".join([*lines, *_notes(summary, guaranteed)]).rstrip()
+
+
+def _aligned(cells: Sequence[Sequence[str]]) -> List[str]:
+    """A table's lines; the first row is its head."""
     widths = [max(len(line[column]) for line in cells) for column in range(len(cells[0]))]
-    lines = [_line(cells[0], widths), _line(["-" * width for width in widths], widths)]
-    lines += [_line(line, widths) for line in cells[1:]]
-    lines += ["", *_notes(summary, guaranteed)]
-    return "\n".join(lines).rstrip()
+    return [_line(line, widths) for line in (cells[0], ["-" * width for width in widths], *cells[1:])]
 
 
 def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
@@ -64,6 +72,10 @@ def as_json(summary: Summary, facts: Dict[str, Any]) -> Dict[str, Any]:
             row.end: {"missions": row.missions, "min": row.least, "median": row.median, "worst": row.worst}
             for row in summary.rows
         },
+        "objectives": [
+            {"objective": a.objective, "limit": a.limit, "calls": a.calls, "worst": a.latest, "untried": a.untried}
+            for a in summary.answers
+        ],
         "bound": summary.bound,
         "happened": summary.happened,
         "planned": summary.planned,

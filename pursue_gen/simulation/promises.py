@@ -6,13 +6,13 @@ lost only where an objective is broken. The batteries of robots are never empty 
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, Optional, Set, Tuple, Union
+from typing import Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import At, Condition
 from pursue_gen.language.network_names import going, has_happened
-from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Safety, Scenario
+from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Respond, Safety, Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import holds
@@ -20,8 +20,21 @@ from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 
 
+class Duty(NamedTuple):
+    """How often an objective was called upon in a mission, and how many time units its latest answer took; None where
+    there was none."""
+
+    calls: int = 0
+    latest: Optional[float] = None
+
+
+def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Union[Respond, Patrol]], ...]:
+    """The objectives that are called upon, each time with a limit for the answer, with their numbers."""
+    return tuple((k, each) for k, each in enumerate(scenario.safety) if isinstance(each, (Respond, Patrol)))
+
+
 class Promises:
-    """The objectives of one mission. `problems`: what must never be."""
+    """The objectives of one mission. `problems`: what must never be; `duties`: those of `duties_of`, in their order."""
 
     def __init__(self, scenario: Scenario, exact: bool = True) -> None:
         """`exact`: nothing comes late, so that a deadline is either kept or missed; False where there are faults."""
@@ -40,6 +53,13 @@ class Promises:
         self._seen: Dict[str, Tuple[float, str]] = {}
         self._begun: Optional[float] = None
         self._seq = 0
+        self._called: Dict[int, float] = {}
+        self._duties = {number: Duty() for number, _ in duties_of(scenario)}
+
+    @property
+    def duties(self) -> Tuple[Duty, ...]:
+        """How often each of `duties_of` was called upon so far, and how late it was answered at most."""
+        return tuple(self._duties.values())
 
     def on_state(self, state: SystemState, now: float) -> None:
         """The observer publishes a state, at this moment (seconds)."""
@@ -58,6 +78,7 @@ class Promises:
                 self._broken.setdefault(objective_text(safety), at)
             if number in visited:
                 self._since.pop(number, None)
+        self._count(at)
         for reach, done in zip(self._scenario.reach, self._done):
             in_time = reach.within is None or latest <= reach.within
             if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
@@ -68,6 +89,15 @@ class Promises:
             self._check(state)
             self._check_batteries(state, at)
             self._check_assumed(state)
+
+    def _count(self, at: float) -> None:
+        """Counts what is called upon since this moment, and takes down how late it is answered."""
+        for number, (calls, latest) in self._duties.items():
+            if number in self._since and number not in self._called:
+                self._called[number] = at
+                self._duties[number] = Duty(calls + 1, latest)
+            elif number not in self._since and number in self._called:
+                self._duties[number] = Duty(calls, max(latest or 0.0, at - self._called.pop(number)))
 
     def _check_batteries(self, state: SystemState, at: float) -> None:
         """Takes from each battery what its robot has used since the state before, or adds what it has recharged."""

@@ -12,11 +12,13 @@ from statistics import median
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import error
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.wording import objective_text
 from pursue_gen.outcomes import Unfinished
 from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
+from pursue_gen.simulation.promises import Duty, duties_of
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.solution import Solution
@@ -65,9 +67,22 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Answers:
+    """How an objective was answered: its text and its limit (time units), how often it was called upon, how late it was
+    answered at worst (None: never), and in how many missions it was never called upon."""
+
+    objective: str
+    limit: float
+    calls: int
+    latest: Optional[float]
+    untried: int
+
+
+@dataclass(frozen=True)
 class Summary:
     """What the missions came to. `failures`: the first few that must never be, with their plays; `failed`: how many
-    there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force."""
+    there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force;
+    `answers`: one for each objective that is called upon with a limit."""
 
     missions: int
     rows: Tuple[Row, ...]
@@ -77,6 +92,7 @@ class Summary:
     planned: int
     bound: Optional[float]
     remaining: bool
+    answers: Tuple[Answers, ...] = ()
 
 
 def case_of(scenario: Scenario, won: Solution, options: Options, settings: Settings) -> Tuple[Case, bool]:
@@ -166,10 +182,12 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable
     happened: Counter[str] = Counter()
     failed: List[Outcome] = []
     count = planned = done = 0
+    duties: List[Tuple[Duty, ...]] = []
     for outcome in outcomes(case, seeds, jobs) if played is None else played:
         times.setdefault(outcome.end, []).append(outcome.time)
         happened.update(outcome.happened)
         planned += outcome.plan > 0
+        duties.append(outcome.duties)
         if outcome.end == FAILED:
             count += 1
             failed += [outcome] if len(failed) < shown else []
@@ -180,4 +198,17 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable
     )
     players = MissionRunner(case) if failed else None
     plays = tuple(players.run(outcome.seed, record=True) for outcome in failed) if players else ()
-    return Summary(done, rows, plays, count, dict(sorted(happened.items())), planned, case.settings.bound, remaining)
+    kinds, answers = dict(sorted(happened.items())), _answers(case.scenario, duties)
+    return Summary(done, rows, plays, count, kinds, planned, case.settings.bound, remaining, answers)
+
+
+def _answers(scenario: Scenario, missions: Sequence[Sequence[Duty]]) -> Tuple[Answers, ...]:
+    found = []
+    for place, (_, objective) in enumerate(duties_of(scenario)):
+        own = [duties[place] for duties in missions]
+        calls = sum(duty.calls for duty in own)
+        latest = max((duty.latest for duty in own if duty.latest is not None), default=None)
+        limit = float(objective.period if isinstance(objective, Patrol) else objective.deadline)
+        untried = sum(not duty.calls for duty in own)
+        found.append(Answers(objective_text(objective), limit, calls, latest, untried))
+    return tuple(found)

@@ -10,7 +10,7 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.promises import Promises
+from pursue_gen.simulation.promises import Duty, Promises
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
@@ -33,13 +33,18 @@ Step = Tuple[float, str, str, str]
 
 def ended(objectives: str, status: str, *steps: Step) -> List[str]:
     """The problems of a mission with these steps that ends so with the last of them."""
+    return watched(objectives, status, *steps).problems
+
+
+def watched(objectives: str, status: str, *steps: Step) -> Promises:
+    """What was seen of such a mission."""
     promises = Promises(parse(PLACES + objectives, "x.pur", "x"))
     promises.on_state(SystemState(1, 5.0, {"bot": "hall", "kid": "lab"}, {}, {}, status="running", unit=2.0), 5.0)
     for number, (at, event, bot, kid) in enumerate(steps, 2):
         now, place = 5.0 + 2.0 * at, {"bot": bot, "kid": kid}
         last = status if number == len(steps) + 1 else "running"
         promises.on_state(SystemState(number, now, place, {}, {}, event, "bot", last, unit=2.0), now)
-    return promises.problems
+    return promises
 
 
 LOAD, WAVE, FALL = "loadDONE", "wave", "fall"
@@ -47,6 +52,19 @@ ONE = "reach_objective: do load"
 BOTH = "reach_objective: do load and wave after 2 within 9"
 DUTY = "objective: if fall then wave within 4"
 APART = "objective: bot never_with kid"
+
+
+def test_how_often_an_objective_is_called_upon_is_counted_with_its_latest_answer() -> None:
+    patrol = "objective: patrol hall every 9 by bot"
+    calls = [(1.0, FALL, "hall", "lab"), (1.5, FALL, "hall", "lab"), (3.0, WAVE, "hall", "lab")]
+    more = [(4.0, FALL, "hall", "lab"), (7.5, WAVE, "hall", "lab"), (9.0, FALL, "hall", "lab")]
+    assert watched(f"{DUTY}\n{patrol}", "running").duties == (Duty(0, None), Duty(0, None))
+    duty, round_ = watched(f"{DUTY}\n{patrol}\n{APART}\n{ONE}", "running", *calls, *more).duties
+    assert (duty.calls, duty.latest) == (3, pytest.approx(3.5)), "a call that waits for its answer is not counted twice"
+    assert round_ == Duty(0, None)
+    gone = [(1.0, "bot_hall2lab", "going_hall_to_lab", "lab"), (6.0, "bot_lab2hall", "hall", "lab")]
+    (round_,) = watched(patrol, "running", *gone).duties
+    assert (round_.calls, round_.latest) == (1, pytest.approx(5.0))
 
 
 @pytest.mark.parametrize(

@@ -49,6 +49,18 @@ def test_a_table_and_what_is_guaranteed() -> None:
     assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
 
 
+def test_how_often_objectives_were_called_upon_is_told() -> None:
+    carts = SCENARIOS / "airport" / "two_carts.pur"
+    words = (carts, "--until", 60, "--runs", 8)
+    (said,) = (line for line in called(*words).stdout.splitlines() if line.startswith("if checkIn then unload"))
+    (told,) = json.loads(called(*words, "--json").stdout)["objectives"]
+    assert (told["objective"], told["limit"]) == ("if checkIn then unload within 20", 20)
+    assert told["calls"] > 8 and 0 < told["worst"] <= 20 and told["untried"] < 4
+    assert said.split()[-4:] == [str(told["calls"]), f"{told['worst']:.2f}", "20", str(told["untried"])]
+    still = json.loads(called(*words, "--opponent", "still", "--json").stdout)["objectives"][0]
+    assert still == {**told, "calls": 0, "worst": None, "untried": 8}
+
+
 def test_a_deadline_is_kept_in_every_mission() -> None:
     done = called(FIRST, "--runs", 30, "--within", "23.4", "--json")
     assert done.returncode == 0, done.stderr

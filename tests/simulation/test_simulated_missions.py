@@ -14,6 +14,7 @@ from pursue_gen.language import load
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.simulation.faults import FAULTS, HARMLESS
 from pursue_gen.simulation.mission import LOST, STOPPED, simulate_mission
+from pursue_gen.simulation.opponents import kind_in_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Settings
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import stage_of
@@ -162,6 +163,13 @@ def test_where_looking_ahead_costs_much_the_worst_opponent_of_mixed_ones_is_rare
         kinds = {simulate_mission(on, Settings("mixed"), seed, times).opponent for seed in range(20)}
         assert kinds == ({"random", "still", "worst"} if some else {"random", "still"})
         assert simulate_mission(on, Settings("worst"), 1, times).opponent == "worst"
+
+
+def test_mixed_opponents_seldom_stand_still_and_the_others_are_who_they_were() -> None:
+    kinds = [kind_in_mission("mixed", str(seed), None) for seed in range(1000)]
+    assert 0.07 < kinds.count("still") / 1000 < 0.13
+    assert min(kinds.count("random"), kinds.count("worst")) > 250
+    assert kinds[1:6] == ["worst", "worst", "random", "random", "worst"]
 
 
 def test_the_bound_is_that_of_the_checker_and_a_quarter_of_the_reaction_for_each_command() -> None:
