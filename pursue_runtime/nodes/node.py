@@ -354,9 +354,14 @@ def restart_process(environment: Mapping[str, str] = MappingProxyType({})) -> No
 
 
 def init_node(name: str, **options: Any) -> None:
-    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node)."""
+    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node).
+
+    Until `Ending` handles signals they end the process at once and in silence: rospy would raise from wherever it is.
+    """
     ThreadingXMLRPCServer.service_actions = _end_if_closed
-    rospy.init_node(name, **options)
+    for sign in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(sign, signal.SIG_DFL)
+    rospy.init_node(name, disable_signals=True, **options)
 
 
 def _end_if_closed(server: Any) -> None:

@@ -55,7 +55,7 @@ from pursue_runtime.ui.options import Options, read_options
 from pursue_runtime.ui.requests import numbered
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
 from pursue_runtime.ui.trace import TraceError
-from pursue_runtime.ui.verdict import INTERRUPTED, NOT_STARTED, Verdict, write_verdict
+from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
@@ -349,10 +349,10 @@ class UI:
         if self.ending.renewed:
             self.terminal.close()
             restart_process(kept)
-        if self.verdict is None:  # the mission goes on without the UI, or everything ends
+        if self.verdict is None:  # everything ends, or the UI alone: then it is started again
             save_verdict(self.options.verdict, INTERRUPTED, "The UI was interrupted before the mission ended.")
             self.terminal.close()
-            return 1
+            return status or ALONE
         return max(status, self.verdict[0])
 
     def read(self) -> None:
@@ -390,6 +390,7 @@ def main(package: Package) -> int:
         model, settings = membership.model, membership.source.read("ui.yaml")
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
+        drop_interrupted(options.verdict)
         ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))
         ui.page.open(settings)
     except (DataError, TraceError) as problem:

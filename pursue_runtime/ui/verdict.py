@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 from typing import NamedTuple, Optional
 
 from pursue_runtime.state import LOST, STOPPED, WON
 
 NOT_STARTED, INTERRUPTED = "not started", "interrupted"
 OUTCOMES = (WON, LOST, STOPPED, NOT_STARTED, INTERRUPTED)
+
+ALONE = 128 + signal.SIGINT
+"""The exit status of a UI that a signal has ended before the mission: if roslaunch does not end it, the signal was for
+the UI alone, and again.sh starts it again."""
 
 
 class Verdict(NamedTuple):
@@ -42,3 +47,11 @@ def read_verdict(path: str) -> Optional[Verdict]:
     except (OSError, UnicodeDecodeError):
         return None
     return Verdict(outcome, sentence.strip()) if outcome in OUTCOMES else None
+
+
+def drop_interrupted(path: str) -> None:
+    """Remove a verdict that the mission was interrupted: it was the UI alone, which has been started again."""
+    verdict = read_verdict(path)
+    if verdict is not None and verdict.outcome == INTERRUPTED:
+        with contextlib.suppress(OSError):
+            os.unlink(path)

@@ -25,8 +25,8 @@ ENDED = ("won", "lost", "stopped")
 LOGGING_DELAY = 15.0
 """Seconds after the end of a launch in which the logger may still log what was published before it."""
 
-INTERRUPTED = ("KeyboardInterrupt", "rospy.exceptions.ROSInitException", "rospy.exceptions.ROSInterruptException")
-"""What a node dies of that is interrupted while it starts: as those do that were started again at the end."""
+INTERRUPTED = ("KeyboardInterrupt",)
+"""What Python dies of that is interrupted before it runs the first line of a node's script."""
 
 PLAYED: Mapping[str, object] = {"simulate": False, "goals": "simple", "ends": "words"}
 """The launch arguments of a mission whose robots are played by the test, which reports their ends."""
@@ -201,9 +201,9 @@ class LaunchedMission:
         return log.read_text(errors="replace") if log.exists() else ""
 
     def verdict(self) -> str:
-        """What roslaunch says of the UI's end."""
-        found = re.search(r"REQUIRED process \[UI-\d+\] has died!\n(.*)", self.output())
-        return found.group(1) if found else ""
+        """What the UI says of the end."""
+        pattern = r"^(?:The goal is|All goals are|The mission (?:is|was)) .*"
+        return "".join(re.findall(pattern, self.output(), re.MULTILINE))
 
     def crashes(self) -> List[str]:
         """The exceptions that nodes died of; a node that is interrupted while it starts has not crashed."""

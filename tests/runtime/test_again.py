@@ -34,12 +34,18 @@ sys.exit(3)
 
 @pytest.fixture
 def again(tmp_path: Path) -> List[str]:
-    """The words before the program's."""
+    """The words before those of a program that is run again."""
     text = (templates_dir() / "bringup" / "launch" / "again.sh.j2").read_text()
     text = text.replace("{{ scenario }}", "example").replace("{{ generator }}", "0")
     script = tmp_path / "again.sh"
     script.write_text(text)
     return ["bash", str(script)]
+
+
+@pytest.fixture
+def end(again: List[str]) -> List[str]:
+    """The words before those of a program whose end is the end of the launch."""
+    return [*again, "--end"]
 
 
 def lives(process: int) -> bool:
@@ -105,3 +111,57 @@ def test_killed_itself_it_takes_the_program_along(again: List[str], tmp_path: Pa
     process.kill()
     process.wait()
     assert gone(child)
+
+
+LAUNCH = """
+import signal, subprocess, sys
+interrupted = []
+signal.signal(signal.SIGINT, lambda *_: interrupted.append(1))
+node = subprocess.Popen(sys.argv[1:], start_new_session=True)
+while not interrupted and node.poll() is None:
+    signal.sigtimedwait([], 0.05)
+alone = node.poll() is None
+if alone:
+    import os
+    os.killpg(node.pid, signal.SIGINT)
+print("interrupted" if interrupted else "not interrupted", "while it was there" if alone else "", node.wait())
+"""
+"""What roslaunch does: it ends its nodes when it is interrupted."""
+
+
+def launched(command: List[str]) -> str:
+    done = subprocess.run([sys.executable, "-c", LAUNCH, *command], capture_output=True, text=True, timeout=PATIENCE,
+                          check=True)
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("status", [0, 1])
+def test_the_end_of_the_program_interrupts_the_launch_which_then_ends_the_script(end: List[str], status: int) -> None:
+    """So roslaunch has not to say in red that a required process has died."""
+    assert launched([*end, "bash", "-c", f"exit {status}"]) == f"interrupted while it was there {status}"
+
+
+@pytest.mark.parametrize("status", [2, 127])
+def test_a_program_that_failed_ends_the_script_and_roslaunch_says_so(end: List[str], status: int) -> None:
+    assert launched([*end, "bash", "-c", f"exit {status}"]) == f"not interrupted  {status}"
+
+
+def test_without_the_option_the_launch_goes_on(again: List[str]) -> None:
+    assert launched([*again, "true"]) == "not interrupted  0"
+
+
+def test_a_roslaunch_for_another_machine_is_not_interrupted(end: List[str], tmp_path: Path) -> None:
+    launch = tmp_path / "roslaunch"
+    launch.write_text(LAUNCH.replace("sys.argv[1:]", "sys.argv[3:]"))
+    command = [sys.executable, str(launch), "-c", "machine-0", *end, "true"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True)
+    assert done.stdout.strip() == "not interrupted  0"
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_whatever_signal_ends_the_program_alone_it_runs_again(end: List[str], tmp_path: Path, sign: int) -> None:
+    """Also where the program handles the signal, and exits with the status that shells have for it."""
+    for way in (f"kill -{sign:d} $$", f"exit {128 + sign}"):
+        note = tmp_path / f"{len(way)}{sign:d}"
+        program = f'trap - INT; echo $$ >>"$0"; [[ $(wc -l <"$0") == 2 ]] && exit 5; {way}'
+        assert launched([*end, "bash", "-c", program, str(note)]) == "not interrupted  5"

@@ -84,7 +84,9 @@ def test_without_arguments_the_whole_mission_of_the_workspace_is_played_once(lau
     assert found.names == sorted(MISSION)
     assert [name for name, node in found.nodes.items() if node.required] == ["UI"]
     assert sorted(name for name, node in found.nodes.items() if node.respawn) == sorted(set(MISSION) - {"UI"})
-    assert "again.sh" in found.nodes["UI"].launch_prefix
+    assert found.nodes["UI"].launch_prefix.endswith("/again.sh --end")
+    assert launch("mission.launch", "required:=false").nodes["UI"].launch_prefix.endswith("/again.sh")
+    assert not launch("mission.launch", "respawn:=false").nodes["UI"].launch_prefix
     assert found.params["/UI/autostart"] is True
     for node in MISSION:
         assert (found.params[f"/{node}/received"], found.params[f"/{node}/again"]) == (False, False)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import threading
-from typing import List
+from typing import Iterator, List
 
 import pytest
 
@@ -18,12 +19,20 @@ from tests.waiting import PATIENCE, until
 
 
 @pytest.fixture
-def log(monkeypatch: pytest.MonkeyPatch) -> List[str]:
+def log(monkeypatch: pytest.MonkeyPatch) -> Iterator[List[str]]:
     """What happens, in its order: the node's name as it connects to ROS, then what it logs as fatal."""
     lines: List[str] = []
-    monkeypatch.setattr(rospy, "init_node", lines.append)
+    handlers = {sign: signal.getsignal(sign) for sign in (signal.SIGINT, signal.SIGTERM)}
+
+    def connect(name: str, disable_signals: bool) -> None:
+        assert disable_signals and all(signal.getsignal(sign) == signal.SIG_DFL for sign in handlers)
+        lines.append(name)
+
+    monkeypatch.setattr(rospy, "init_node", connect)
     monkeypatch.setattr(rospy, "logfatal", lambda text, *parts: lines.append(text % parts))
-    return lines
+    yield lines
+    for sign, handler in handlers.items():
+        signal.signal(sign, handler)
 
 
 def test_its_exit_status_is_what_it_returns(log: List[str]) -> None:
