@@ -9,6 +9,7 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
+from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.parser import read
 from pursue_gen.language.wording import objective_words, promise_words, statement_text
 
@@ -40,7 +41,7 @@ def test_the_number_behind_optional_is_that_of_its_objectives() -> None:
 
 
 def test_what_is_given_up_is_no_objective_any_more_and_is_remembered() -> None:
-    scenario = parse(HOUSE + WANTED, "x.pur", "x").giving_up((1,)).giving_up((2,), decided=False)
+    scenario = parse(HOUSE + WANTED, "x.pur", "x").giving_up((1,)).giving_up((2,), WhyGivenUp.TOO_MUCH_WORK)
     assert scenario.optional == () and [statement_text(one) for one in scenario.objectives] == [
         "reach_objective: do mail"
     ]
