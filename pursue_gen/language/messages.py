@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Dict, FrozenSet, List, Sequence, Tuple
 
 from lark import Token
@@ -137,12 +138,28 @@ def explain(chunk: List[Token], index: int, expected: FrozenSet[str], span: Span
     return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk))
 
 
+def of_a_comment(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic:
+    """The finding; with a question about the comment on the line above, where it seems to go on without `//`."""
+    span = finding.span
+    if finding.code not in ("PML010", "PML011") or span is None or not 2 <= span.line <= len(lines):
+        return finding
+    begins = not lines[span.line - 1][: span.column - 1].strip()
+    if not begins or not lines[span.line - 2].lstrip().startswith("//") or not finding.hint.startswith(_GENERAL):
+        return finding
+    question = f"did the comment of line {span.line - 1} go on here? start the line with //"
+    return replace(finding, hint=f"{question}; if not, {finding.hint}")
+
+
 def unfinished(chunk: List[Token], expected: FrozenSet[str], span: Span) -> Diagnostic:
     """The statement ends too early; the span is that of its last token."""
     end = Span(span.file, span.end_line, span.end_column, span.end_line, span.end_column + 1)
     message = f"expected {_in_words(expected)} after {_shown(chunk[-1])}, but the statement ends here"
     hint = "put a `)` for each `(`" if "RPAR" in expected else _form(chunk)
     return error("PML010", message, end, hint)
+
+
+_GENERAL = ("the form is", "a statement begins with")
+"""How hints begin that know nothing of what was meant."""
 
 
 def _invisible(token: Token) -> bool:

@@ -20,6 +20,7 @@ from pursue_gen.language.messages import (
     explain,
     kind_of,
     looks_like_statement,
+    of_a_comment,
     unfinished,
     unknown_statement,
 )
@@ -112,7 +113,9 @@ def cut(text: str, file: str) -> Statements:
         if len(reader.findings) == MOST_FINDINGS and number + 1 < len(found):
             reader.findings.append(too_many(span_of(found[number + 1][0], file)))
             break
-    return Statements(reader.trees, reader.findings, frozenset(reader.lost))
+    lines = text.split("\n") if reader.findings else []
+    findings = [of_a_comment(finding, lines) for finding in reader.findings]
+    return Statements(reader.trees, findings, frozenset(reader.lost))
 
 
 def _words(text: str) -> Iterator[Token]:

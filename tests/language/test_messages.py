@@ -190,3 +190,47 @@ def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
     expected = "expected `location`, `duration`, `at_most`, `collaborative`, `label`, `only_if` or the end"
     assert expected in finding.message
+
+
+BEFORE = '''poi "a"
+poi "b"
+connect a and b distance 3
+event "first" location a
+event "second" location b
+'''
+BEHIND = '''
+agent "bot" controllable mobile 3 location a can_do first, second
+reach_objective: do second
+'''
+
+
+@pytest.mark.parametrize("last", ["", 'rule "rule1": first before second\n'], ids=["listing 5.5", "listing 5.3"])
+def test_a_comment_that_goes_on_without_slashes_is_named(last: str) -> None:
+    """As the thesis's listings 5.3 and 5.5 have it."""
+    comment = "//agents (must specify if controllable and/or mobile,\ninitial location actions and reactions)\n"
+    source = BEFORE + last + comment + BEHIND
+    (finding,) = syntax_errors(source)
+    line = 1 + (BEFORE + last).count("\n")
+    assert (finding.span and finding.span.line) == line + 1
+    assert finding.hint.startswith(f"did the comment of line {line} go on here? start the line with //; if not, the")
+    mended = source.replace("initial location", "// initial location")
+    assert syntax_errors(mended) == []
+
+
+def test_a_comment_at_the_start_of_a_text_is_named_too() -> None:
+    (finding,) = syntax_errors("// my floor,\nas of today\n" + BEFORE + BEHIND)
+    assert finding.code == "PML011" and "comment of line 1" in finding.hint
+
+
+@pytest.mark.parametrize(
+    ("slip", "hint"),
+    [
+        ("// places\npois \"c\"\n", "did you mean poi?"),  # what is meant is known
+        ("// an event\n\nhello there\n", "a statement begins with"),  # not the line below
+        ('event "third" // an event\nhello\n', "the form is"),  # a comment behind a statement
+        ("// an event\nevent \"third\" hello\n", "the form is"),  # not the start of the line
+    ],
+)
+def test_another_slip_below_a_comment_keeps_its_hint(slip: str, hint: str) -> None:
+    found = syntax_errors(slip + BEFORE + BEHIND)
+    assert hint in found[0].hint and "comment" not in found[0].hint
