@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Tuple
 
 import pytest
 from hypothesis import given
@@ -87,7 +88,7 @@ def test_nothing_is_reported_of_a_network_that_is_too_large(monkeypatch: pytest.
 
 
 @given(stories())
-def test_the_relaxed_search_finds_every_edge_that_states_lead_to(story: "tuple[str, Scenario]") -> None:
+def test_the_relaxed_search_finds_every_edge_that_states_lead_to(story: Tuple[str, Scenario]) -> None:
     game = compile_game(translate(story[1]), scenario_objective(story[1]))
     taken = forbidden._by_states(game)
     assert taken is None or taken <= forbidden._relaxed(game)
