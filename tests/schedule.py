@@ -21,7 +21,7 @@ LONGEST = (
     "ros/test_missions_patrol", "scenarios/test_scenarios", "proof/test_checker", "cli/test_progress",
     "solving/test_ways", "synthesis/test_verdicts", "proof/test_invariant", "synthesis/test_cone",
     "synthesis/test_engines", "test_tutorial", "runtime/manager/test_hostile_requests", "lsp/test_packaging",
-    "language/test_hostile", "simulation/test_simulated_missions", "runtime/test_hostile_texts",
+    "language/test_hostile", "test_python38", "simulation/test_simulated_missions", "runtime/test_hostile_texts",
     "solving/test_shared_games", "solving/test_quick", "simulation/test_simulated_command", "proof/test_stages",
     "solving/test_least_time", "explanation/test_explain", "synthesis/test_start", "synthesis/test_overtaking",
     "synthesis/test_plan", "report/test_report_page", "draw/test_draw_browser", "zones/test_dbm", "cli/test_commands",
