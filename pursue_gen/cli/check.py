@@ -44,7 +44,7 @@ def check(
         suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
         raise typer.Exit(exit_status(findings))
     for file in files:
-        for sentence in _periods(file):
+        for sentence in (*_periods(file), *_moved(file, spot_distance)):
             info(f"{file}: {sentence}")
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
@@ -56,6 +56,16 @@ def _periods(file: Path) -> List[str]:
 
     scenario = load(file)
     return quickly_found(scenario) if without_period(scenario) else []
+
+
+def _moved(file: Path, distance: float) -> List[str]:
+    """Which robots are sent beside the pose that the scenario gives for a place, and how far."""
+    from pursue_gen.language import load
+    from pursue_gen.workspace.spots import moved
+
+    scenario = load(file)
+    several = sum(agent.is_robot for agent in scenario.agents) > 1
+    return moved(scenario, distance) if several and any(poi.pose for poi in scenario.pois) else []
 
 
 def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:

@@ -11,6 +11,7 @@ from typing import DefaultDict, Dict, Iterable, Iterator, List, Mapping, Sequenc
 from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.objectives import NeverWith
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 
 SPOT_DISTANCE = 0.8
@@ -48,9 +49,9 @@ def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[
     """robot → place → the pose to which the robot is sent there; `places` has the places' own poses.
 
     A pose that the scenario gives for a robot stays as it is. Of the other robots that may be at a place, the first has
-    the place's pose. The rest stand beside it, left and right in turn, `distance` metres from each other and, where
-    there is room, from the poses of other places. All look in the same direction. Positions are rounded to millimetres.
-    With distance 0 all have the place's pose.
+    the place's pose, and so has each that is never there together with one that has it. The rest stand beside it, left
+    and right in turn, `distance` metres from each other and, where there is room, from the poses of other places. All
+    look in the same direction. Positions are rounded to millimetres. With distance 0 all have the place's pose.
     """
     own = {poi.name: {spot.robot.name: spot.pose for spot in poi.spots} for poi in scenario.pois}
     found = {
@@ -64,18 +65,35 @@ def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[
     given = {poi.name: [places[poi.name], *own[poi.name].values()] for poi in scenario.pois}
     everywhere = _Taken(distance, (pose for those in given.values() for pose in those))
     for poi in scenario.pois:
-        others = _without_own(poi, present[poi.name])[1:]
+        groups = _groups(scenario, poi, present[poi.name])[1:]
         here = _Taken(distance, given[poi.name])
-        for robot, spot in zip(others, _beside(places[poi.name], distance, here, everywhere, _ROOM * len(others))):
-            found[robot][poi.name] = spot
+        for robots, spot in zip(groups, _beside(places[poi.name], distance, here, everywhere, _ROOM * len(groups))):
+            found.update({robot: {**found[robot], poi.name: spot} for robot in robots})
             everywhere.add(spot)
+    return found
+
+
+def moved(scenario: Scenario, distance: float) -> List[str]:
+    """A sentence for each place whose pose a person has given and some robots are sent beside: which, and how far."""
+    found, present = [], robots_at(scenario)
+    where = placing(scenario, distance)
+    for poi in scenario.pois:
+        groups = _groups(scenario, poi, present[poi.name])
+        if poi.pose is None or len(groups) < 2 or distance <= 0:
+            continue
+        away = []
+        for robot in (robot for robots in groups[1:] for robot in robots):
+            spot = where.spots[robot][poi.name]
+            away.append(f"{robot} {math.dist((spot.x, spot.y), (poi.pose.x, poi.pose.y)):g} m")
+        first = " and ".join(groups[0])
+        found.append(f"at {poi.name} {first} has the pose of the place; beside it: {', '.join(away)} (--spot-distance)")
     return found
 
 
 def spots_in_one(scenario: Scenario, distance: float) -> Tuple[Diagnostic, ...]:
     """A warning for the first place at which several robots have one pose, because their distance is 0."""
     present = robots_at(scenario)
-    shared = [(poi, _without_own(poi, present[poi.name])) for poi in scenario.pois]
+    shared = [(poi, [robots[0] for robots in _groups(scenario, poi, present[poi.name])]) for poi in scenario.pois]
     crowded = [(poi, robots) for poi, robots in shared if len(robots) > 1]
     if distance > 0 or not crowded:
         return ()
@@ -84,6 +102,26 @@ def spots_in_one(scenario: Scenario, distance: float) -> Tuple[Diagnostic, ...]:
     message = f"{' and '.join(robots)} have one pose at {poi.name}: real robots would run into each other{more}"
     hint = f"leave --spot-distance 0 out, or give each its own: {poi.name} //[…] {robots[1]} [x, y, z, qx, qy, qz, qw]"
     return (warning("WSP007", message, poi.span, hint),)
+
+
+def _groups(scenario: Scenario, poi: Poi, present: Sequence[str]) -> List[List[str]]:
+    """The robots without a pose of their own at the place, those together that may have one: no two of them are ever
+    there at one time. Only objectives that have to be met (`never_with`) are relied on: a new plan keeps them too.
+    """
+    apart = {
+        frozenset((one.first.name, one.second.name))
+        for one in scenario.safety
+        if isinstance(one, NeverWith) and not one.optional and (one.place is None or one.place.name == poi.name)
+    }
+    groups: List[List[str]] = []
+    for robot in _without_own(poi, present):
+        for group in groups:
+            if all(frozenset((robot, other)) in apart for other in group):
+                group.append(robot)
+                break
+        else:
+            groups.append([robot])
+    return groups
 
 
 def _without_own(poi: Poi, robots: Sequence[str]) -> List[str]:

@@ -603,6 +603,16 @@ def test_verify_without_a_plan_is_reported() -> None:
     assert "plan is missing" in told.err
 
 
+def test_check_says_that_robots_are_sent_beside_a_given_pose(tmp_path: Path) -> None:
+    text = Path(FIRST).read_text(encoding="utf-8").replace('poi "a"', 'poi "a" //[1, 2, 0, 0, 0, 0, 1]', 1)
+    file = tmp_path / "placed.pur"
+    file.write_text(text, encoding="utf-8")
+    told = pursue("check", file, "--spot-distance", "0.5")
+    assert told.status == 0
+    assert f"{file}: at a bot1 has the pose of the place; beside it: bot2 0.5 m" in told.err
+    assert "beside it" not in pursue("check", FIRST).err
+
+
 # report --------------------------------------------------------------------------------------------------------------
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from itertools import combinations
-from typing import Dict, List, Mapping, Tuple
+from typing import Dict, List, Mapping, Set, Tuple
 
 import pytest
 from hypothesis import given, settings
@@ -16,7 +16,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.tga import translate
-from pursue_gen.workspace.spots import spots, spots_in_one
+from pursue_gen.workspace.spots import moved, spots, spots_in_one
 
 ROUNDING = 0.002  # metres: spots are rounded to millimetres
 EAST, NORTH = "0, 0, 0, 1", f"0, 0, {math.sin(math.pi / 4)!r}, {math.cos(math.pi / 4)!r}"
@@ -108,6 +108,48 @@ def test_with_distance_0_all_have_the_given_pose_and_the_places_are_named() -> N
     assert (finding.code, finding.message.split(":")[0]) == ("WSP007", "bot1 and bot2 have one pose at a")
     assert spots_in_one(made, 0.5) == ()
     assert spots_in_one(scenario({"a": ""}, robots=1), 0.0) == ()
+
+
+def kept_apart(*objectives: str, robots: int = 2, places: str = "ab") -> Scenario:
+    """Robots that can all get to all places, far from each other, and objectives that keep some from meeting."""
+    behind = {name: f"//[{9 * number}, 0, 0, {EAST}]" for number, name in enumerate(places)}
+    return scenario(behind, robots, "".join(f"{objective}\n" for objective in objectives))
+
+
+def test_a_given_pose_is_forwarded_to_robots_that_are_never_there_together() -> None:
+    made = kept_apart("objective: bot1 never_with bot2")
+    assert points(made, 0.8, "a") == [(0, 0), (0, 0)] and points(made, 0.8, "b") == [(9, 0), (9, 0)]
+    assert spots_in_one(made, 0.0) == ()
+    at_one = kept_apart("objective: bot1 never_with bot2 at b")
+    assert points(at_one, 0.8, "a") == [(0, 0), (0, 0.8)] and points(at_one, 0.8, "b") == [(9, 0), (9, 0)]
+
+
+def test_what_is_optional_keeps_nobody_apart() -> None:
+    assert points(kept_apart("optional 1 objective: bot1 never_with bot2"), 0.8, "b") == [(9, 0), (9, 0.8)]
+
+
+def test_a_robot_that_meets_one_of_two_has_another_spot_than_that_one() -> None:
+    made = kept_apart("objective: bot1 never_with bot2", "objective: bot3 never_with bot2", robots=3)
+    assert points(made, 0.8, "b") == [(9, 0), (9, 0), (9, 0.8)], "bot1 and bot3 may be there together"
+
+
+@given(st.sets(st.sampled_from([(a, b, c) for a, b in combinations("12345", 2) for c in ("", " at a", " at b")])))
+def test_whoever_can_be_together_stands_apart(pairs: Set[Tuple[str, str, str]]) -> None:
+    made = kept_apart(*(f"objective: bot{a} never_with bot{b}{where}" for a, b, where in sorted(pairs)), robots=5)
+    table = spots_of(made, 0.8)
+    for place in "ab":
+        for a, b in combinations("12345", 2):
+            if not pairs & {(a, b, ""), (a, b, f" at {place}")}:
+                assert metres(table[f"bot{a}"][place], table[f"bot{b}"][place]) >= 0.8 - ROUNDING
+
+
+def test_it_is_said_which_robots_are_sent_beside_a_given_pose_and_how_far() -> None:
+    made = scenario({"a": f"//[1, 2, 0, {EAST}]", "b": "", "c": f"//[9, 9, 0, {EAST}] bot2 [9, 8, 0, {EAST}]"}, 3)
+    assert moved(made, 0.5) == [
+        "at a bot1 has the pose of the place; beside it: bot2 0.5 m, bot3 0.5 m (--spot-distance)",
+        "at c bot1 has the pose of the place; beside it: bot3 0.5 m (--spot-distance)",
+    ]
+    assert moved(made, 0.0) == [] == moved(kept_apart("objective: bot1 never_with bot2"), 0.8)
 
 
 YAW = st.floats(-math.pi, math.pi)
