@@ -6,10 +6,11 @@ from typing import Any, List, Mapping, Optional, Tuple
 
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Assumption, Move, Position
+from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.planning import stays
-from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
     BLOCKED,
@@ -116,13 +117,14 @@ class Mission(MissionStatus):
 
     def stop(self, why: str, now: float) -> List[SystemState]:
         """Stop the mission safely: no further commands are taken."""
-        return self._end(STOPPED, why, now) if self.status in (WAITING, *LIVE) else []
+        return self._end(life.STOP, why, now) if self._life.may(life.STOP) else []
 
     def adopt(self, found: Mapping[str, Any], now: float) -> List[SystemState]:
         """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
         state = adoptable(found, self.model, self._unit, self.plan)
         self._automata.adopt(state)
-        self.seq, self.status, self.reason, self._since = state.seq, state.status, state.reason, {}
+        self._life.take(life.ADOPT, state.reason, state.status)
+        self.seq, self._since = state.seq, {}
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
         self._early, self._warned = {}, False
@@ -142,11 +144,12 @@ class Mission(MissionStatus):
         return []
 
     def _start(self, now: float) -> List[SystemState]:
-        if self.status != WAITING:
+        if not self._life.may(life.START):
             self._log("warn", f"{START} while the mission is {self.status}: ignored")
             return []
         self._automata.start(now)
-        self.status, self.seq = RUNNING, 1
+        self._life.take(life.START)
+        self.seq = 1
         moves = self._evaluate(now)
         return [self.state(now), *self._take(moves, now)]
 
@@ -157,12 +160,12 @@ class Mission(MissionStatus):
         return self.stop(f"{STOP} was published", now)
 
     def _finish(self, now: float) -> List[SystemState]:
-        if self.status not in LIVE:
+        if not self._life.may(life.WIN):
             return []  # most often the observer's own word
         if self.model.goal:
             self._log("warn", f"{FINISH} before the goal is reached: ignored")
             return []
-        return self._end(WON, "", now)
+        return self._end(life.WIN, "", now)
 
     # Moves ------------------------------------------------------------------------------------------------------------
 
@@ -273,11 +276,11 @@ class Mission(MissionStatus):
         """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective."""
         position = self.position(now)
         if self._automata.is_won():
-            self._conclude(WON, "", now)
+            self._conclude(life.WIN, "", now)
         elif self._automata.lost():
             broken = [self.model.says[name] for name in self._automata.lost() if name in self.model.says]
             reason = why or f"{self._event} by {self._agent}"
-            self._conclude(LOST, f"{reason} (broken: {', '.join(broken)})" if broken else reason, now)
+            self._conclude(life.LOSE, f"{reason} (broken: {', '.join(broken)})" if broken else reason, now)
         else:
             moves = self._automata.internal_move(position)
             if not moves:

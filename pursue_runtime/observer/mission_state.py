@@ -7,11 +7,12 @@ from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
+from pursue_runtime.observer.life import Life
 from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
-from pursue_runtime.state import WAITING, WON, SystemState
+from pursue_runtime.state import WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import Word
 
@@ -47,7 +48,7 @@ class MissionState:
         shared_ends: str = ALL,
     ) -> None:
         self.model, self.name = model, name
-        self.status, self.reason, self.seq, self.plan = WAITING, "", 0, 0
+        self.seq = self.plan = 0
         self._since: Dict[Entry, int] = {}  # the number of the state in which was decided what stands (else: this one)
         self.counts = dict.fromkeys(COUNTED, 0)
         self.late: Set[str] = set()
@@ -65,9 +66,20 @@ class MissionState:
         self._warned = False
         self._shown = self.robots.revision()  # in the newest state
         self._automata = Automata(model, unit)
+        self._life = Life(lambda: not model.goal or self._automata.is_won(), lambda: bool(self._automata.lost()))
         self._event = self._agent = ""
         self._commanded = False
         self._ended: Optional[float] = None
+
+    @property
+    def status(self) -> str:
+        """Return the status, a word of STATUSES."""
+        return self._life.state
+
+    @property
+    def reason(self) -> str:
+        """Return why it holds or has ended; "" where there is nothing to say."""
+        return self._life.reason
 
     def position(self, now: float) -> Position:
         """Return locations, variables and clocks at the time `now`, or at the end of the mission if that was before."""
@@ -111,14 +123,16 @@ class MissionState:
 
     # Ends -------------------------------------------------------------------------------------------------------------
 
-    def _end(self, status: str, reason: str, now: float) -> List[SystemState]:
+    def _end(self, trigger: str, reason: str, now: float) -> List[SystemState]:
         self._event, self._agent, self._commanded = "", "", False
-        self._conclude(status, reason, now)
+        self._conclude(trigger, reason, now)
         return [self.state(now)]
 
-    def _conclude(self, status: str, reason: str, now: float) -> None:
-        self.status, self.reason, self._ended = status, reason, now
-        self._log("info" if status == WON else "err", f"the mission is {status}" + (f": {reason}" if reason else ""))
+    def _conclude(self, trigger: str, reason: str, now: float) -> None:
+        self._life.take(trigger, reason)
+        self._ended = now
+        level = "info" if self.status == WON else "err"
+        self._log(level, f"the mission is {self.status}" + (f": {reason}" if reason else ""))
 
     def _reject(self, kind: str, message: str, level: str = "warn") -> None:
         self.counts[kind] += 1

@@ -6,11 +6,12 @@ from typing import Any, Dict, List, Mapping, Optional
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
+from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import MissionState
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
-from pursue_runtime.state import HOLDING, LIVE, RUNNING, STOPPED, SystemState
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.strategy import Entry
 
 COVER_GRACE = 2.0
@@ -89,7 +90,7 @@ class MissionStatus(MissionState):
         trouble = "" if waits else trouble  # another plan begins when these robots can go on
         self.counts["uncovered"] += bool(trouble) and self.status == RUNNING
         if trouble and self._on_uncovered == "stop":
-            self._conclude(STOPPED, trouble, now)
+            self._conclude(life.STOP, trouble, now)
             return
         if trouble and self._on_uncovered == "warn":
             if not self._warned:
@@ -104,13 +105,18 @@ class MissionStatus(MissionState):
             trouble += f"; no other plan: {self._planning.no_plan_reason}"
             awaited = " and ".join(sorted(self.late - set(self.lost)))
             if not awaited:
-                self._conclude(STOPPED, trouble, now)
+                self._conclude(life.STOP, trouble, now)
                 return
             reasons.append(f"waiting for {awaited}: {trouble}")
         reason = "; ".join(reasons)
-        if reason != self.reason:
-            self._log(*(("warn", f"the mission holds: {reason}") if reasons else ("info", "the mission goes on")))
-        self.status, self.reason = HOLDING if reasons else RUNNING, reason
+        if reason == self.reason and bool(reasons) == (self.status == HOLDING):
+            return
+        if reasons:
+            self._log("warn", f"the mission holds: {reason}")
+            self._life.take(life.HOLD, reason)
+        else:
+            self._log("info", "the mission goes on")
+            self._life.take(life.GO_ON)
 
     def _uncovered(self, now: float, patience: float) -> str:
         """Return why the plan in force has no decision here, in words; "" if it has one."""
@@ -161,7 +167,7 @@ class MissionStatus(MissionState):
     def _put_plan_in_force(self, now: float) -> List[SystemState]:
         """Put an acknowledged plan in force with a new state, if it covers the present clocks."""
         proposal = self._planning.acknowledged()
-        if proposal is None:
+        if proposal is None or self.status not in LIVE:
             return []
         turns = tuple(self.ways.turns[name] for name in proposal.request.turning)
         start = min(now, proposal.request.stamp + proposal.request.ahead * self._unit)  # there the proof begins
