@@ -1,18 +1,12 @@
 """How a command can end other than well: a type of error for each outcome, with the exit status that it gets.
 
-An error of no other type here is a PursueError: what was given has errors. Programs catch these types; the numbers are
-for those who start a command (docs/commands.md lists them).
+An error of no type here is a PursueError: what was given has errors, or (status 2) cannot be used. Programs catch these
+types; the numbers are for those who start a command (docs/commands.md lists them).
 """
 
 from __future__ import annotations
 
 from pursue_gen.diagnostics import PursueError
-
-
-class Unusable(PursueError):
-    """The command line, or a file that it names, cannot be used."""
-
-    exit_status = 2
 
 
 class Lost(PursueError):

@@ -44,7 +44,7 @@ def test_a_command_that_ends_so_has_the_exit_status_of_the_page(
 
 
 def test_each_documented_status_of_an_error_has_an_outcome() -> None:
-    assert {outcome.exit_status for outcome in TYPES} == set(range(2, 9))
+    assert {outcome.exit_status for outcome in TYPES} == set(range(3, 9))
 
 
 def test_a_program_tells_outcomes_apart_by_their_types() -> None:
