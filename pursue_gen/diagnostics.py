@@ -46,7 +46,7 @@ class Diagnostic:
 class PursueError(Exception):
     """The exception for all errors that the command line reports, with diagnostics: what was given has errors.
 
-    Other outcomes are its subclasses (outcomes.py); `exit_status` 2 is for a command line or a file that cannot be used.
+    Other outcomes are its subclasses (outcomes.py); `exit_status` 2 is for a command line or file that cannot be used.
     """
 
     exit_status = 3
