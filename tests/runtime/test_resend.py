@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pursue_runtime.controller.reports import Report
 from pursue_runtime.resend import LAST_TIMEOUT, REPEATS, SHORTEST, StateRepeats, resend_interval, resend_timeout
 from pursue_runtime.state import HOLDING, SystemState
+from pursue_runtime.words import Word, parse_word
 
 
 def state(seq: int, stamp: float, **more: str) -> SystemState:
@@ -61,13 +62,14 @@ def test_a_newer_state_takes_the_place_of_the_one_before() -> None:
 
 
 def test_a_report_of_a_robot_is_repeated_within_the_reaction_until_the_state_shows_it() -> None:
-    report = Report("bot_going_a_to_b2b", 0.1)
-    assert report.due(5.0) == "bot_going_a_to_b2b"
-    assert report.due(5.01) is None
+    report = Report(Word("bot", "bot_going_a_to_b2b", as_of=3), 0.1)
+    assert report.due(100.0, 5.0) == "bot:bot_going_a_to_b2b#3"
+    assert report.due(100.01, 5.01) is None
     assert report.next_moment() == pytest.approx(5.02)
-    assert report.due(5.021) == "bot_going_a_to_b2b"
+    again = report.due(100.021, 5.021)
+    assert again is not None and parse_word(again) == Word("bot", "bot_going_a_to_b2b", as_of=3, at=100.0)
     report.confirmed = True
-    assert report.due(9.0) is None and report.next_moment() is None
+    assert report.due(104.0, 9.0) is None and report.next_moment() is None
 
 
 def test_the_interval_has_bounds() -> None:
